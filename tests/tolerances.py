@@ -312,6 +312,8 @@ DMA_REPEATED = 1e-14
 DMA_READ = 1e-15
 #: Files written with seven digits: half a unit of the last one, of loss over storage twice.
 DMA_DIGITS = 2e-6
+#: Numbers written with ten digits.
+WRITTEN = 1e-9
 #: that of the curve shipped from pyvisco, "about 1.65"; measured 1.68.
 DMA_PYVISCO = (1.55, 1.75)
 #: log10 a_T of WLF-made data: 21 points in three decades without noise (the interpolant; measured 1.3e-4), and 11

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import codecs
 import csv
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
@@ -22,19 +21,25 @@ from .headings import NO_UNIT, looks_like_unit
 #: separators of cells, the surest first; then blanks
 _SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
 _NUMBER = re.compile(r"[+-]?(\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD]([+-]?\d+))?")
-#: numbers with separators of thousands, "1,234.5", "1.234.567", "1 234,5", or a lone "1,234"
-_THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[,.' \xa0\u202f’]\d{3})+(?:[.,]\d*)?")
+#: numbers with separators of thousands, as "1,234.5" and "1.234.567"
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[,.'\u202f’]\d{3})+(?:[.,]\d*)?")
+#: what may be a number with a separator of thousands, or with three decimals
 _THOUSAND = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")
 #: what stands in place of a number that was not measured
 _GAP = re.compile(r"(?i)-*|nan|n/?a|null|none|\*+|#n/?a|#wert!|#value!|[+-]?inf(inity)?|\?+")
 #: cells that are neither numbers nor gaps in a row of numbers: words, dates, times
 _TEXT = re.compile(r".*[^\W\d_].*|\d+[-:./]\d+[-:./]\d+.*|\d+:\d+.*")
 _COMMENT = re.compile(r"\s*(?:[#%!]+|//)\s*")
-#: words of one heading in a line that blanks part
+#: blanks between words of one heading, where blanks part headings
 _PHRASE = re.compile(
     r"(?i)\s+(?=[\[(])|(?<=\bstorage)\s+|(?<=\bloss)\s+|(?<=\bangular)\s+|(?<=\bcomplex)\s+|(?<=\btan)\s+(?=d)"
     r"|(?<=\bphase)\s+|(?<=\breduced)\s+|(?<=\belastic)\s+|(?<=\bviscous)\s+|(?<=\bpoint)\s+(?=no)"
 )
+#: lines of a file by which its separator is found
+_SOME = 2000
+#: first bytes -> encoding; without any of them UTF-8, else that of Windows, else ISO 8859-1, which has all bytes
+_MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+_WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 
 
 class Numbers(NamedTuple):
@@ -48,7 +53,7 @@ class Numbers(NamedTuple):
 
 
 class _Line(NamedTuple):
-    """A line that is not blank: its number, its cells, whether it is a comment, and whether a row of numbers."""
+    """A line that is not blank: its number, its text, its cells, whether a comment, whether a row of numbers."""
 
     number: int
     text: str
@@ -78,13 +83,9 @@ class Table:
     bare: bool = False
     decimal: str = "."
 
-    def empty(self, column: int) -> bool:
-        """Whether a column has no cell with anything in it."""
-        return not any(row[column] for row in self.rows)
-
     def textual(self, column: int) -> bool:
         """Whether no cell of a column is a number."""
-        return not any(_NUMBER.fullmatch(row[column]) or _THOUSANDS.fullmatch(row[column]) for row in self.rows)
+        return not any(_is_number(row[column]) for row in self.rows)
 
     def numbers(self, column: int) -> Numbers:
         """The numbers of a column.
@@ -96,41 +97,32 @@ class Table:
         """
         values, half = np.empty((2, len(self.rows)))
         cells = [row[column] for row in self.rows]
-        self._refuse_thousands(column, cells)
+        marked = [cell for cell in cells if "," in cell or "." in cell]
+        # "1,234" beside "567": three digits behind each mark, and whole numbers of three digits
+        doubtful = all(map(_THOUSAND.fullmatch, marked)) and any(len(cell) == 3 and cell.isdigit() for cell in cells)
         for n, cell in enumerate(cells):
             found = _NUMBER.fullmatch(cell)
-            if found is None or (self.decimal == "." and "," in cell) or (self.decimal == "," and "." in cell):
-                raise self._fault(n, column, f"is {self._word(cell)}")
-            digits = found[1].replace(",", ".")
-            power = int(found[2] or 0)
-            text = f"{'-' * cell.startswith('-')}{digits}e{power}"
-            values[n] = float(text)
+            if found is None or ".,".replace(self.decimal, "") in cell or (doubtful and cell in marked):
+                at = f"line {self.lines[n]}, column {self.headings[column]!r}: {cell!r}"
+                raise FileError(self.path, f"{at} {_fault_of(cell, self.decimal)}")
+            digits, power = found[1].replace(",", "."), int(found[2] or 0)
+            values[n] = float(f"{'-' * cell.startswith('-')}{digits}e{power}")
             half[n] = 0.5 * 10.0 ** min(power - len(digits.partition(".")[2]), 300)
-            if not np.isfinite(values[n]):
-                raise self._fault(n, column, "is beyond the range of numbers")
         return Numbers(values, half)
 
-    def _word(self, cell: str) -> str:
-        """What is wrong with a cell that must be a number."""
-        if _GAP.fullmatch(cell):
-            return "a gap: leave out its row"
-        if _THOUSANDS.fullmatch(cell) and not _NUMBER.fullmatch(cell):
-            return "written with separators of thousands: write it without"
-        return f"no number with a decimal {'comma' if self.decimal == ',' else 'point'}"
 
-    def _refuse_thousands(self, column: int, cells: list[str]) -> None:
-        """Refuse "1,234" beside "567": three digits behind each mark, and whole numbers of three digits."""
-        marked = [n for n, cell in enumerate(cells) if re.search("[.,]", cell)]
-        if (
-            marked
-            and all(_THOUSAND.fullmatch(cells[n]) for n in marked)
-            and any(len(c) == 3 and c.isdigit() for c in cells)
-        ):
-            raise self._fault(marked[0], column, "may have a separator of thousands: write it without")
+def _fault_of(cell: str, decimal: str) -> str:
+    """Why a cell is no number."""
+    if _GAP.fullmatch(cell):
+        return "is a gap: leave out its row"
+    if _THOUSANDS.fullmatch(cell):
+        return "may have a separator of thousands: write it without"
+    return f"is no number with a decimal {'comma' if decimal == ',' else 'point'}"
 
-    def _fault(self, row: int, column: int, problem: str) -> FileError:
-        cell = self.rows[row][column]
-        return FileError(self.path, f"line {self.lines[row]}, column {self.headings[column]!r}: {cell!r} {problem}")
+
+def _is_number(cell: str) -> bool:
+    """Whether a cell is a number, perhaps with separators of thousands."""
+    return bool(_NUMBER.fullmatch(cell) or _THOUSANDS.fullmatch(cell))
 
 
 def read_table(
@@ -140,8 +132,8 @@ def read_table(
     """Read the table of a text file: preambles, comments, several tables with the same headings.
 
     The separator is that by which most lines are rows of numbers.  Headings are the last line before the numbers whose
-    cells are ``known``, else the line above the longest table.  Python's csv cuts lines into cells: pandas expects
-    all lines of a file to be as wide as its table.
+    cells are ``known``, else the line above the first row.  Python's csv cuts lines into cells: pandas expects all
+    lines of a file to be as wide as its table.
 
     Parameters
     ----------
@@ -163,10 +155,10 @@ def read_table(
     """
     if decimal not in (None, ".", ","):
         raise ParameterError("decimal", f"{decimal!r:.20}", "'.' or ','")
-    text = _text(path, encoding).replace("\r\n", "\n").replace("\r", "\n").replace("\u2212", "-").split("\n")
-    if text[0].lower().startswith("sep=") and len(text[0].strip()) == 5:  # a line by which Excel is told
+    text = re.split(r"\r\n|\r|\n", _text(path, encoding).replace("\u2212", "-"))
+    if re.fullmatch(r"(?i)sep=.\s*", text[0]):  # a line by which Excel is told
         text[0] = ""
-    separator = max((sep for sep in _SEPARATORS if sep != decimal), key=lambda sep: _fitting(text, sep))
+    separator = max((each for each in _SEPARATORS if each != decimal), key=lambda each: _fitting(text, each))
     lines = [line for line in _cut(text, separator) if any(line.cells)]
     if not any(line.numeric for line in lines):
         raise FileError(path, "has no row of numbers")
@@ -178,7 +170,7 @@ def read_table(
     rows = [row for table in tables for row in table.rows]
     numbers = [line for table in tables for line in table.lines]
     whole = replace(first, rows=rows, lines=numbers, parts=len(tables))
-    return replace(whole, decimal=decimal or _mark(path, whole, separator))
+    return replace(whole, decimal=decimal or _mark(whole, separator))
 
 
 def _text(path: str | PathLike[str], encoding: str | None) -> str:
@@ -187,39 +179,25 @@ def _text(path: str | PathLike[str], encoding: str | None) -> str:
         raw = Path(path).read_bytes()
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error})") from error
-    if raw[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
+    if raw.startswith(_WORKBOOKS):
         raise FileError(path, "is a workbook or an archive, no text: save its sheet as CSV")
-    if encoding is None:
-        if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            encoding = "utf-16"
-        elif b"\0" in raw[:2]:
-            encoding = "utf-16-le" if raw[1:2] == b"\0" else "utf-16-be"
-    try:
-        found = _decoded(raw, encoding)
-    except LookupError:
-        raise ParameterError("encoding", f"{encoding!r:.40}", "an encoding that Python knows, as 'utf-8'") from None
-    except (UnicodeError, TypeError) as error:
-        raise FileError(path, f"cannot be read in {encoding} ({error})") from error
-    if "\0" in found:
-        raise FileError(path, "is no text: it has null bytes")
-    return found
+    marked = "utf-16-le" if raw[1:2] == b"\0" else "utf-16-be" if raw[:1] == b"\0" else None
+    given = encoding or _MARKS.get(raw[:2], marked)
+    for name in [given] if given else ["utf-8-sig", "cp1252", "latin-1"]:
+        try:
+            found = raw.decode(name).removeprefix("\ufeff")
+        except LookupError:
+            raise ParameterError("encoding", f"{name!r:.40}", "an encoding that Python knows, as 'utf-8'") from None
+        except UnicodeError as error:
+            problem = f"cannot be read in {name} ({error})"
+            continue
+        if "\0" in found:
+            raise FileError(path, "is no text: it has null bytes")
+        return found
+    raise FileError(path, problem)
 
 
-def _decoded(raw: bytes, encoding: str | None) -> str:
-    if encoding is not None:
-        return raw.decode(encoding).lstrip("\ufeff")
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        # of Windows where all its bytes are, else of ISO 8859-1, which has a sign for every byte
-        return raw.decode("cp1252", errors="ignore") if _windows(raw) else raw.decode("latin-1")
-
-
-def _windows(raw: bytes) -> bool:
-    return not set(raw) & {0x81, 0x8D, 0x8F, 0x90, 0x9D}
-
-
-def _cut(text: list[str], separator: str) -> Iterable[_Line]:
+def _cut(text: list[str], separator: str) -> Iterator[_Line]:
     """Lines with their cells; quoted cells may go on over several lines."""
     if separator == " ":
         cut = ((n, line, _by_blanks(line)) for n, line in enumerate(text, 1))
@@ -234,36 +212,23 @@ def _cut(text: list[str], separator: str) -> Iterable[_Line]:
             cells[0] = bare
         else:  # a first cell of "%" alone is a unit, of "#" a number of points
             mark = None
-        yield _Line(number, line.strip(), cells, mark is not None, mark is None and _numeric(cells))
+        others = [cell for cell in cells if not _is_number(cell) and not _GAP.fullmatch(cell)]
+        numbers = sum(map(_is_number, cells))
+        numeric = not mark and 0 < numbers >= len(others) and all(map(_TEXT.fullmatch, others))
+        yield _Line(number, line.strip(), cells, bool(mark), numeric)
 
 
 def _by_blanks(line: str) -> list[str]:
     return [quoted or bare for quoted, bare in re.findall(r'"([^"]*)"|(\S+)', line)]
 
 
-def _numeric(cells: list[str]) -> bool:
-    """Whether a line is a row of numbers, perhaps beside words, gaps, and numbers with separators of thousands."""
-    numbers = sum(1 for cell in cells if _NUMBER.fullmatch(cell) or _THOUSANDS.fullmatch(cell))
-    others = [
-        cell for cell in cells if not (_NUMBER.fullmatch(cell) or _THOUSANDS.fullmatch(cell) or _GAP.fullmatch(cell))
-    ]
-    return numbers > 0 and len(others) <= numbers and all(_TEXT.fullmatch(cell) for cell in others)
-
-
-def _fitting(text: list[str], separator: str) -> tuple[int, int]:
-    """How many lines of a file a separator cuts into rows of numbers alike: of plain ones, and of any."""
+def _fitting(text: list[str], separator: str) -> int:
+    """How many lines of a file a separator cuts into rows of numbers of one width, of two cells and more."""
     try:
-        rows = [line.cells for line in _cut(text[:_SOME], separator) if line.numeric]
+        widths = Counter(len(line.cells) for line in _cut(text[:_SOME], separator) if line.numeric)
     except csv.Error:
-        return 0, 0
-    plain = [len(row) for row in rows if not any(_THOUSANDS.fullmatch(c) and not _NUMBER.fullmatch(c) for c in row)]
-    widths = [Counter(size for size in sizes if size > 1) for sizes in (plain, [len(row) for row in rows])]
-    most, any_kind = (max(found.values(), default=0) for found in widths)
-    return most, any_kind
-
-
-#: lines of a file by which its separator is found
-_SOME = 2000
+        return 0
+    return max((count for width, count in widths.items() if width > 1), default=0)
 
 
 def _tables(path: str | PathLike[str], lines: list[_Line], known: Callable[[list[str]], bool], by: str) -> list[Table]:
@@ -274,8 +239,10 @@ def _tables(path: str | PathLike[str], lines: list[_Line], known: Callable[[list
     ends = zip(heads, [*heads, len(lines)][1:])
     spans = [(head, end) for head, end in ends if any(line.numeric for line in lines[head:end])]
     if not spans:
-        spans = [(_above(lines, width, by), len(lines))]
-        for line in lines if spans[0][0] < 0 else ():
+        first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
+        above = [n for n, line in enumerate(lines[:first]) if not line.comment and not line.numeric]
+        spans = [(above[-1] if above else -1, len(lines))]
+        for line in lines if not above else ():
             if line.comment and known(re.split(r"[\s,;|]+", line.text)):
                 problem = f"line {line.number} names columns, but is not cut by {by} into {width} as the rows"
                 raise FileError(path, f"{problem}: {line.text[:60]!r}")
@@ -288,57 +255,35 @@ def _tables(path: str | PathLike[str], lines: list[_Line], known: Callable[[list
 def _plain(cells: list[str]) -> bool:
     """Whether cells are two numbers and more, without words between them."""
     filled = [cell for cell in cells if cell]
-    return len(filled) > 1 and all(_NUMBER.fullmatch(cell) for cell in filled)
-
-
-def _above(lines: list[_Line], width: int, by: str) -> int:
-    """Index of the line of headings above the first row of the table, -1 where there is none."""
-    first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
-    above = [n for n, line in enumerate(lines[:first]) if not line.comment and not line.numeric]
-    while len(above) > 1 and _are_units(_headings(lines[above[-1]], width, by)):
-        above.pop()
-    return above[-1] if above else -1
+    return len(filled) > 1 and all(map(_NUMBER.fullmatch, filled))
 
 
 def _table(path: str | PathLike[str], lines: list[_Line], head: int, end: int, width: int, by: str) -> Table:
     """The rows of numbers between a line of headings (-1: none) and the next one or the end of the file."""
-    body = lines[head + 1 : end]
+    body, last = lines[head + 1 : end], end == len(lines)
     first = next(n for n, line in enumerate(body) if line.numeric and (head >= 0 or len(line.cells) == width))
+    names = _headings(lines[head], width, by) if head >= 0 else [f"column {n}" for n in range(width)]
+    while not names[-1]:
+        names.pop()
     rows: list[_Line] = []
     title = None
     for line in body[first:]:
         # between two tables of a file may be their titles, with numbers of points
-        if line.numeric and (len(line.cells) == width or end == len(lines) or _plain(line.cells)):
-            if title:
-                raise FileError(path, f"line {title.number} is no row of numbers: {title.text[:60]!r}")
-            if rows and len(line.cells) != len(rows[0].cells):
-                problem = f"has {len(line.cells)} columns, those before it {len(rows[0].cells)}"
-                raise FileError(path, f"line {line.number} {problem}, cut by {by}")
+        if not line.numeric or not (last or len(line.cells) == width or _plain(line.cells)):
+            title = title or (None if line.comment else line)
+        elif title is None:
+            if any(line.cells[len(names) :]) or len(line.cells) < len(names):
+                above = f"the headings in line {lines[head].number}" if head >= 0 else f"line {body[first].number}"
+                problem = f"line {line.number} has {len(line.cells)} columns, {above} {len(names)}, cut by {by}"
+                raise FileError(path, f"{problem}: {line.text[:60]!r}")
             rows.append(line)
-        elif not line.comment:
-            title = title or line
-    if title and end == len(lines):
+        else:
+            last = True
+    if title and last:
         raise FileError(path, f"line {title.number} is no row of numbers: {title.text[:60]!r}")
-    names = _headings(lines[head], len(rows[0].cells), by) if head >= 0 else []
-    width = _filled(rows, names)
-    while len(names) > width and not names[-1]:
-        names.pop()
-    if head >= 0 and len(names) != width:
-        problem = f"line {lines[head].number} has {len(names)} headings, the rows below it {width} columns, cut by {by}"
-        raise FileError(path, f"{problem}: {', '.join(names)[:200]}")
-    return Table(
-        path, tuple(names) or tuple(f"column {n}" for n in range(width)),
-        _units(path, body[:first] if head >= 0 else [], width, by),
-        [row.cells[:width] for row in rows], [row.number for row in rows], bare=head < 0,
-    )  # fmt: skip
-
-
-def _filled(rows: list[_Line], names: list[str]) -> int:
-    """Columns of a table without those behind trailing separators, which have neither a heading nor a cell."""
-    width = len(rows[0].cells)
-    while width > 1 and not any(row.cells[width - 1] for row in rows) and not any(names[width - 1 :]):
-        width -= 1
-    return width
+    units = _units(path, body[:first] if head >= 0 else [], len(names), by)
+    cells = [row.cells[: len(names)] for row in rows]
+    return Table(path, tuple(names), units, cells, [row.number for row in rows], bare=head < 0)
 
 
 def _headings(line: _Line, width: int, by: str) -> list[str]:
@@ -352,38 +297,25 @@ def _headings(line: _Line, width: int, by: str) -> list[str]:
 
 
 def _units(path: str | PathLike[str], between: list[_Line], width: int, by: str) -> tuple[str, ...]:
-    """The row of units between headings and numbers, "" without one."""
+    """The row of units between headings and numbers, at least half of its texts units; "" without one."""
     found = [""] * width
     for line in between:
         cells = _headings(line, width, by)
+        texts = [cell.strip("[](){}<> ") for cell in cells if cell]
+        units = [text for text in texts if text in NO_UNIT or (looks_like_unit(text) and is_unit(text))]
         fits = len(cells) == width or (by != _SEPARATORS[" "] and not any(cells[width:]))
-        if fits and _are_units(cells) and not any(found):
+        if fits and 2 * len(units) >= len(texts) and not any(found):
             found = (cells + found)[:width]
         elif not line.comment:
             raise FileError(path, f"line {line.number} is neither units nor numbers, cut by {by}: {line.text[:60]!r}")
     return tuple(found)
 
 
-def _are_units(cells: list[str]) -> bool:
-    """Whether at least half of the cells of a line that have anything in them are units."""
-    texts = [cell.strip("[](){}<> ") for cell in cells if cell]
-    units = [text for text in texts if text in NO_UNIT or (looks_like_unit(text) and is_unit(text))]
-    return bool(texts) and 2 * len(units) >= len(texts)
-
-
-def _mark(path: str | PathLike[str], table: Table, separator: str) -> str:
-    """The decimal mark of the numbers of a table, "." where there is none."""
-    marked = [
-        (line, cell) for line, row in zip(table.lines, table.rows, strict=True) for cell in row
-        if ("," in cell or "." in cell) and _NUMBER.fullmatch(cell)
-    ]  # fmt: skip
-    commas = [each for each in marked if "," in each[1]]
-    if not commas:
-        return "."
-    (line, cell), points = commas[0], [each for each in marked if "." in each[1]]
-    if points:
-        both = f"{cell!r} in line {line} and {points[0][1]!r} in line {points[0][0]}"
-        raise FileError(path, f"has commas and points in numbers ({both}): separators of thousands? Write them without")
-    if separator == "," and all(_THOUSAND.fullmatch(cell) for _, cell in commas):
-        raise FileError(path, f"line {line}: {cell!r} may have a separator of thousands: write it without")
-    return ","
+def _mark(table: Table, separator: str) -> str:
+    """The decimal mark of the numbers of a table, "." where there is none; raises FileError where there are both."""
+    numbers = [cell for row in table.rows for cell in row if _NUMBER.fullmatch(cell)]
+    commas, points = ([cell for cell in numbers if mark in cell] for mark in ",.")
+    if commas and (points or (separator == "," and all(map(_THOUSAND.fullmatch, commas)))):
+        both = " and ".join(repr(cells[0]) for cells in (commas, points) if cells)
+        raise FileError(table.path, f"has {both}: may have separators of thousands, write numbers without them")
+    return "," if commas else "."

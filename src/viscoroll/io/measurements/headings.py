@@ -62,15 +62,8 @@ def readings(heading: str, row: str = "") -> list[Reading]:
         unit = heading[gap.end() :]
         if unit in NO_UNIT[1:] or (looks_like_unit(unit) and not re.search(r"[\[\](){}]", unit)):
             ways.append((heading[: gap.start()], unit))
-    bare = re.fullmatch(r"[\[({<]?\s*(.*?)\s*[\])}>]?", row.strip())
-    found_row = bare[1] if bare and bare[1].count("(") == bare[1].count(")") else row.strip()
-    return [_with_logarithm(Reading(" ".join(name.split()), unit or found_row, log)) for name, unit in ways if name]
-
-
-def _with_logarithm(reading: Reading) -> Reading:
-    """The same, with "log Hz" in place of a unit told apart as logarithms of Hz."""
-    found = re.fullmatch(r"(?i)(?:log|lg)(?:10)?[\s_]*\(?(.*?)\)?", reading.unit)
-    return reading._replace(unit=found[1], log=True) if found and found[1] else reading
+    row = row[1:-1] if row[:1] in ("[", "(") and row.count("(") <= 1 else row
+    return [Reading(" ".join(name.split()), unit or row.strip(), log) for name, unit in ways if name]
 
 
 def looks_like_unit(text: str) -> bool:
