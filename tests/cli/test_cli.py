@@ -208,6 +208,17 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
     assert f"{cylinder.steady(slope=0.003).V[0]:.10g}" in run("steady", "a.toml", "--slope", "0.003")
 
 
+def test_a_load_without_an_equilibrium_is_told(run, capsys):
+    """Above a table, alone where there is no row, and beside a table for programs."""
+    reason = "load 0: force + torque = 0.12 exceeds the largest rolling moment 0.084471 (at V = 0.234265)\n"
+    assert run("steady", *PRESET, "--force", "0.12") == reason
+    assert run("steady", *PRESET, "--force", "0.12,0.01").startswith(f"{reason}\n state")
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        assert main(["steady", *PRESET, "--force", "0.12", "-o", "s.csv"]) == 0
+    assert capsys.readouterr() == ("", f"viscoroll: warning: {reason}")
+
+
 def test_output_for_machines_and_for_eyes(run, here):
     """Suffixes in any case; a file with a byte order mark."""
     argv = ["contact", *PRESET, "--V", "1,2", "--delta", "-1e-3"]
