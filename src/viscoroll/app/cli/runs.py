@@ -23,7 +23,8 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
 def ensemble(given: Namespace) -> None:
     """Many motions with random starts and parameters, by a run file.
 
-    Rolls what is missing in the store and summarises it: the same command continues an interrupted run.
+    Rolls what is missing in the store and summarises it: the same command continues an interrupted run, or one whose
+    file has a larger n now.
     Without -o it states size, memory and time.
 
     example:

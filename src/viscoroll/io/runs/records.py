@@ -24,14 +24,16 @@ class Record(msgspec.Struct):
 
     Attributes
     ----------
-    run : digest of the run that it is a part of.
+    run : digest of the run that it is a part of, whatever its number of motions.
     files : path below the store -> SHA-256.
+    motions : of the block, or, in the records "start" and "end", of the run.
     about : what the run is, in the record "start".
     summary : of the motions, in the record of a block.
     """
 
     run: str
     files: dict[str, str]
+    motions: int = 0
     about: dict[str, str | int] = {}
     summary: Summary | None = None
 

@@ -124,6 +124,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
 
     imported("zarr", "zarr", "runs")
     root = Path(path)
-    if found := problems(root, "end", start_of(root).run):
+    start = start_of(root)
+    if found := problems(root, "end", start.run, start.motions):
         raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
     return RunResults(root, xr.open_zarr(root, chunks=None))

@@ -56,8 +56,10 @@ def verify(path: str | PathLike[str]) -> Verdict:
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
     """
     root, start = Path(path), start_of(path)
-    blocks = int(start.about["blocks"])
-    found = {part: problems(root, part, start.run) for part in ("start", *range(blocks), "end")}
+    motions, size, blocks = (int(start.about[name]) for name in ("motions", "motions_a_block", "blocks"))
+    parts: dict[str | int, int] = {"start": motions}
+    parts |= {block: min(size, motions - block * size) for block in range(blocks)} | {"end": motions}
+    found = {part: problems(root, part, start.run, count) for part, count in parts.items()}
     missing = tuple(block for block in range(blocks) if found[block])
     # of a block or an end that was not made yet there is nothing to be damaged
     damaged = (name for part, names in found.items() for name in names if part == "start" or (root / name).exists())
