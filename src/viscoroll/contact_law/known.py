@@ -124,8 +124,8 @@ class Known:
         (lam,) = rolling(law_table(material), np.array(rates) * unit * self.T_ref, "lam")
         _told.update(self.measured.values())
         sentence = measurement(passage(np.array(rates), lam), self.measured).sentence
-        text = f"the material is not known here as measured: {sentence}.  M and the contact length are a guess of the "
-        warnings.warn(text + "fit then; validity(V).measured tells where", ModelWarning, stacklevel=outside())
+        text = f"M and the contact length are not backed by measurements here: {sentence}"
+        warnings.warn(f"{text}; validity(V).measured tells at which V they are", ModelWarning, stacklevel=outside())
 
     def _slowness(self, speed: Any, density: float | None) -> tuple[Any, list[str]]:
         """(Speed over that of the slowest shear wave, or None; bodies whose density is not known)."""
