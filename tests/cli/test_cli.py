@@ -124,6 +124,13 @@ def test_standard_output_that_takes_nothing(redirected, code, error):
     assert (done.returncode, done.stderr) == (code, error)
 
 
+@pytest.mark.parametrize("redirected", ["2>&-", "2>/dev/full", ">&- 2>&-"])
+def test_an_error_that_nobody_hears_is_one(redirected):
+    command = ["bash", "-c", f"{shlex.join([*POINT, '--omega', '1'])} {redirected}"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
+
+
 @pytest.mark.parametrize(
     ("raised", "code", "words"), [(KeyboardInterrupt, 130, ""), (MemoryError, 2, "not enough memory")]
 )
@@ -348,7 +355,8 @@ def test_tables_validate(run, capsys, tables):
 
 
 def test_answered(run, refuse, here, tables):
-    (here / "folder.csv").mkdir()
+    for name in ("folder.csv", "folder.nc", "folder.zarr"):
+        (here / name).mkdir()
     (here / "run.toml").write_text(UNCERTAIN)
     run("contact", *PRESET, "--V", "1", "--delta", "0", "-o", "one.nc")
     whole = (tables / "rubber.nc").read_bytes()

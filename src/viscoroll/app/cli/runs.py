@@ -32,6 +32,8 @@ def ensemble(given: Namespace) -> None:
     """
     run = vr.runs.read_run(given.run_file)
     if given.output is None:
+        if given.cluster is not None:
+            raise vr.ParameterError("--cluster", given.cluster, "left out without -o: the trial is of this machine")
         print(vr.runs.estimate(run, given.threads))
         return
     made = vr.runs.run_ensemble(
