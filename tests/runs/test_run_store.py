@@ -161,6 +161,12 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
         refused(partial(run_ensemble, run, tmp_path / "store.zarr"), "another process", error=vr.FileError)
 
 
+def test_a_folder_that_may_not_be_read_is_no_damaged_store(run_file, tmp_path, whole, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    for call in (lambda: verify(whole), lambda: open_run(whole), lambda: run_ensemble(read_run(run_file), whole)):
+        refused(call, "whole.zarr: cannot be read (Permission denied)", error=vr.FileError)
+
+
 # --- more motions ---
 
 

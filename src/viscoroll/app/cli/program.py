@@ -112,7 +112,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(end, Interrupted):
             _tell(end)
         return _INTERRUPTED
-    except OSError as error:  # files raise FileError and the like: this is standard output
+    except OSError as error:  # of files FileError is raised where they are known to fail: without a name, of output
+        if error.filename is not None:
+            return _failed(f"{error.filename}: {error.strerror}")
         # whatever is still buffered goes nowhere, or the interpreter would complain at its end
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE if isinstance(error, BrokenPipeError) else _failed(f"standard output: {error.strerror}")

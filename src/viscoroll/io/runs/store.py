@@ -28,10 +28,10 @@ from . import zarr_files
 from .columns import attributes
 from .evaluate import roll_block, roll_inputs
 from .identity import ADVICE, about, identity, refuse_another
-from .records import Record, damaged, encoded, make_folder, put, read_record
+from .records import RECORDS, Record, damaged, encoded, make_folder, put, read_record, refuse_unreadable
 from .runfile import Run
 
-RECORDS, MOTIONS = "records", "motions"
+MOTIONS = "motions"
 _LOCK = ".lock"
 _EACH = ("onset_time", "rest_time", "status", "flow")
 
@@ -87,6 +87,7 @@ class Store:
             return
         if not root.is_dir():
             raise FileError(root, f"is a file: {ADVICE}")
+        refuse_unreadable(root)
         blocks = sorted((root / RECORDS).glob("[0-9]*"))
         whole = map(read_record, (_path(root, "start"), _path(root, "end"), *blocks))
         record = next((found for found in whole if found is not None), None)

@@ -7,8 +7,8 @@ from os import PathLike
 from pathlib import Path
 
 from ...core.errors import FileError
-from .records import Record, read_record
-from .store import RECORDS, problems
+from .records import RECORDS, Record, read_record, refuse_unreadable
+from .store import problems
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,8 @@ class Verdict:
 
     def __str__(self) -> str:
         if self.ok:
-            return f"complete: {self.blocks} blocks and the summaries have the SHA-256 that they were written with"
+            blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
+            return f"complete: {blocks} and the summaries have the SHA-256 that they were written with"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
         lines += [f"{len(self.missing)} of {self.blocks} blocks are not there or not whole"] * bool(self.missing)
         lines += ["the summaries are not there or not whole"] * (not self.finished)
@@ -70,6 +71,7 @@ def start_of(path: str | PathLike[str]) -> Record:
     """The record of its start; raises FileError."""
     if not Path(path).is_dir():
         raise FileError(path, "is no results store: there is no such folder")
+    refuse_unreadable(Path(path))
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
         raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
