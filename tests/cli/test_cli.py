@@ -150,7 +150,8 @@ def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
 def test_example_of_help_runs(run, tables, here, monkeypatch, command):
     (here / "data").mkdir()
     (here / "data" / "tables").symlink_to(tables)
-    (here / "docs").symlink_to(ROOT / "docs")
+    for name in ("docs", "src"):
+        (here / name).symlink_to(ROOT / name)
     (here / "run.toml").write_text(UNCERTAIN)
     _, *examples = run(*command.split(), "--help").partition("example:")[2].split("\n  viscoroll ")
     for example in examples:
