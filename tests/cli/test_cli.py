@@ -124,6 +124,13 @@ def test_standard_output_that_takes_nothing(redirected, code, error):
     assert (done.returncode, done.stderr) == (code, error)
 
 
+@pytest.mark.parametrize("redirected", ["2>&-", "2>/dev/full", ">&- 2>&-"])
+def test_an_error_that_nobody_hears_is_one(redirected):
+    command = ["bash", "-c", f"{shlex.join([*POINT, '--omega', '1'])} {redirected}"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
+
+
 @pytest.mark.parametrize(
     ("raised", "code", "words"), [(KeyboardInterrupt, 130, ""), (MemoryError, 2, "not enough memory")]
 )
@@ -245,6 +252,17 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
     assert table["V [m s-1]"] == cylinder.roll(1.0, 0.5, [0.0, 0.1]).V.tolist()
     assert run(*point, "--format", "csv").startswith("V [m s-1],delta,lam,length [m],")
     assert f"{cylinder.steady(slope=0.003).V[0]:.10g}" in run("steady", "a.toml", "--slope", "0.003")
+
+
+def test_a_load_without_an_equilibrium_is_told(run, capsys):
+    """Above a table, alone where there is no row, and beside a table for programs."""
+    reason = "load 0: force + torque = 0.12 exceeds the largest rolling moment 0.084471 (at V = 0.234265)\n"
+    assert run("steady", *PRESET, "--force", "0.12") == reason
+    assert run("steady", *PRESET, "--force", "0.12,0.01").startswith(f"{reason}\n state")
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        assert main(["steady", *PRESET, "--force", "0.12", "-o", "s.csv"]) == 0
+    assert capsys.readouterr() == ("", f"viscoroll: warning: {reason}")
 
 
 def test_output_for_machines_and_for_eyes(run, here):
@@ -376,7 +394,8 @@ def test_tables_validate(run, capsys, tables):
 
 
 def test_answered(run, refuse, here, tables):
-    (here / "folder.csv").mkdir()
+    for name in ("folder.csv", "folder.nc", "folder.zarr"):
+        (here / name).mkdir()
     (here / "run.toml").write_text(UNCERTAIN)
     run("contact", *PRESET, "--V", "1", "--delta", "0", "-o", "one.nc")
     whole = (tables / "rubber.nc").read_bytes()

@@ -197,8 +197,8 @@ class Known:
             return
         _told.update(self.measured.values())
         sentence = measurement(passage(np.array(rates), self._lam(np.array(rates))), self.measured).sentence
-        text = f"the material is not known here as measured: {sentence}.  M and the contact length are a guess of the "
-        warnings.warn(text + "fit then; validity(V).measured tells where", ModelWarning, stacklevel=outside())
+        text = f"M and the contact length are not backed by measurements here: {sentence}"
+        warnings.warn(f"{text}; validity(V).measured tells at which V they are", ModelWarning, stacklevel=outside())
 
     def _lam(self, rate: Any) -> Any:
         """Contact length over that at rest, of |V|/l0 in 1/s, for the one material."""

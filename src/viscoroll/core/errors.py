@@ -117,7 +117,7 @@ class MotionStatus(IntEnum):
 
 _MESSAGES = (
     "reached the last output time",
-    "max(|V|, |omega|) fell below the rest threshold",
+    "|V| and R |omega| fell below the rest threshold",
     "the step limit was reached first: loosen rtol, raise max_steps or shorten the motion",
     "the step size fell to rounding level: rtol is too tight for this start",
     "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",

@@ -131,7 +131,7 @@ class Ensemble(Rolled):
             if (values := getattr(self, name)) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]
                 low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
-                text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
+                text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
                 rows.append(Row(name, text, self._unit(name)))
         rows.append(Row("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
         if self.flow.any():

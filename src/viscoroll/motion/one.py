@@ -156,7 +156,8 @@ class Motion(Rolled):
         rows = [self._times()]
         rows += [Row(name, _course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
         for name, given in self.drive.given.items():
-            rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
+            called = f"prescribed {name}" if name in ("V", "omega") else name  # which have a row of their own above
+            rows.append(Row(called, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
         if not np.isnan(self.onset_time):
             rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
         if self.switches:
@@ -166,7 +167,7 @@ class Motion(Rolled):
             rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{died}"))
         if self.reversals.size:
             rows.append(Row("reversals of V", str(self.reversals.size)))
-        return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} steps)")]
+        return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
 
     def at(self, t: ArrayLike) -> Motion:
         """The same motion at other times within [0, end]; by the continuous output of the methods.

@@ -48,7 +48,9 @@ def run_ensemble(
     """Work on all blocks that the store does not hold yet, then write the summaries.
 
     After an end of any kind (a kill, a full disk, a damaged file) the same call goes on: blocks
-    that are there are read and compared with their SHA-256, the others are made again.
+    that are there are read and compared with their SHA-256, the others are made again.  So does a call with a larger
+    ``n`` in a run that is otherwise the same ("random"; "sobol" to powers of two): the store becomes that of the larger
+    run, byte for byte.
 
     Parameters
     ----------
