@@ -202,7 +202,8 @@ def _inputs(begun: Begun, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray
     ready = begun.ready
     arrays = {name: np.asarray(value) for name, value in begun.scene.numbers.items()}
     arrays |= {"V0": np.asarray(ready.V0), "omega0": np.asarray(ready.omega0)}
-    counts = {"pieces": ready.pieces.shape[0], "gains": ready.gains.shape[1]}
+    own = 1 if ready.courses is None else ready.courses.motions
+    counts = {"pieces": own, "gains": ready.gains.shape[1]}
     shape = broadcast_shape(**arrays, **drives, **{name: np.zeros(n) for name, n in counts.items() if n > 1})
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
@@ -238,7 +239,7 @@ def _integrate_others(answer: Answer, many: _Many) -> Integers:
 
     mapped = answer.status.max(initial=-1) >= 0
     block = _MAPPED_BLOCK if mapped else 1 if begun.unsteady and np.ndim(begun.scene.alpha) else _BLOCK
-    run_blocks(work, steps.size, block, threads=many.threads, progress=many.bar)
+    run_blocks(work, steps.size, begun.ready.block(block), threads=many.threads, progress=many.bar)
     return steps
 
 

@@ -143,7 +143,7 @@ class _Given:
 
 
 def fitted(
-    name: str, function: Callable[[float], Any], end: float, rtol: float, low: float
+    name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, resolve: float | None = None
 ) -> tuple[Floats, Floats, float]:
     """(Starts, terms (k, TERMS), largest difference seen) of a callable up to ``end``.
 

@@ -75,7 +75,7 @@ def begin(
         ready, caught = _climbed(ready, scene, _time_of_rest(rested) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
-    if one and (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
+    if one and (many := ready.motions) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
     return Begun(roller, scene, drive, ready, caught, last, limits, unsteady)
 
