@@ -132,8 +132,10 @@ class Courses(NamedTuple):
 
     def some(self, chosen: Any) -> Courses:
         """Those of the ``chosen`` motions, an index of numpy."""
-        *parts, prescribed = self
-        return Courses(*(part if part is None else of_some(part, chosen) for part in parts), prescribed)
+        force, torque, brake = (of_some(one, chosen) for one in self[:3])
+        tangent = self.tangent[chosen] if self.tangent.size > 1 else self.tangent
+        speed = None if self.speed is None else of_some(self.speed, chosen)
+        return Courses(force, torque, brake, tangent, speed, self.prescribed)
 
     def block(self, most: int) -> int:
         """Number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""
@@ -233,9 +235,7 @@ def _added(one: Curve, more: Any) -> Curve:
     return one._replace(terms=one.terms + flat)
 
 
-def prepared(
-    drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None
-) -> Prepared:
+def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None) -> Prepared:
     """A drive without dimension up to the time ``end``.
 
     Parameters
