@@ -130,6 +130,11 @@ class Courses(NamedTuple):
         shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
         return shape[0] if shape else 1
 
+    @property
+    def corners(self) -> int:
+        """Number of corners of a motion's schedules, and of pieces of its callables."""
+        return sum(one[0].shape[-1] for one in self.each.values() if isinstance(one, Corners | Curve))
+
     def some(self, chosen: Any) -> Courses:
         """Those of the ``chosen`` motions, an index of numpy."""
         force, torque, brake = (of_some(one, chosen) for one in self[:3])
@@ -142,8 +147,7 @@ class Courses(NamedTuple):
         if self.motions == 1:
             return most
         columns = 2 + 4 * (TERMS if any(isinstance(one, Curve) for one in self.each.values()) else 2)
-        pieces = sum(one[0].shape[-1] for one in self.each.values() if isinstance(one, Corners | Curve))
-        return min(max(_BLOCK_BYTES // (8 * columns * (pieces + 1)), 1), most)
+        return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def starts(self) -> tuple[Floats, Floats]:
         """(Value at t = 0, largest size) of the prescribed speed, of every motion that has its own.

@@ -80,6 +80,8 @@ def begin(
         limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end / scale["t"])
         own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
         ready = prepared(drive.over(scale), *own, last, rtol, over("resolve", resolve, scale))
+        if ready.courses is not None:  # a step ends at every corner
+            limits = (*limits[:2], limits[2] + ready.courses.corners)
         refuse_rest(limits[1], ready)
         ready, caught = _climbed(ready, scene, _time_of_rest(rested) / scale["t"])
     except ParameterError as error:

@@ -79,7 +79,7 @@ def roll(
     rested : whether the contact had rested long before it starts to roll, or the time that it had.
         Leaving its imprint takes energy (``validity(V0).steady.start``): V0 and omega0 become what is left of them; a
         motion that would lose seven tenths is caught there.  It tells of free rolling: with a force it is near.
-    max_steps : step limit, at most 10^7.
+    max_steps : step limit, at most 10^7; every corner of a schedule, at which a step ends, adds one to it.
     resolve : largest spacing, a time, of the samples of a callable that drives; a pulse that lasts longer is seen.
         Default, and at most: a thousandth of the motion.  Refused where it makes more than 5 10^5 samples, and where
         nothing is a callable.
