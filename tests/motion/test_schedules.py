@@ -17,6 +17,7 @@ from viscoroll.motion import driven
 def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
     times = np.arange(count) * 1e-3
     drive = driven.Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
+    driven.prepared(driven.Drive(torque=0.1), 0.1, 0.1, 1.0, 1e-8)  # imports take memory too
     tracemalloc.start()
     ready = driven.prepared(drive, 0.1, 0.1, times[-1], 1e-8)
     peak = tracemalloc.get_traced_memory()[1]
