@@ -368,6 +368,9 @@ FMU_ROLLER = 1e-9
 FMU_FROM_REST = 1e-6
 #: A roller by CVode of fmpy at rtol 1e-8 and its own absolute tolerance.
 FMU_TOOL = 1e-4
+#: The same at the tolerance that the FMU declares, 1e-5, through rest, of the largest speed or 1 m/s: CVode's errors
+#: add up to some tens of its tolerance.
+FMU_NEAR_REST = 1e-3
 # --- callables as polynomials (motion/test_fitted.py) ---
 #: Values taken and pieces made; measured 2,000 to 21,000 and up to 76: the root has no bounds to its slope at 0.
 CALLABLE_VALUES, CALLABLE_PIECES = 25_000, 100

@@ -103,7 +103,7 @@ static inline int vr_positive(double value) { return value > 0.0 && value < HUGE
 
 /* On by a time >= 0, with local errors of at most rtol: VR_DONE, VR_STUCK or VR_REFUSED */
 static inline int vr_roll(vr_roller *r, double time, double rtol) {
-  double t = 0.0, h = r->step > 0.0 ? r->step : 1e-6 * time, f[2], J[2][2];
+  double t = 0.0, h = r->step > 0.0 ? r->step : 1e-6 * time, f[2] = {0.0}, J[2][2] = {{0.0}};
   int fresh = 1;
   if (!(vr_finite(time) && time >= 0.0 && rtol > 0.0 && rtol < 1.0)) return VR_REFUSED;
   if (!(vr_positive(r->kappa) && vr_positive(r->mu) && vr_positive(r->gamma))) return VR_REFUSED;
