@@ -38,6 +38,9 @@ INTEROP = 1e-12
 INTEROP_SLOPES = 1e-11
 #: Motions of vr_roll.h at rtol 1e-8 against ``roll`` at 1e-10.
 INTEROP_ROLL = 1e-7
+#: vr_roll.h at rtol 1e-9 against ``roll``, through rest or from it, of the largest of V, omega and x; below its
+#: ``rest`` of 1e-6 or less creep counts from that.
+INTEROP_TURNED = 1e-7
 
 # --- ratios.py (test_ratios.py) ---
 #: r, k, i2 in units in the last place; the stated bound of the module; measured 1.4.

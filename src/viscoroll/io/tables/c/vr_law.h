@@ -2,7 +2,7 @@
  *
  * C99 and C++, one header, no allocation, no state, thread safe; of libm: frexp, log, log1p, sqrt, fabs, fmin, fmax.
  * Dimensionless: V in R/T_ref, forces over the load P, moments over P R.  V and slip = omega - V have any sign.
- * Where kappa or mu is not above 0 or infinite, V is not finite, slip is NaN or kappa |V| overflows, all values are NaN.
+ * All values are NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300.
  *
  *     vr_state s = vr_contact(&rubber, kappa, mu, V, slip);
  *     vr_slopes d;
@@ -129,7 +129,7 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
                             vr_state *s, vr_slopes *d) {
   double u = kappa * fabs(V), f[5], m[2] = {0.0, 0.0}, a[2], b[2], p1, p2, q;
   double sign = (slip > 0.0) - (slip < 0.0), delta = slip == 0.0 ? 0.0 : fabs(slip / V);
-  if (!(kappa > 0.0 && mu > 0.0 && mu < HUGE_VAL && u < HUGE_VAL && slip == slip)) {
+  if (!(kappa > 0.0 && mu > 0.0 && mu < HUGE_VAL && u <= 1e300 && fabs(slip) < HUGE_VAL)) {
     vr_nothing(s, d);
     return;
   }
