@@ -328,7 +328,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *s) { return save(c, s); }
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState s) { return restore(c, s); }
 fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *s) { return release(s); }
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState s, size_t *n) { return *n = sizeof(snapshot), OK; }
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState s, size_t *n) { return *n = sizeof(snapshot), fmi3OK; }
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState s, fmi3Byte bytes[], size_t n) {
   return serialize(c, s, (char *)bytes, n);
 }
@@ -366,7 +366,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_st
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *s) { return save(c, s); }
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate s) { return restore(c, s); }
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *s) { return release(s); }
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate s, size_t *n) { return *n = sizeof(snapshot), OK; }
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate s, size_t *n) { return *n = sizeof(snapshot), fmi2OK; }
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate s, fmi2Byte bytes[], size_t n) {
   return serialize(c, s, bytes, n);
 }
