@@ -47,7 +47,7 @@ def test_variables_of_fmus_are_listed(model):
     assert head + "\n".join(rows) + "\n\n" in LOADING.read_text()
 
 
-@pytest.mark.parametrize("page", ["index", "may_i"])
+@pytest.mark.parametrize("page", ["index", "validity"])
 def test_first_pages_run(page, capsys):
     for code in blocks(ROOT / f"docs/{page}.md", "python"):
         exec(compile(code, page, "exec"), {})
@@ -79,9 +79,9 @@ def test_howto_runs(page, tmp_path, monkeypatch):
 def test_the_page_of_measurements_runs(monkeypatch, capsys):
     monkeypatch.chdir(ROOT)
     session: dict = {}
-    fits, plans = blocks(ROOT / "docs/identify.md", "python")
+    (fits,), (plans,) = (blocks(ROOT / f"docs/{page}.md", "python") for page in ("identify", "identify_design"))
     for code in (fits.replace("starts=2", "starts=1").replace("print(fit)", "print(repr(fit))"), plans):
-        exec(compile(code, "identify.md", "exec"), session)
+        exec(compile(code, "identify", "exec"), session)
     shown = capsys.readouterr().out
     assert "Identification of 7 unknowns from 240 points" in shown
     assert "planned: what to expect if the cylinder is the truth" in shown
