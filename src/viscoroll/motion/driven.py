@@ -256,7 +256,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolv
         a start that is not the prescribed one; ``resolve`` without a callable.
     """
     if resolve is not None and not drive.has_callable:
-        sentence = f"resolve = {resolve:g} is given, but nothing that drives is a function of t: leave it out"
+        sentence = f"resolve = {resolve!s:.60} is given, but nothing that drives is a function of t: leave it out"
         raise ParameterError("resolve", resolve, "left out", sentence)
     if not drive.acts:
         return Prepared(*undriven(), *start_speeds(V0, omega0))

@@ -79,14 +79,15 @@ def begin(
     try:
         limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end / scale["t"])
         own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
-        ready = prepared(drive.over(scale), *own, last, rtol, over("resolve", resolve, scale))
+        spacing = None if resolve is None else over("resolve", resolve, scale)
+        ready = prepared(drive.over(scale), *own, last, rtol, spacing)
         if ready.courses is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + ready.courses.corners)
         refuse_rest(limits[1], ready)
         ready, caught = _climbed(ready, scene, _time_of_rest(rested) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
-    if one and (many := ready.motions) > 1:
+    if one and ready.courses is not None and (many := ready.motions) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
     return Begun(roller, scene, drive, ready, caught, last, limits, unsteady)
 
