@@ -10,7 +10,7 @@ from memory import taken_beside
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.motion import driven
+from viscoroll.motion import courses, driven
 
 
 @pytest.mark.parametrize("count", [2_000, 200_000])
@@ -54,8 +54,8 @@ def test_motions_with_corners_of_their_own_have_the_bits_of_each_alone(monkeypat
     times, values = np.sort(random.uniform(0.0, 9.0, (12, 7)), axis=1), random.uniform(-0.1, 0.3, (12, 7))
     times[:, 0] = 0.0
     start = (None, 0.2) if name == "V" else (0.3, 0.2)
-    for size in (1, 2_000, driven._BLOCK_BYTES):
-        monkeypatch.setattr(driven, "_BLOCK_BYTES", size)
+    for size in (1, 2_000, courses._BLOCK_BYTES):
+        monkeypatch.setattr(courses, "_BLOCK_BYTES", size)
         many = vr.ensemble(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times, values)})
         for n in range(12):
             one = vr.roll(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times[n], values[n])})

@@ -13,10 +13,10 @@ from ..core.errors import ParameterError, one_of
 from ..core.labels import Labels, unlabelled
 from ..core.scale import Scale
 from ..core.typed import Floats
-from ..kernels.motion.records import NEITHER, OMEGA, SPEED
+from ..kernels.motion.records import NEITHER
 from .checks import start_speeds
-from .fitted import TERMS
-from .schedule import Corners, Course, Curve, at_start, course, curve, motions_of, of_some, pieces_of, slope_of
+from .courses import SPEEDS, Courses
+from .schedule import Course, Curve, course
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
@@ -29,11 +29,6 @@ _BESIDE = (
     ("torque", "omega", "it is what the prescribed omega needs"), ("force", "V", "it is what the prescribed V needs"),
     ("brake", "omega", "omega is prescribed"), ("drag", "omega", "omega is prescribed"),
 )  # fmt: skip
-#: by which name a speed is prescribed
-_SPEEDS = {OMEGA: "omega", SPEED: "V"}
-#: bytes of pieces that are made at a time where motions have their own: little beside the schedules, and yet many
-#: motions at once where these are short
-_BLOCK_BYTES = 1 << 18
 #: gains in the order of the kernel's
 _GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
 
@@ -97,83 +92,6 @@ def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, 
     return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels
 
 
-class Courses(NamedTuple):
-    """What acts over time, checked and without dimension, each the same for all motions or one a motion.
-
-    tangent : of the slope, which adds to the force.
-    speed : the prescribed one, of V or omega as ``prescribed`` says; None without.
-    """
-
-    force: Course
-    torque: Course
-    brake: Course
-    tangent: Floats
-    speed: Course | None
-    prescribed: int
-
-    @property
-    def each(self) -> dict[str, Course]:
-        """Those that there are, by the name of their argument."""
-        names = "force", "torque", "brake", "slope", _SPEEDS.get(self.prescribed)
-        return {name: one for name, one in zip(names, self[:-1], strict=True) if name and one is not None}
-
-    @property
-    def motions(self) -> int:
-        """Number of motions that have courses of their own; 1 if all are alike.
-
-        Raises
-        ------
-        ParameterError
-            Where two courses are of different numbers of motions.
-        """
-        counts = {name: motions_of(one) for name, one in self.each.items()}
-        shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
-        return shape[0] if shape else 1
-
-    @property
-    def corners(self) -> int:
-        """Number of corners of a motion's schedules, and of pieces of its callables."""
-        return sum(one[0].shape[-1] for one in self.each.values() if isinstance(one, Corners | Curve))
-
-    def some(self, chosen: Any) -> Courses:
-        """Those of the ``chosen`` motions, an index of numpy."""
-        force, torque, brake = (of_some(one, chosen) for one in self[:3])
-        tangent = self.tangent[chosen] if self.tangent.size > 1 else self.tangent
-        speed = None if self.speed is None else of_some(self.speed, chosen)
-        return Courses(force, torque, brake, tangent, speed, self.prescribed)
-
-    def block(self, most: int) -> int:
-        """Number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""
-        if self.motions == 1:
-            return most
-        columns = 2 + 4 * (TERMS if any(isinstance(one, Curve) for one in self.each.values()) else 2)
-        return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
-
-    def starts(self) -> tuple[Floats, Floats]:
-        """(Value at t = 0, largest size) of the prescribed speed, of every motion that has its own.
-
-        Raises
-        ------
-        ParameterError
-            Where it jumps.
-        """
-        assert self.speed is not None
-        firsts, sizes, count = [], [], motions_of(self.speed)
-        step = self.block(max(count, 1))
-        for first in range(0, max(count, 1), step):
-            one = curve(of_some(self.speed, slice(first, first + step)))
-            slope_of(_SPEEDS[self.prescribed], one)
-            firsts.append(at_start(one.terms[:, 0]))
-            sizes.append(np.abs(one.terms).sum(axis=-1).max(axis=1, initial=0.0))
-        return np.concatenate(firsts), np.concatenate(sizes)
-
-    def pieces(self, end: float) -> Floats:
-        """All of them over common pieces up to ``end``, (1 or m, k, columns), as the kernel takes them."""
-        force = _added(curve(self.force), self.tangent)
-        rate = curve(np.zeros(())) if self.speed is None else slope_of(_SPEEDS[self.prescribed], curve(self.speed))
-        return pieces_of((force, curve(self.torque), rate, curve(self.brake)), end)
-
-
 class Prepared(NamedTuple):
     """A drive for the kernel, in T_ref.
 
@@ -232,13 +150,6 @@ def undriven() -> tuple[Floats, Floats, int]:
     return np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER
 
 
-def _added(one: Curve, more: Any) -> Curve:
-    """A curve with a number, or one a motion, added."""
-    flat = np.zeros((np.size(more), 1, one.terms.shape[-1]))
-    flat[:, 0, 0] = more
-    return one._replace(terms=one.terms + flat)
-
-
 def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None) -> Prepared:
     """A drive without dimension up to the time ``end``.
 
@@ -271,12 +182,12 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolv
         return course(name, getattr(drive, name), end, rtol, low=low, resolve=resolve)
 
     force, torque, brake = checked_course("force"), checked_course("torque"), checked_course("brake", low=0.0)
-    prescribed = next((code for code, name in _SPEEDS.items() if getattr(drive, name) is not None), NEITHER)
-    speed = checked_course(_SPEEDS[prescribed]) if prescribed else None
+    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NEITHER)
+    speed = checked_course(SPEEDS[prescribed]) if prescribed else None
     courses = Courses(force, torque, brake, np.asarray(tangent), speed, prescribed)
     starts = {"omega": omega0, "V": V0}
     if prescribed:
-        name = _SPEEDS[prescribed]
+        name = SPEEDS[prescribed]
         starts[name] = _prescribed_start(f"{name}0", starts[name], courses, getattr(drive, name))
     for name, start in starts.items():
         if start is None:
