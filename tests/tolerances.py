@@ -23,6 +23,9 @@ TABLE_SPLINE_NODE = 1e-13
 #: The largest error of 20,000 other points over that of the 100,000 which a grid states: never much more, and no loose
 #: bound.
 GRID_MORE, GRID_LESS = 1.5, 0.3
+#: The largest error again at its place as the attributes name it, to six digits: beside a kink the error changes by its
+#: distance to the kink, some per cent of a cell at the most.
+GRID_PLACE = 2e-2
 
 #: Motions of pipeline/runtime.py from the file at rtol 1e-8; by a coarse grid they are further off.
 DEMO_FILE = 1e-7
@@ -35,6 +38,9 @@ INTEROP = 1e-12
 INTEROP_SLOPES = 1e-11
 #: Motions of vr_roll.h at rtol 1e-8 against ``roll`` at 1e-10.
 INTEROP_ROLL = 1e-7
+#: vr_roll.h at rtol 1e-9 against ``roll``, through rest or from it, of the largest of V, omega and x; below its
+#: ``rest`` of 1e-6 or less creep counts from that.
+INTEROP_TURNED = 1e-7
 
 # --- ratios.py (test_ratios.py) ---
 #: r, k, i2 in units in the last place; the stated bound of the module; measured 1.4.
@@ -380,6 +386,9 @@ FMU_ROLLER = 1e-9
 FMU_FROM_REST = 1e-6
 #: A roller by CVode of fmpy at rtol 1e-8 and its own absolute tolerance.
 FMU_TOOL = 1e-4
+#: The same at the tolerance that the FMU declares, 1e-5, through rest, of the largest speed or 1 m/s: CVode's errors
+#: add up to some tens of its tolerance.
+FMU_NEAR_REST = 1e-3
 # --- callables as polynomials (motion/test_fitted.py) ---
 #: Values taken and pieces made; measured 2,000 to 21,000 and up to 76: the root has no bounds to its slope at 0.
 CALLABLE_VALUES, CALLABLE_PIECES = 25_000, 100
@@ -394,6 +403,14 @@ LATE_CREEP = 1e-14
 CALLABLE_STEPS = 500
 #: A jump a number's distance away.
 CALLABLE_JUMP = 1e-14
+#: Bytes that a corner takes while schedules are made ready: ten columns of a piece, and some thirty numbers on the way.
+BYTES_A_CORNER = 500
+#: Bytes beside the arrays of 100 motions of 3,000 corners each (4.8 MB): a copy that nobody can write to, and the
+#: pieces of some motions at a time.
+BYTES_OF_SCHEDULES = 20e6
+#: A pulse of END/8000 by a callable and by a schedule: its ends are found to the rounding of END, a share of 1e-12 of
+#: its width.  What it changes, as a share of V, is far more.
+CALLABLE_PULSE, CALLABLE_PULSE_ACTS = 1e-10, 1e-2
 
 # --- setting out (motion/test_sets_out.py) ---
 #: Faint drives against one of 1e-9, which is not quite linear.

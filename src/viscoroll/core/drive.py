@@ -42,8 +42,9 @@ class Schedule:
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
             raise ParameterError("Schedule", shapes, "times (k,) and values (k,), or (n, k) for n motions")
-        if (np.diff(times) < 0.0).any():
-            raise ParameterError("times", times[..., :-1][np.diff(times) < 0.0][0], "in ascending order")
+        falls = times[..., 1:] < times[..., :-1]
+        if falls.any():
+            raise ParameterError("times", times[..., :-1][falls][0], "in ascending order")
         thrice = times[..., 2:] == times[..., :-2]
         if thrice.any():
             raise ParameterError("times", times[..., :-2][thrice][0], "there once, or twice for a jump")

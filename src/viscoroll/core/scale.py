@@ -15,7 +15,7 @@ from .errors import ParameterError
 #: quantity -> its dimension in radius R, time T, load P (N/m), mass m (kg/m), contact length at rest l0, modulus E';
 #: what is not here is a ratio
 DIMENSIONS = {
-    **dict.fromkeys(("t", "onset_time", "rest_time", "rested", "zeta"), "T"),
+    **dict.fromkeys(("t", "onset_time", "rest_time", "rested", "zeta", "resolve"), "T"),
     **dict.fromkeys(("V", "V0", "rest", "speed"), "R/T"),
     **dict.fromkeys(("omega", "omega0"), "rad/T"),
     **dict.fromkeys(("angle", "slope"), "rad"),

@@ -30,6 +30,15 @@ _INFO = 5
 NO_NOTES = np.empty((0, 2)), np.empty(0)
 
 
+class Asked(NamedTuple):
+    """How motions are to be rolled: ``rtol``, ``rest``, ``max_steps`` and ``resolve`` of :func:`viscoroll.roll`."""
+
+    rtol: float
+    rest: float | None
+    max_steps: int
+    resolve: float | None = None
+
+
 class Begun(NamedTuple):
     """Motions that may be rolled, without dimension but for what rolls and its drive.
 
@@ -48,17 +57,17 @@ class Begun(NamedTuple):
 
 
 def begin(
-    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: tuple[float, float | None, int],
+    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: Asked,
     *, unsteady: bool, rested: bool | float, one: bool = False,
 ) -> Begun:  # fmt: skip
     """All that is refused of motions up to a time before any is rolled, or of ``one``.
 
-    ``asked`` : rtol, rest and max_steps.  Raises ParameterError.
+    Raises ParameterError.
     """
     acts = given.acts
     if one:
         refuse_many(V0=starts[0], omega0=starts[1], **(given.numbers if acts else {}))
-    drive, (rtol, rest, max_steps) = given.acting if acts else given, asked
+    drive, (rtol, rest, max_steps, resolve) = given.acting if acts else given, asked
     roller, scene, scale = framed(roller, "roll" if one else "ensemble", moves=True, slope=drive.slope)
     if one and scene.shape:
         refuse_many(material=roller.material, **roller.numbers)
@@ -70,12 +79,15 @@ def begin(
     try:
         limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end / scale["t"])
         own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
-        ready = prepared(drive.over(scale), *own, last, rtol)
+        spacing = None if resolve is None else over("resolve", resolve, scale)
+        ready = prepared(drive.over(scale), *own, last, rtol, spacing)
+        if ready.courses is not None:  # a step ends at every corner
+            limits = (*limits[:2], limits[2] + ready.courses.corners)
         refuse_rest(limits[1], ready)
         ready, caught = _climbed(ready, scene, _time_of_rest(rested) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
-    if one and (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
+    if one and ready.courses is not None and (many := ready.motions) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
     return Begun(roller, scene, drive, ready, caught, last, limits, unsteady)
 

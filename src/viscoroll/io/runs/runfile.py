@@ -32,7 +32,7 @@ from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
 from ...core.typed import Floats
 from ...materials.file import as_toml, materials_of
-from ...motion.batch import FIELDS, FLOW_PAYS, begin
+from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
 from ...motion.checks import output_times
 from ...motion.driven import Drive
 from ...motion.summaries import QUANTITIES
@@ -294,7 +294,7 @@ def _begin(run: Run, values: dict[str, Any]) -> None:
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
             raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
-    asked = settings.rtol, settings.rest, 1
+    asked = Asked(settings.rtol, settings.rest, 1)
     drive = Drive(**drive_of(content))
     begin(roller, start, drive, run.t[-1], asked, unsteady=settings.unsteady, rested=settings.rested)
 
