@@ -16,7 +16,7 @@ from .core.checks import broadcast_shape, checked, frozen
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
-from .core.scale import Scale
+from .core.scale import SI, Scale
 from .core.symbols import MEASURED
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
@@ -100,9 +100,9 @@ class Cylinder(Methods):
             raise ParameterError(missing, None, "given, or material", sentence)
         for name in ("R", "m", "mu", "j", "g", *(() if material is not None else _SOLID)):
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
-            given[name] = frozen(checked(name, given[name], low=low, strict=True, high=high))
+            given[name] = frozen(checked(name, given[name], unit=SI, low=low, strict=True, high=high))
         if given["pressed"] is not None:
-            given["pressed"] = frozen(checked("load", given["pressed"], low=0.0, strict=True))
+            given["pressed"] = frozen(checked("load", given["pressed"], unit=SI, low=0.0, strict=True))
         numbers = {name: given[name] for name in _NUMBERS if given[name] is not None}
         broadcast_shape(**{name: np.asarray(value) for name, value in numbers.items()})
         if plane not in ("strain", "stress"):

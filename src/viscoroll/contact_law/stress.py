@@ -60,7 +60,7 @@ def stress(
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
-    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta})
+    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
     at, speed, creep = (checked(*given) for given in places.items())
     if scale.si:
         roller.look(speed)

@@ -77,7 +77,7 @@ def thread_count(threads: int | None = None) -> int:
     with suppress(ValueError):
         if (count := int(asked)) >= 1:
             return count
-    raise ParameterError("VISCOROLL_THREADS", repr(asked), "a whole number >= 1")
+    raise ParameterError("VISCOROLL_THREADS", f"{asked!r} (environment)", "a whole number >= 1, or not set")
 
 
 def cores() -> int:

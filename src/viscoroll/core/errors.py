@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import copyreg
 from collections.abc import Collection, Iterable
+from datetime import date, timedelta
 from enum import IntEnum
 from typing import Any
 
@@ -36,6 +37,34 @@ class ParameterError(ViscorollError, ValueError):
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name, self.value, self.allowed = name, value, allowed
         super().__init__(sentence or f"{name} = {value!s}: must be {allowed}")
+
+
+#: kinds of what callers give in place of numbers, the first that fits
+_KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
+    ((str,), "a text"),
+    ((bytes,), "bytes"),
+    ((bool,), "a truth value"),
+    ((complex,), "a complex number"),
+    ((date,), "a date"),
+    ((timedelta,), "a duration"),
+    ((dict,), "a dictionary"),
+    ((list, tuple), "a list"),
+)
+
+
+def described(value: Any) -> str:
+    """What a caller gave, for a message: its text in one line, cut at 60 characters, and its kind if it is no number."""
+    text = f"{' '.join(repr(value).split()):.60}"
+    if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
+        return text
+    kind = next((words for types, words in _KINDS if isinstance(value, types)), "")
+    if not kind and type(value).__module__.partition(".")[0] == "numpy":
+        shape = getattr(value, "shape", ())
+        kind = f"of type {value.dtype}" if hasattr(value, "dtype") else "of numpy"
+        kind += f", shape {shape}" if shape else ""
+    if not kind:
+        kind = "a function" if callable(value) else f"of type {type(value).__name__}"
+    return f"{text} ({kind})"
 
 
 def one_of(first: str, second: str, both: bool) -> ParameterError:

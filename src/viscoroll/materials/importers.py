@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.checks import checked, number
 from ..core.errors import ParameterError, one_of
+from ..core.scale import SI
 from ..core.typed import Floats
 from .bodies import Bodies
 from .prony import Prony
@@ -86,8 +87,8 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths.
         """
-        E, nu = number("E", E, low=0.0, strict=True), poisson(nu)
-        strengths, _ = pairs("G", G, "tau", tau)
+        E, nu = number("E", E, unit=SI, low=0.0, strict=True), poisson(nu)
+        strengths, tau = pairs("G", G, "tau", tau)
         return cls(E=E, nu=nu, prony=Prony(strengths * (2.0 * (1.0 + nu) / E), tau), **more)  # type: ignore[call-arg]
 
     @classmethod
@@ -136,7 +137,7 @@ class FromPrograms:
         if bulk is None:
             nu, prony = poisson(nu), Prony(strengths / rest, times)
         else:
-            nu, prony = plane_strain(rest, strengths, times, number("bulk", bulk, low=0.0, strict=True))
+            nu, prony = plane_strain(rest, strengths, times, number("bulk", bulk, unit=SI, low=0.0, strict=True))
         return cls(E=2.0 * (1.0 + nu) * rest, nu=nu, prony=prony, **more)  # type: ignore[call-arg]
 
     @classmethod
@@ -144,7 +145,8 @@ class FromPrograms:
         cls, E: float, nu: float, name: str, shares: ArrayLike, tau: ArrayLike, long: bool, more: dict
     ) -> Any:
         """From shares of the instantaneous modulus; ``long``: E is the long-time modulus."""
-        E, values = number("E0", E, low=0.0, strict=True), pairs(name, shares, "tau", tau)[0]
+        E = number("E0", E, unit=SI, low=0.0, strict=True)
+        values, tau = pairs(name, shares, "tau", tau)
         left = 1.0 - math.fsum(values)
         if not left > 0.0:
             raise ParameterError(name, f"{values.tolist()}", "of a sum below 1: no long-time modulus would be left")
@@ -161,7 +163,8 @@ def poisson(nu: Any) -> float:
 
 def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True) -> tuple[Floats, Floats]:
     """Two lists of one length, the first >= 0, the second > 0 (>= 0 unless ``strict``); raises ParameterError."""
-    first, second = checked(name, values, low=0.0), checked(other, at, low=0.0, strict=strict)
+    first = checked(name, values, unit="Pa" if name == "G" else "1", low=0.0)
+    second = checked(other, at, unit="s" if other == "tau" else "s-1", low=0.0, strict=strict)
     if first.ndim != 1 or first.shape != second.shape:
         raise ParameterError(other, f"of shape {second.shape}", f"one for each {name}, of shape {first.shape}")
     return first, second
@@ -170,7 +173,7 @@ def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bo
 def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
     """The long-time shear modulus of LS-DYNA's three ways to give it."""
     ways = {
-        "G0": None if G0 is None else number("G0", G0) - math.fsum(strengths),
+        "G0": None if G0 is None else number("G0", G0, unit=SI) - math.fsum(strengths),
         "G_inf": G_inf,
         "beta = 0": math.fsum(resting) if resting.size else None,
     }
@@ -179,7 +182,7 @@ def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, restin
         found = " and ".join(given) or "nothing"
         raise ParameterError("long-time modulus by", found, "one of G_inf, G0 and a pair with beta = 0")
     (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G of beta = 0"}
-    return number(named.get(name, name), value, low=0.0, strict=True)
+    return number(named.get(name, name), value, unit="Pa", low=0.0, strict=True)
 
 
 def plane_strain(G_inf: float, G: NDArray, tau: NDArray, K: float) -> tuple[float, Prony]:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..core.checks import checked, number
 from ..core.errors import ParameterError
 from ..core.results import Row, Shown
+from ..core.scale import SI
 from ..core.typed import Floats
 from .importers import FromPrograms, poisson
 from .measured import Measured
@@ -93,8 +94,8 @@ class Material(FromPrograms):
         ParameterError
             A value out of range.
         """
-        T_epsilon = number("T_epsilon", T_epsilon, low=0.0, strict=True)
-        T_sigma = number("T_sigma", T_sigma, low=0.0, strict=True)
+        T_epsilon = number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
+        T_sigma = number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
         refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
         prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
@@ -147,6 +148,7 @@ class Material(FromPrograms):
         """
         if not callable(shift):
             raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
+        temperature = number("temperature", temperature, unit=SI)
         factor = number("a_T", shift(temperature), low=0.0, strict=True)
         measured = None if self.measured is None else self.measured.shifted(factor)
         return replace(self, T_ref=self.T_ref * factor, measured=measured)
@@ -254,7 +256,7 @@ class Material(FromPrograms):
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Storage and loss modulus over E; omega times a relaxation time beyond the doubles is as good as infinite."""
         with np.errstate(over="ignore"):
-            product = checked("omega", omega, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+            product = checked("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
         fast = product > 1.0
         ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
         whole, E = 1.0 + ratio * ratio, self.prony.E
@@ -264,7 +266,7 @@ class Material(FromPrograms):
     def _over(self, t: ArrayLike, name: str, times: Floats) -> Floats:
         """t over each of the times."""
         with np.errstate(over="ignore"):
-            return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)
+            return checked(name, t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:

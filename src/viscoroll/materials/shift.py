@@ -11,6 +11,7 @@ from typing import Any
 
 from ..core.checks import number
 from ..core.errors import ParameterError
+from ..core.scale import SI, Units
 
 #: J/(mol K), exact since 2019
 GAS_CONSTANT = 8.31446261815324
@@ -44,7 +45,7 @@ class WLF:
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
-        above = number("temperature", temperature) - self.T0
+        above = number("temperature", temperature, unit=SI) - self.T0
         if self.C2 + above <= 0.0:
             allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF, in degrees Celsius"
             raise ParameterError("temperature", temperature, allowed)
@@ -75,14 +76,14 @@ class Arrhenius:
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
-        kelvin = number("temperature", temperature, low=ABSOLUTE_ZERO, strict=True) - ABSOLUTE_ZERO
+        kelvin = number("temperature", temperature, unit=SI, low=ABSOLUTE_ZERO, strict=True) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
 
 
-def keep(given: Any, **lows: float) -> None:
-    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError."""
+def keep(given: Any, unit: Units = SI, **lows: float) -> None:
+    """Have numbers in ``unit`` above these in place of what a frozen dataclass was given for its fields; raises ParameterError."""
     for name, low in lows.items():
-        object.__setattr__(given, name, number(name, getattr(given, name), low=low, strict=low > -math.inf))
+        object.__setattr__(given, name, number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf))
 
 
 def _shift(temperature: float, exponent: float) -> float:

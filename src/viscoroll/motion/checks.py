@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..core.checks import broadcast_shape, checked, extent, number, whole
 from ..core.errors import ParameterError
-from ..core.scale import Scale
+from ..core.scale import Scale, Units
 from ..core.typed import Floats
 
 RTOL_RANGE = (1e-12, 1e-2)
@@ -18,15 +18,15 @@ SPEED_RANGE = (1e-300, 1e100)
 MOST_STEPS = 10_000_000
 
 
-def output_times(t: ArrayLike) -> Floats:
-    """Output times as a vector: finite, >= 0, ascending, at least one.
+def output_times(t: ArrayLike, units: Units = "1") -> Floats:
+    """Output times as a vector: finite, >= 0, ascending, at least one; ``units`` that they are counted in.
 
     Raises
     ------
     ParameterError
         Otherwise.
     """
-    times = np.array(checked("t", t, low=0.0), ndmin=1)  # contiguous, and the result's own
+    times = np.array(checked("t", t, unit=units, low=0.0), ndmin=1)  # contiguous, and the result's own
     if times.ndim != 1 or times.size == 0:
         raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
     backward = times[1:] < times[:-1]

@@ -12,7 +12,7 @@ from ..core.checks import broadcast_shape, checked
 from ..core.drive import Feedback, Schedule, over, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.labels import Labels, unlabelled
-from ..core.scale import Scale
+from ..core.scale import HasUnits, Scale
 from ..core.typed import Floats
 from .checks import start_speeds
 from .schedule import Curve, at_start, curve, pieces_of, slope_of
@@ -80,9 +80,9 @@ def _still(given: Any) -> bool:
     return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else given))
 
 
-def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, Labels | None]:
-    """Start speeds and drive of many motions without labels of xarray and pandas, and these."""
-    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()})
+def bare(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> tuple[tuple[Any, Any], Drive, Labels | None]:
+    """Start speeds and drive without units and labels of xarray and pandas, and these labels; raises ParameterError."""
+    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels
 
 

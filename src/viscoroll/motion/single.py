@@ -5,11 +5,11 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 
-from ..contact_law.parameters import Rolls
+from ..contact_law.parameters import Rolls, framed
 from ..core.drive import Feedback, Schedule
 from ..core.typed import Numbers
 from .checks import output_times
-from .driven import Drive
+from .driven import Drive, bare
 from .one import Motion, integrated
 from .rolling import begin
 from .warned import look
@@ -112,7 +112,9 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    times, given = output_times(t), Drive(force, torque, slope, brake, drag, omega, V)
+    units = framed(roller, "roll", moves=True)[2]
+    times = output_times(t, units)
+    (V0, omega0), given, _ = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
     asked = rtol, rest, max_steps
     begun = begin(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
     begun.roller.look_at_starts(V0, omega0)

@@ -16,6 +16,8 @@ from ...core.typed import Floats
 FEWEST_POINTS = 3
 #: a slope is taken over a quarter of a decade on either side, and over five points at least
 _WINDOW, _NEIGHBOURS = 0.25 * math.log(10.0), 5
+#: of the columns of a curve
+UNITS = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa"}
 #: of ln omega, below which frequencies are one
 _APART = 1e-12
 
@@ -50,7 +52,7 @@ def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int 
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
     given = zip(Curve._fields, (omega, storage, loss), strict=True)
-    columns = Curve(*(checked(name, values, low=0.0, strict=True) for name, values in given))
+    columns = Curve(*(checked(name, values, unit=UNITS[name], low=0.0, strict=True) for name, values in given))
     for name, values in columns._asdict().items():
         if values.ndim != 1 or values.shape != columns.omega.shape:
             raise ParameterError(name, f"of shape {values.shape}", "one column, of the shape of omega")

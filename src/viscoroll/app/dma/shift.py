@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike
 
 from ...core.checks import checked, number
 from ...core.errors import ParameterError
+from ...core.quantities import in_unit
+from ...core.scale import SI
 from ...core.typed import Floats
-from .curve import Curve, curve_of
+from .curve import UNITS, Curve, curve_of
 
 #: points of both curves that must lie in the overlap, and share of the shorter range
 _POINTS, _SHARE = 3, 0.15
@@ -59,7 +61,7 @@ def master_curve(
     whole = [checked(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)]
     temperatures, which = np.unique(at, return_inverse=True)
     middle = float(temperatures[temperatures.size // 2])
-    base = middle if reference is None else number("reference", reference)
+    base = middle if reference is None else number("reference", reference, unit="degC")
     if not callable(shift) and not temperatures[0] <= base <= temperatures[-1]:
         raise ParameterError("reference", base, f"within [{temperatures[0]:g}, {temperatures[-1]:g}]")
     if shift is None:
@@ -78,7 +80,8 @@ def master_curve(
 
 def _points(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats]]:
     """A temperature each point, and the columns; of lists of curves as well."""
-    given = checked("temperature", temperature)
+    given = checked("temperature", temperature, unit=SI)
+    columns = tuple(in_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
     if given.ndim != 1:
         raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one a curve")
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:

@@ -75,7 +75,8 @@ def steady(
     Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
     to that over ``grip`` (``tests/test_steady.py``).
     """
-    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
+    units = framed(roller, "steady")[2]
+    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
     roller, scene, scale = framed(roller, "steady", slope=slope)
     force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
