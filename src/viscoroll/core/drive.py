@@ -93,7 +93,7 @@ class Feedback:
 
 
 def _keep(given: Schedule | Feedback, name: str, low: float) -> None:
-    """Have checked numbers for a part of what drives, and remember the unit that they carried; raises ParameterError."""
+    """Check the numbers of a part of what drives, and keep them and their unit; raises ParameterError."""
     plain, unit = without_unit(name, getattr(given, name))
     object.__setattr__(given, name, frozen(checked(name, plain, low=low)))
     if unit is not None:

@@ -53,7 +53,7 @@ _KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
 
 
 def described(value: Any) -> str:
-    """What a caller gave, for a message: its text in one line, cut at 60 characters, and its kind if it is no number."""
+    """What a caller gave, for a message: its text in one line, cut at 60 characters, and its kind but of numbers."""
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
         return text

@@ -47,7 +47,7 @@ def in_unit(name: str, value: Any, wanted: str) -> Any:
     ParameterError
         A unit of another dimension, or one that is not known.
     """
-    if type(value) in _BARE:
+    if type(value) in _BARE or (type(value) is np.ndarray and value.dtype.kind in _PLAIN):
         return value
     if _is_quantity(value) and not hasattr(value, "units"):
         try:
@@ -75,9 +75,9 @@ def without_unit(name: str, value: Any) -> tuple[Any, str | None]:
         return (value, None) if {float, int}.issuperset(map(type, value)) else _of_elements(name, value)
     if kind is np.ndarray and value.dtype.kind == "O" and value.ndim:
         elements, unit = _of_elements(name, list(value.flat))
-        found = np.empty(value.shape, object)
-        found.flat = elements
-        return found, unit
+        found = np.empty(value.size, object)
+        found[:] = elements
+        return found.reshape(value.shape), unit
     if _is_quantity(value):
         unit = value.units
         # in full words, whatever the default format of its registry

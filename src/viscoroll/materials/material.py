@@ -74,7 +74,7 @@ class Material(FromPrograms):
         object.__setattr__(self, "nu", poisson(self.nu))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        keep(self, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
+        keep(self, SI, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
 

@@ -81,7 +81,10 @@ class Arrhenius:
 
 
 def keep(given: Any, unit: Units = SI, **lows: float) -> None:
-    """Have numbers in ``unit`` above these in place of what a frozen dataclass was given for its fields; raises ParameterError."""
+    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError.
+
+    ``unit`` : of all of them, or what has units by name.
+    """
     for name, low in lows.items():
         object.__setattr__(given, name, number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf))
 

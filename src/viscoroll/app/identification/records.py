@@ -56,7 +56,9 @@ class Record:
         plain, labels = unlabelled(given, DIMENSIONLESS)
         arrays = {name: np.atleast_1d(checked(self.of(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
-            arrays[f"sigma of {name}"] = checked(self.of(f"sigma of {name}"), value, unit=self.unit(name), low=0.0, strict=True)
+            arrays[f"sigma of {name}"] = checked(
+                self.of(f"sigma of {name}"), value, unit=self.unit(name), low=0.0, strict=True
+            )
         shape = broadcast_shape(**{self.of(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.PLACES}) != shape:
             raise ParameterError(self.of(self.KINDS[0]), f"of shape {shape}", "a value a place")
