@@ -1,12 +1,16 @@
 """Units that inputs carry: every argument of every public function and class, found by its signature."""
 
 import dataclasses
+import datetime
 import enum
 import functools
 import inspect
 import itertools
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -226,6 +230,48 @@ def test_every_argument_is_converted_or_refused(call):
         wrong += [] if unit == "s" else [pd.Timedelta(1, "s"), np.timedelta64(1, "s")]
         for other in [*wrong, xr.DataArray(argument.value, attrs={"units": "mol"}), [UNITS.Quantity(1.0, "mol")]]:
             refused(lambda argument=argument, other=other: argument(other), error=vr.ParameterError)
+
+
+class Like:
+    """What has a value of a float, and is no number."""
+
+    def __float__(self) -> float:
+        return 0.5
+
+
+#: what is no number
+ODD = {
+    "text": "ten", "number as a text": "1.0", "bytes": b"1", "dictionary": {"a": 1.0}, "complex": 0.5 + 0j,
+    "NaN": math.nan, "infinite": -math.inf, "masked": np.ma.array([1.0, 2.0], mask=[0, 1]), "mask": np.ma.masked,
+    "date": datetime.datetime(2020, 1, 1), "date of numpy": np.datetime64("2020-01-01"), "huge": 10**400,
+    "long double": np.longdouble("-1e400"), "missing": pd.NA, "no time": pd.NaT, "no duration": np.timedelta64("NaT"),
+    "month": np.timedelta64(1, "M"), "ragged": [[1.0], [1.0, 2.0]], "with a truth value": [True, 1.0],
+    "with nothing": [None, 1.0], "object": Like(), "records": np.zeros(2, [("a", float)]), "module": np,
+    "dataset": xr.Dataset({"a": 1.0}), "dates": pd.date_range("2020-01-01", periods=2), "not a number": Decimal("NaN"),
+    "texts": pd.Series(["a"]), "set": {1.0}, "unit in part": [UNITS.Quantity(1.0, ""), 2.0],
+}  # fmt: skip
+#: what is one
+GOOD: dict[str, Callable[[float], Any]] = {
+    "decimal": Decimal, "fraction": Fraction, "object array": lambda value: np.array(value, object),
+    "array": np.array, "long double": np.longdouble, "float32": np.float32, "labelled": xr.DataArray,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_odd_values_are_right_or_refused(call):
+    for argument in arguments_of(call, CALLS[call]()):
+        for kind, value in ODD.items():
+            try:
+                refused(lambda argument=argument, value=value: argument(value))
+            except pytest.fail.Exception:
+                pytest.fail(f"{argument.call}: {argument.name} takes a {kind}")
+        if np.ndim(argument.value):
+            continue
+        for kind, made in GOOD.items():
+            value = made(argument.value)
+            pairs = zip(numbers_of(argument(value)), numbers_of(argument(float(value))), strict=True)
+            for one, other in pairs:
+                assert np.array_equal(np.squeeze(one), np.squeeze(other), equal_nan=True), (argument, kind)
 
 
 def results() -> Iterator[tuple[str, xr.Dataset]]:

@@ -136,6 +136,7 @@ def contact(
     given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = checked_extent("V", given["V"])
     creep = checked(creep_name, given[creep_name])
+    given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
         roller.look(speed, ends)
@@ -160,7 +161,7 @@ def states(
         arrays = {name: np.asarray(value) for name, value in arrays.items()}
         shape = broadcast_shape(**arrays)
         refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * V) <= fastest:
+    elif not abs(scene.kappa * float(V)) <= fastest:
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")

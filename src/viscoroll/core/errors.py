@@ -32,11 +32,14 @@ class ViscorollError(Exception):
 
 
 class ParameterError(ViscorollError, ValueError):
-    """``name`` has a ``value`` outside what is ``allowed``; ``sentence`` says it where "must be" does not."""
+    """``name`` has a ``value`` outside what is ``allowed``; ``sentence`` says it where "must be" does not.
+
+    The message is one line, whatever the text of the value is.
+    """
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name, self.value, self.allowed = name, value, allowed
-        super().__init__(sentence or f"{name} = {value!s}: must be {allowed}")
+        super().__init__(" ".join((sentence or f"{name} = {value!s}: must be {allowed}").split("\n")))
 
 
 #: kinds of what callers give in place of numbers, the first that fits

@@ -65,7 +65,7 @@ class Material(FromPrograms):
     def __post_init__(self) -> None:
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
-        if isinstance(self.E, (int, float, np.floating)) and float(self.E) == math.inf:
+        if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
                 raise ParameterError("E", self.E, "finite where the material relaxes")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from typing import Any
 
 import numpy as np
@@ -37,15 +39,28 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     return times
 
 
+def checked_end(end: float, T: float) -> float:
+    """The last output time over T_ref; raises ParameterError where that is no double."""
+    last = float(end) / T
+    if last == math.inf:
+        raise ParameterError("t", float(end), f"less than {sys.float_info.max * min(T, 1.0):.3g}")
+    return last
+
+
 def refuse_many(**given: Any) -> None:
     """Raise ParameterError for an array where roll wants one number."""
     for name, each in given.items():
-        # a ragged list has a shape only as one of objects
-        if type(each) is not float and (
-            shape := np.shape(each if hasattr(each, "shape") else np.asarray(each, object))
-        ):
+        if type(each) is not float and (shape := _shape(each)):
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
             raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
+
+
+def _shape(given: Any) -> tuple[int, ...]:
+    """Shape of what a caller gave, of a ragged list as one of objects; () of what is no array."""
+    try:
+        return tuple(np.shape(given if hasattr(given, "shape") else np.asarray(given, object)))
+    except (TypeError, ValueError):
+        return ()
 
 
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:
@@ -73,7 +88,14 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     ParameterError
         Otherwise.
     """
-    if type(V0) is type(omega0) is float and SPEED_RANGE[0] <= max(abs(V0), abs(omega0)) <= SPEED_RANGE[1]:
+    low, high = SPEED_RANGE
+    # each by itself: max() of a NaN is the other
+    if (
+        type(V0) is type(omega0) is float
+        and abs(V0) <= high
+        and abs(omega0) <= high
+        and max(abs(V0), abs(omega0)) >= low
+    ):
         return V0, omega0
     V, omega = checked("V0", V0), checked("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)

@@ -46,7 +46,7 @@ class Drive(NamedTuple):
     @property
     def acting(self) -> Drive:
         """The same without a force, torque, slope, brake or drag of 0."""
-        gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(each)}
+        gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(name, each)}
         return self._replace(**gone)
 
     @property
@@ -73,11 +73,11 @@ def _is_number(given: Any) -> bool:
     return not (callable(given) or isinstance(given, Feedback | Schedule))
 
 
-def _still(given: Any) -> bool:
-    """Whether it is 0 at all times."""
+def _still(name: str, given: Any) -> bool:
+    """Whether it is 0 at all times; raises ParameterError for what is no number and no function of time."""
     if isinstance(given, Feedback):
-        return not (np.any(given.V) or np.any(given.omega)) and _still(given.value)
-    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else given))
+        return not (np.any(given.V) or np.any(given.omega)) and _still(name, given.value)
+    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else checked(name, given)))
 
 
 def bare(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> tuple[tuple[Any, Any], Drive, Labels | None]:
@@ -148,6 +148,8 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
         given = getattr(drive, name)
         if given is not None:
             speed = curve(name, given, end, rtol)
+            if not speed.terms.size:
+                raise ParameterError(name, "an empty array", "a number, one a motion, or a function of t")
             rate, prescribed, error = slope_of(name, speed), code, speed.error
             # of a callable itself: its fit is off by rounding, and may be of the other sign
             own = np.array([float(given(0.0))]) if callable(given) else at_start(speed.terms[:, 0])

@@ -209,7 +209,9 @@ class Coastdown(Record):
     def __post_init__(self) -> None:
         super().__post_init__()
         t: Any = self.t
-        if t.ndim > 1 or (np.diff(t) < 0.0).any():
+        if t.ndim > 1:
+            raise ParameterError(self.of("t"), f"an array of shape {t.shape}", "a vector, in ascending order")
+        if (np.diff(t) < 0.0).any():
             n = int(np.argmax(np.diff(t.ravel()) < 0.0))
             at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"
             raise ParameterError(self.of("t"), at, "a vector, in ascending order")

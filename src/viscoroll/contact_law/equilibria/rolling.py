@@ -117,7 +117,8 @@ def _resting(loads: Loads, neutral: bool) -> Integers:
 
 def _under_load(law: LawTable, loads: Loads) -> States:
     """All states of rolling under loads without a gain on omega."""
-    gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)
+    with np.errstate(over="ignore"):  # what is infinite is refused
+        gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():
