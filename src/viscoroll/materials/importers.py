@@ -11,7 +11,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.checks import checked, number
+from ..core.checks import checked, number, yes_or_no
 from ..core.errors import ParameterError, one_of
 from ..core.scale import SI
 from ..core.typed import Floats
@@ -44,7 +44,7 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths.
         """
-        return cls._relative(E0, nu, "g", g, tau, long_term, more)
+        return cls._relative(E0, nu, "g", g, tau, yes_or_no("long_term", long_term), more)
 
     @classmethod
     def ansys(cls, E0: float, nu: float, alpha: ArrayLike, tau: ArrayLike, **more: Any) -> Any:
