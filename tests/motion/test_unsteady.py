@@ -119,7 +119,7 @@ def test_a_rest_costs_speed():
 
 @pytest.mark.parametrize("t_w", [0.5, 3.0])
 def test_a_short_rest_costs_less(t_w):
-    """W of docs/may_i.md after a time t_w, of one mode, whose way is short of nothing."""
+    """W of docs/validity.md after a time t_w, of one mode, whose way is short of nothing."""
     scene, V0 = vr.Scene(alpha=11.0, kappa=10.0, mu=0.2, gamma=1.0), 0.5
     J, L, fresh = 10.0 / 11.0, 2.0 * 10.0 * V0, np.exp(-t_w)
     climbed = 0.25 * J * np.log(1.0 + (0.681 * L) ** 2) - np.log(11.0) / 88.0
