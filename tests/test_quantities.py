@@ -13,6 +13,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+import experiments
 import numpy as np
 import pandas as pd
 import pint
@@ -348,6 +349,56 @@ def test_functions_of_time_give_quantities():
     refused(
         lambda: SCENE.roll(0.5, 0.5, 1.0, force=lambda t: UNITS.Quantity(t, "N/m")), "force(t) is in newton / meter"
     )
+
+
+def test_columns_of_results_go_back():
+    """Tables of pandas have units in their titles alone."""
+    data = CYLINDER.roll(0.5, 0.5, [0.1, 0.2]).to_pandas().reset_index()
+    V = data["V [m s-1]"]
+    exact = CYLINDER.contact(V.to_numpy(), delta=0.0).M
+    for column in (V, pd.Index(V), (3.6 * V).rename("V [km/h]"), V.rename("run [left wheel]"), V.rename("run [1]")):
+        assert close(CYLINDER.contact(column, delta=0.0).M, exact, rel=tolerances.UNIT_CONVERTED)
+    assert np.array_equal(CYLINDER.roll(0.5, 0.5, data["t [s]"]).V, V)
+    for column in (V, pd.Index(V)):
+        refused(lambda column=column: SCENE.contact(column, delta=0.0), "V is in m s-1", "without dimension")
+        refused(lambda column=column: CYLINDER.roll(0.5, 0.5, column), "t is in m s-1", "in s")
+
+
+class Length:
+    """A quantity that knows no more than how it becomes another."""
+
+    magnitude = 25.0
+
+    def to(self, unit: str) -> "Length":
+        if unit != "m":
+            raise ValueError("a length")
+        made = Length()
+        made.magnitude = 0.25
+        return made
+
+
+class WithUnit(np.ndarray):
+    """An array like those of astropy and unyt."""
+
+    unit = "cm"
+
+
+def test_quantities_of_other_libraries():
+    assert CYLINDER.replace(R=Length()).R == 0.25
+    refused(lambda: CYLINDER.replace(m=Length()), "m is in another unit", "in kg m-1")
+    lengths = np.array([10.0, 20.0]).view(WithUnit)
+    assert close(CYLINDER.replace(R=lengths).R, [0.1, 0.2], rel=tolerances.UNIT_CONVERTED)
+    refused(lambda: CYLINDER.replace(m=lengths), "m is in cm", "in kg m-1")
+
+
+def test_ranges_of_unknowns_carry_units():
+    data = experiments.resistance(seed=3)
+    plain, found = (
+        vr.identify(experiments.roller(), {"E": ends}, data, starts=1).values["E"]
+        for ends in ((3e5, 3e7), UNITS.Quantity([0.3, 30.0], "MPa"))
+    )
+    assert close(found, plain, rel=tolerances.UNIT_CONVERTED)
+    refused(lambda: vr.identify(experiments.roller(), {"E": UNITS.Quantity([1.0, 2.0], "m")}, data), "E is in meter")
 
 
 def test_labels_stay():

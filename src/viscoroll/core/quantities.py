@@ -25,6 +25,8 @@ _NO_UNIT = ("", "1", "-", "dimensionless")
 _HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE)
 #: a share, which is no angle: a slope of 5 % is one of atan(0.05)
 _SHARE = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
+#: the unit at the end of a title
+_COLUMN = re.compile(r"\[([^\[\]]+)\]\s*$")
 #: absolute temperatures, whose zero may be moved
 _TEMPERATURE = "degC"
 
@@ -82,7 +84,7 @@ def without_unit(name: str, value: Any) -> tuple[Any, str | None]:
         unit = value.units
         # in full words, whatever the default format of its registry
         return value.magnitude, format(unit, "D") if hasattr(unit, "dimensionality") else str(unit)
-    if hasattr(value, "attrs") and hasattr(value, "dtype"):
+    if hasattr(value, "dtype") and (hasattr(value, "attrs") or hasattr(value, "to_numpy")):
         return _of_labelled(name, value)
     if (duration := _seconds(name, value)) is not None:
         return duration, "s"
@@ -139,21 +141,36 @@ def _of_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
 
 
 def _of_labelled(name: str, value: Any) -> tuple[Any, str | None]:
-    """An array of xarray or a series of pandas with its labels, and the unit of its attributes or its elements."""
+    """An array of xarray, a series or an index of pandas, with its labels, and the unit that it carries.
+
+    That is the one of its elements, of its attributes, or in its title, as results write their columns.
+    """
     of_xarray = hasattr(value, "dims")
     data = value.data if of_xarray else getattr(value.array, "quantity", value.to_numpy())
     plain, own = without_unit(name, data)
-    said = value.attrs.get("units")
+    said = getattr(value, "attrs", {}).get("units", _of_column(getattr(value, "name", None)))
     if said is None and plain is data:
         return value, None
     if said is not None and own is not None:
         plain = converted(name, plain, own, str(said))
     unit = own if said is None else str(said)
     if not of_xarray:
-        return type(value)(plain, index=value.index, name=value.name), unit
+        return type(value)(plain, index=value.index, name=value.name) if hasattr(value, "index") else plain, unit
     found = value.copy(deep=False, data=plain)
     found.attrs = {}  # it is of no unit any more
     return found, unit
+
+
+def _of_column(title: Any) -> str | None:
+    """The unit in the title of a column, as of "V [km/h]" of a table of pandas; None without, or of what is no unit."""
+    found = _COLUMN.search(title) if isinstance(title, str) else None
+    if found is None or found[1].strip() in _NO_UNIT:
+        return None
+    try:
+        factor(found[1], found[1])
+    except ParameterError:
+        return None
+    return found[1]
 
 
 def _seconds(name: str, value: Any) -> Any:

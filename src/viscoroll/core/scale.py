@@ -15,7 +15,7 @@ from .errors import ParameterError
 #: quantity -> its dimension in radius R, time T, load P (N/m), mass m (kg/m), contact length at rest l0, modulus E';
 #: what is not here is a ratio; temperatures and what belongs to them have no part in a scale
 DIMENSIONS = {
-    **dict.fromkeys(("t", "onset_time", "rest_time", "rested", "zeta", "T_epsilon", "T_sigma", "T_ref"), "T"),
+    **dict.fromkeys(("t", "t0", "onset_time", "rest_time", "rested", "zeta", "T_epsilon", "T_sigma", "T_ref"), "T"),
     **dict.fromkeys(("R", "thickness"), "R"),
     **dict.fromkeys(("E", "E0", "G", "G0", "G_inf", "bulk"), "E_prime"),
     "load": "P",
