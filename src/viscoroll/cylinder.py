@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from .contact_law.assumptions import WAVE_LIMIT, Validity
 from .contact_law.known import Known
-from .core.checks import broadcast_shape, checked, frozen
+from .core.checks import broadcast_shape, checked, frozen, one_name
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
@@ -105,8 +105,7 @@ class Cylinder(Methods):
             given["pressed"] = frozen(checked("load", given["pressed"], unit=SI, low=0.0, strict=True))
         numbers = {name: given[name] for name in _NUMBERS if given[name] is not None}
         broadcast_shape(**{name: np.asarray(value) for name, value in numbers.items()})
-        if plane not in ("strain", "stress"):
-            raise ParameterError("plane", repr(plane), "'strain' or 'stress'")
+        one_name("plane", plane, "strain", "stress")
         for name, value in given.items():
             object.__setattr__(self, name, value)
         if material is None:

@@ -157,6 +157,13 @@ def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
     return int(value)
 
 
+def one_name(name: str, value: Any, *allowed: str) -> None:
+    """Raise ParameterError where ``value`` is none of the ``allowed`` texts, the last of which stands behind "or"."""
+    if not (isinstance(value, str) and value in allowed):
+        *most, last = map(repr, allowed)
+        raise ParameterError(name, described(value), f"{', '.join(most)} or {last}")
+
+
 def yes_or_no(name: str, value: Any) -> bool:
     """``value`` as True or False.
 

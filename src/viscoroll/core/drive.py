@@ -113,8 +113,8 @@ def in_units_of(name: str, given: Any, units: HasUnits) -> Any:
     if not isinstance(given, Feedback):
         return in_unit(name, given, units.unit(name))
     if name not in _GAINS:
-        must = f"a number or a function of t; give gains with force= or torque=, not with {name}="
-        raise ParameterError(name, "a Feedback", must, f"{name} is a Feedback: must be {must}")
+        sentence = f"{name} is a Feedback, which acts as force= or torque= alone: give its gains there"
+        raise ParameterError(name, "a Feedback", "no Feedback", sentence)
     wanted = dict(zip(("value", "V", "omega"), map(units.unit, (name, *_GAINS[name])), strict=True))
     given = _converted(name, given, wanted)
     value = in_units_of(name, given.value, units) if isinstance(given.value, Schedule) else given.value

@@ -84,9 +84,12 @@ def unknown(name: str, value: Any, known: Iterable[str], kind: str) -> Parameter
 
 def refuse_unknown(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
     """The names in ``values``, one or several; raises :func:`unknown` for the first that is none of the ``known``."""
-    names = tuple(values) if isinstance(values, Iterable) and not isinstance(values, str) else (values,)
+    try:
+        names = (values,) if isinstance(values, str) else tuple(values)
+    except TypeError:  # not several
+        names = (values,)
     for value in names:
-        if value not in known:
+        if not (isinstance(value, str) and value in known):
             raise unknown(name, value, known, kind)
     return names
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters, Rolls, framed
 from ..core.blocks import flattened, run_blocks, thread_count
-from ..core.checks import broadcast_shape, extent, number, yes_or_no
+from ..core.checks import broadcast_shape, extent, number, one_name, yes_or_no
 from ..core.drive import Feedback, Schedule, over
 from ..core.errors import MotionStatus, ParameterError, refuse_unknown
 from ..core.scale import OF_TIME
@@ -111,8 +111,7 @@ def ensemble(
     """
     units = framed(roller, "ensemble", moves=True)[2]
     times, names = output_times(t, units), refuse_unknown("fields", fields, FIELDS, "a field")
-    if method not in ("auto", "flow", "integrate"):
-        raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
+    one_name("method", method, "auto", "flow", "integrate")
     starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
     progress = yes_or_no("progress", progress)
     if speed is not None:
