@@ -391,6 +391,24 @@ def test_quantities_of_other_libraries():
     refused(lambda: CYLINDER.replace(m=lengths), "m is in cm", "in kg m-1")
 
 
+@pytest.mark.parametrize("made", [Decimal, Fraction, int, np.float32, lambda value: np.array([value], object)])
+def test_magnitudes_of_any_kind(made):
+    """Converted in double precision, whatever they are kept in."""
+    assert close(CYLINDER.replace(R=UNITS.Quantity(made(5), "mm")).R, 0.005, rel=tolerances.UNIT_CONVERTED)
+
+
+@pytest.mark.parametrize(
+    "magnitude", [True, 1j, None, "1.0", np.array([1j]), np.array([True]), np.array(["1.0"]), 10**400]
+)
+def test_magnitudes_that_are_no_numbers(magnitude):
+    class Quantity(NamedTuple):
+        magnitude: Any
+        units = "mm"
+        to = None
+
+    refused(lambda: CYLINDER.replace(R=Quantity(magnitude)), "R = ", "number")
+
+
 def test_ranges_of_unknowns_carry_units():
     data = experiments.resistance(seed=3)
     plain, found = (

@@ -7,15 +7,13 @@ Numbers are finite, in range, and of shapes that go together; what carries a uni
 from __future__ import annotations
 
 import math
-from decimal import Decimal
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError, described
-from .quantities import in_unit
+from .quantities import in_unit, is_real
 from .scale import Units
 from .typed import Booleans, Floats
 
@@ -65,7 +63,7 @@ def _numbers(name: str, value: Any, unit: Units, allowed: str) -> Floats:
         raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
     try:
         given = np.asarray(plain)
-        if given.dtype.kind == "O" and all(map(_is_real, given.flat)):
+        if given.dtype.kind == "O" and all(map(is_real, given.flat)):
             given = given.astype(np.float64)
     except (TypeError, ValueError, OverflowError):  # ragged, or an integer beyond the doubles
         given = np.asarray(None)
@@ -75,11 +73,6 @@ def _numbers(name: str, value: Any, unit: Units, allowed: str) -> Floats:
         return given.astype(np.float64, copy=False)
     with np.errstate(over="ignore"):  # of long doubles, which are infinite then
         return given.astype(np.float64)
-
-
-def _is_real(value: Any) -> bool:
-    """Whether an object is a real number, of Python or another library; no truth value."""
-    return isinstance(value, Real | Decimal) and not isinstance(value, bool)
 
 
 def _listed(array: Floats, bad: Booleans) -> str:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import re
 from datetime import timedelta
+from decimal import Decimal
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
-from .errors import ParameterError
+from .errors import ParameterError, described
 from .units import factor
 
 #: types that carry no unit
@@ -111,7 +113,26 @@ def converted(name: str, value: Any, unit: str, wanted: str) -> Any:
         raise refuse_unit(name, unit, wanted)
     if isinstance(value, list):
         return [converted(name, each, unit, wanted) for each in value]
-    return value * times + zero if zero else value * times
+    number = _as_floats(name, value)
+    return number * times + zero if zero else number * times
+
+
+def _as_floats(name: str, value: Any) -> Any:
+    """The numbers of a quantity as doubles, with their labels; raises ParameterError for what are no numbers."""
+    kind = getattr(getattr(value, "dtype", None), "kind", "")
+    try:
+        if kind in ("i", "u", "f") or (kind == "O" and all(map(is_real, np.asarray(value).flat))):
+            return value.astype(np.float64)
+        if not kind and is_real(value):
+            return float(value)
+    except OverflowError:  # an integer beyond the doubles
+        pass
+    raise ParameterError(name, described(value), "a finite number")
+
+
+def is_real(value: Any) -> bool:
+    """Whether an object is a real number, of Python or another library; no truth value."""
+    return isinstance(value, Real | Decimal) and not isinstance(value, bool)
 
 
 def refuse_unit(name: str, unit: str, wanted: str, known: bool = True) -> ParameterError:
