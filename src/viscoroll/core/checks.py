@@ -44,8 +44,8 @@ def checked_extent(
     """
     if type(value) is float and low < value < high:
         return np.asarray(value), (value, value)
-    allowed = "" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
-    allowed += "" if high == math.inf else f", <= {high:g}"
+    least = [] if low == -math.inf else [f"finite and {'>' if strict else '>='} {low:g}"]
+    allowed = ", ".join(least + ([] if high == math.inf else [f"<= {high:g}"]))
     array = _numbers(name, value, unit, allowed)
     smallest, largest = extent(array) if array.size else (0.0, 0.0)
     # a NaN compares false; without one, no mask of the size of the array is needed

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .errors import ParameterError, described
-from .units import factor
+from .units import factor, spelled
 
 #: types that carry no unit
 _BARE = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
@@ -55,7 +55,7 @@ def in_unit(name: str, value: Any, wanted: str) -> Any:
         return value
     if _is_quantity(value) and not hasattr(value, "units"):
         try:
-            return value.to(wanted).magnitude
+            return value.to(spelled(wanted)).magnitude
         except Exception as error:  # whatever its library raises
             raise refuse_unit(name, f"another unit ({value!s:.40})", wanted) from error
     plain, unit = without_unit(name, value)
@@ -167,7 +167,7 @@ def _of_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     That is the one of its elements, of its attributes, or in its title, as results write their columns.
     """
     of_xarray = hasattr(value, "dims")
-    data = value.data if of_xarray else getattr(value.array, "quantity", value.to_numpy())
+    data = value.data if of_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
     plain, own = without_unit(name, data)
     said = getattr(value, "attrs", {}).get("units", _of_column(getattr(value, "name", None)))
     if said is None and plain is data:
