@@ -13,9 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError, described
-from .quantities import in_unit, is_real
+from .quantities import in_unit, is_plain, is_real
 from .scale import Units
 from .typed import Booleans, Floats
+
+#: bytes of a double
+_DOUBLE = 8
 
 
 def checked(name: str, value: ArrayLike, **bounds: Any) -> Floats:
@@ -44,23 +47,29 @@ def checked_extent(
     """
     if type(value) is float and low < value < high:
         return np.asarray(value), (value, value)
-    least = [] if low == -math.inf else [f"finite and {'>' if strict else '>='} {low:g}"]
-    allowed = ", ".join(least + ([] if high == math.inf else [f"<= {high:g}"]))
-    array = _numbers(name, value, unit, allowed)
+    array = _numbers(name, value, unit, (low, strict, high))
     smallest, largest = extent(array) if array.size else (0.0, 0.0)
     # a NaN compares false; without one, no mask of the size of the array is needed
     above = smallest > low if strict else smallest >= low
     if array.size and not (above and -math.inf < smallest and largest < math.inf and largest <= high):
         bad = ~(np.isfinite(array) & (array > low if strict else array >= low) & (array <= high))
-        raise ParameterError(name, _listed(array, bad), allowed or "a finite number")
+        raise ParameterError(name, _listed(array, bad), _allowed(low, strict, high) or "a finite number")
     return array, (smallest, largest)
 
 
-def _numbers(name: str, value: Any, unit: Units, allowed: str) -> Floats:
-    """``value`` as float64 in ``unit``; raises ParameterError for what is no number.  ``allowed``: for its words."""
-    plain = in_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
-    if isinstance(plain, np.ma.MaskedArray):
-        raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
+def _allowed(low: float, strict: bool, high: float) -> str:
+    """A range in words; "" of all finite numbers."""
+    least = [] if low == -math.inf else [f"finite and {'>' if strict else '>='} {low:g}"]
+    return ", ".join(least + ([] if high == math.inf else [f"<= {high:g}"]))
+
+
+def _numbers(name: str, value: Any, unit: Units, bounds: tuple[float, bool, float]) -> Floats:
+    """``value`` as float64 in ``unit``; raises ParameterError for what is no number, with its ``bounds`` in words."""
+    plain = value
+    if not is_plain(value):
+        plain = in_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
+        if isinstance(plain, np.ma.MaskedArray):
+            raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
     try:
         given = np.asarray(plain)
         if given.dtype.kind == "O" and all(map(is_real, given.flat)):
@@ -68,8 +77,9 @@ def _numbers(name: str, value: Any, unit: Units, allowed: str) -> Floats:
     except (TypeError, ValueError, OverflowError):  # ragged, or an integer beyond the doubles
         given = np.asarray(None)
     if given.dtype.kind not in "iuf":
+        allowed = _allowed(*bounds)
         raise ParameterError(name, described(value), f"a number, {allowed}" if allowed else "a finite number")
-    if given.dtype.itemsize <= np.dtype(np.float64).itemsize:
+    if given.dtype.itemsize <= _DOUBLE:
         return given.astype(np.float64, copy=False)
     with np.errstate(over="ignore"):  # of long doubles, which are infinite then
         return given.astype(np.float64)
@@ -144,6 +154,8 @@ def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
     ParameterError
         Otherwise.
     """
+    if type(value) is int and least <= value <= most:
+        return value
     if isinstance(value, bool) or not (isinstance(value, int | np.integer) and least <= value <= most):
         allowed = f"a whole number >= {least}" if most == math.inf else f"a whole number in [{least}, {most}]"
         raise ParameterError(name, described(value), allowed)

@@ -10,6 +10,7 @@ import numpy as np
 
 from .drive import Schedule, in_units_of
 from .errors import ParameterError
+from .quantities import is_plain
 from .scale import HasUnits
 
 
@@ -50,12 +51,7 @@ class Labels(NamedTuple):
 
 
 #: types that bear neither labels nor units
-_BARE = frozenset((float, int, np.float64, type(None)))
-
-
-def _is_bare(value: Any) -> bool:
-    """Whether it is a number or a plain array of numbers."""
-    return type(value) in _BARE or (type(value) is np.ndarray and value.dtype.kind in "iuf")
+BARE = frozenset((float, int, np.float64, type(None)))
 
 
 def unlabelled(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
@@ -74,7 +70,7 @@ def unlabelled(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], 
         A unit of another dimension, arrays of xarray beside plain ones, series of pandas with unlike indices, both
         kinds at once.
     """
-    if _BARE.issuperset(map(type, given.values())) or all(map(_is_bare, given.values())):
+    if BARE.issuperset(map(type, given.values())) or all(map(is_plain, given.values())):
         return given, None
     given = {name: in_units_of(name, value, units) for name, value in given.items()}
     xarray, pandas = sys.modules.get("xarray"), sys.modules.get("pandas")

@@ -19,8 +19,10 @@ from .units import factor, spelled
 
 #: types that carry no unit
 _BARE = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
-#: kinds of plain arrays, as numpy calls them: booleans, integers, floats, complex numbers, texts, dates
+#: kinds of arrays that carry no unit, as numpy calls them: truth values, integers, floats, complex, texts, dates
 _PLAIN = frozenset("biufcUSM")
+#: elements of lists that need no look
+_NUMBERS = frozenset((float, int))
 #: how a number without dimension is marked
 _NO_UNIT = ("", "1", "-", "dimensionless")
 #: hertz in a unit: a cycle is 2 pi rad of an angular velocity, and none of it anywhere else
@@ -31,6 +33,14 @@ _SHARE = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
 _COLUMN = re.compile(r"\[([^\[\]]+)\]\s*$")
 #: absolute temperatures, whose zero may be moved
 _TEMPERATURE = "degC"
+
+
+def is_plain(value: Any) -> bool:
+    """Whether it carries no unit, to be seen from its type: a number, an array or a list of numbers."""
+    kind = type(value)
+    if kind is np.ndarray:
+        return value.dtype.kind in _PLAIN
+    return kind in _BARE or ((kind is list or kind is tuple) and _NUMBERS.issuperset(map(type, value)))
 
 
 def in_unit(name: str, value: Any, wanted: str) -> Any:
@@ -51,7 +61,7 @@ def in_unit(name: str, value: Any, wanted: str) -> Any:
     ParameterError
         A unit of another dimension, or one that is not known.
     """
-    if type(value) in _BARE or (type(value) is np.ndarray and value.dtype.kind in _PLAIN):
+    if is_plain(value):
         return value
     if _is_quantity(value) and not hasattr(value, "units"):
         try:
@@ -72,12 +82,11 @@ def without_unit(name: str, value: Any) -> tuple[Any, str | None]:
     ParameterError
         A list of numbers with and without units, or with truth values; a duration in months or years.
     """
-    kind = type(value)
-    if kind in _BARE or (kind is np.ndarray and value.dtype.kind in _PLAIN):
+    if is_plain(value):
         return value, None
-    if kind is list or kind is tuple:
-        return (value, None) if {float, int}.issuperset(map(type, value)) else _of_elements(name, value)
-    if kind is np.ndarray and value.dtype.kind == "O" and value.ndim:
+    if type(value) is list or type(value) is tuple:
+        return _of_elements(name, value)
+    if type(value) is np.ndarray and value.dtype.kind == "O" and value.ndim:
         elements, unit = _of_elements(name, list(value.flat))
         found = np.empty(value.size, object)
         found[:] = elements

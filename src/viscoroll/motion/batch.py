@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Parameters, Rolls, framed
+from ..contact_law.parameters import Parameters, Rolls, scale_of
 from ..core.blocks import flattened, run_blocks, thread_count
 from ..core.checks import broadcast_shape, extent, number, one_name, yes_or_no
 from ..core.drive import Feedback, Schedule, over
@@ -109,7 +109,7 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
-    units = framed(roller, "ensemble", moves=True)[2]
+    units = scale_of(roller)
     times, names = output_times(t, units), refuse_unknown("fields", fields, FIELDS, "a field")
     one_name("method", method, "auto", "flow", "integrate")
     starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)

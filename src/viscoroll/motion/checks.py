@@ -39,12 +39,10 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     return times
 
 
-def checked_end(end: float, T: float) -> float:
-    """The last output time over T_ref; raises ParameterError where that is no double."""
-    last = float(end) / T
-    if last == math.inf:
-        raise ParameterError("t", float(end), f"less than {sys.float_info.max * min(T, 1.0):.3g}")
-    return last
+def refuse_end(end: float, T: float) -> None:
+    """Raise ParameterError for a last output time that is infinite over T_ref."""
+    if end / T == math.inf:
+        raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
 
 
 def refuse_many(**given: Any) -> None:
@@ -89,14 +87,10 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
         Otherwise.
     """
     low, high = SPEED_RANGE
-    # each by itself: max() of a NaN is the other
-    if (
-        type(V0) is type(omega0) is float
-        and abs(V0) <= high
-        and abs(omega0) <= high
-        and max(abs(V0), abs(omega0)) >= low
-    ):
-        return V0, omega0
+    # each by itself: max() of a NaN and another may be the other
+    if type(V0) is float and type(omega0) is float and -high <= V0 <= high and -high <= omega0 <= high:
+        if abs(V0) >= low or abs(omega0) >= low:
+            return V0, omega0
     V, omega = checked("V0", V0), checked("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):

@@ -18,7 +18,7 @@ from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
 from ..core.typed import Floats, Integers
 from ..materials.law_table import law_table
-from .checks import checked_end, controls, in_words, refuse_many
+from .checks import controls, in_words, refuse_end, refuse_many
 from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
 
 _ALL = np.arange(len(ROWS))
@@ -65,11 +65,13 @@ def begin(
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
-    if yes_or_no("unsteady", unsteady) and not scene.like_bodies:
+    if unsteady is not False and yes_or_no("unsteady", unsteady) and not scene.like_bodies:
         sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     try:
-        limits, last = controls(rtol, over("rest", rest, scale), max_steps), checked_end(end, scale["t"])
+        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end) / scale["t"]
+        if last == math.inf:
+            refuse_end(float(end), scale["t"])
         own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
         ready = prepared(drive.over(scale), *own, last, rtol)
         refuse_rest(limits[1], ready)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 
-from ..contact_law.parameters import Rolls, framed
+from ..contact_law.parameters import Rolls
 from ..core.drive import Feedback, Schedule
+from ..core.labels import BARE
+from ..core.scale import DIMENSIONLESS
 from ..core.typed import Numbers
 from .checks import output_times
 from .driven import Drive, bare
@@ -112,9 +114,10 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    units = framed(roller, "roll", moves=True)[2]
-    times = output_times(t, units)
-    (V0, omega0), given, _ = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
+    units = roller.scale if isinstance(roller, Rolls) else DIMENSIONLESS  # begin() refuses what is no roller
+    times, given = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
+    if not BARE.issuperset(map(type, (V0, omega0, *given))):
+        (V0, omega0), given, _ = bare((V0, omega0), given, units)
     asked = rtol, rest, max_steps
     begun = begin(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
     begun.roller.look_at_starts(V0, omega0)
