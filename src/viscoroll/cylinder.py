@@ -35,6 +35,7 @@ class Cylinder(Methods):
     """A viscoelastic cylinder on a half-space, in SI units.
 
     The functions of the package, and its methods of the same names, take and give SI units, per m of its length.
+    Arguments that carry another unit are converted, or refused (``docs/howto/contact.md``).
     :meth:`scene` is its dimensionless counterpart; ``scale`` holds what 1 of each of its quantities is.
 
     Parameters
