@@ -8,6 +8,11 @@ BESSEL_ULP = 4.0
 #: Q; measured 4e-13.  A slope in place of a mean one is off by 2e-7 and more.
 SMALL_TRACTION = 1e-11
 
+# --- core/quantities.py (test_quantities.py) ---
+#: A number in another unit and back: two roundings of the argument (of kelvin less 273.15: ten), times the condition of
+#: what is computed, a motion's and a fit's below 1e3.
+UNIT_CONVERTED = 1e-11
+
 # --- contact_law/stress.py (test_stress.py) ---
 #: V = 0 and alpha = 1 are ellipses: roundings of the edge distances; relative to the peak.
 STRESS_ELLIPSE = 1e-15

@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 
 from .contact_law.assumptions import WAVE_LIMIT, Validity
 from .contact_law.known import Known, say
-from .core.checks import broadcast_shape, checked, frozen
+from .core.checks import broadcast_shape, checked, frozen, one_name
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
-from .core.scale import Scale
+from .core.scale import SI, Scale
 from .core.symbols import MEASURED
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
@@ -34,6 +34,7 @@ class Cylinder(Methods):
     """A viscoelastic cylinder on a half-space, in SI units.
 
     The functions of the package, and its methods of the same names, take and give SI units, per m of its length.
+    Arguments that carry another unit are converted, or refused (``docs/howto/contact.md``).
     :meth:`scene` is its dimensionless counterpart; ``scale`` holds what 1 of each of its quantities is.
 
     Parameters
@@ -99,13 +100,12 @@ class Cylinder(Methods):
             raise ParameterError(missing, None, "given, or material", sentence)
         for name in ("R", "m", "mu", "j", "g", *(() if material is not None else _SOLID)):
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
-            given[name] = frozen(checked(name, given[name], low=low, strict=True, high=high))
+            given[name] = frozen(checked(name, given[name], unit=SI, low=low, strict=True, high=high))
         if given["pressed"] is not None:
-            given["pressed"] = frozen(checked("load", given["pressed"], low=0.0, strict=True))
+            given["pressed"] = frozen(checked("load", given["pressed"], unit=SI, low=0.0, strict=True))
         numbers = {name: given[name] for name in _NUMBERS if given[name] is not None}
         broadcast_shape(**{name: np.asarray(value) for name, value in numbers.items()})
-        if plane not in ("strain", "stress"):
-            raise ParameterError("plane", repr(plane), "'strain' or 'stress'")
+        one_name("plane", plane, "strain", "stress")
         for name, value in given.items():
             object.__setattr__(self, name, value)
         if material is None:

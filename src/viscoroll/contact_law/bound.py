@@ -9,7 +9,7 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from ..core.checks import checked
+from ..core.checks import checked, yes_or_no
 from ..core.errors import ParameterError
 from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
@@ -76,6 +76,8 @@ class Law:
         ParameterError
             NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
         """
+        if slopes is not False:
+            slopes = yes_or_no("slopes", slopes)
         if type(V) in _NUMBERS and type(omega) in _NUMBERS:
             out = self._room()
             try:

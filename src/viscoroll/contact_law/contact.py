@@ -13,7 +13,7 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import broadcast_shape, checked, checked_extent
+from ..core.checks import broadcast_shape, checked, checked_extent, yes_or_no
 from ..core.errors import ParameterError, one_of
 from ..core.labels import unlabelled
 from ..core.results import Values
@@ -129,11 +129,14 @@ def contact(
     _, scene, scale = framed(roller, "contact")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
+    if slopes is not False:
+        slopes = yes_or_no("slopes", slopes)
     names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
     creep_name = "omega" if delta is None else "delta"
-    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta})
+    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = checked_extent("V", given["V"])
     creep = checked(creep_name, given[creep_name])
+    given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
         roller.look(speed, ends)
@@ -158,7 +161,7 @@ def states(
         arrays = {name: np.asarray(value) for name, value in arrays.items()}
         shape = broadcast_shape(**arrays)
         refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * V) <= fastest:
+    elif not abs(scene.kappa * float(V)) <= fastest:
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ..core.checks import one_name
 from ..core.errors import ParameterError, refuse_unknown
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
@@ -31,8 +32,7 @@ def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool
     ParameterError
         A name or a method that there is not, or one that the other does not give.
     """
-    if method not in ("table", "direct"):
-        raise ParameterError("method", repr(method), "'table' or 'direct'")
+    one_name("method", method, "table", "direct")
     names = DEFAULT[like, si] if fields is None else refuse_unknown("fields", fields, KNOWN, "a field")
     if slopes:
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)

@@ -112,7 +112,7 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> Non
     if not (kappa.size and V.size):
         return
     low, high = extent(V)
-    if extent(kappa)[1] * max(-low, high) <= fastest:
+    if float(extent(kappa)[1]) * float(max(-low, high)) <= fastest:
         return
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)

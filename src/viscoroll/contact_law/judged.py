@@ -37,8 +37,10 @@ def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density
         NaN or infinite speeds, a density that is not one positive number, shapes that do not broadcast.
     """
     _, scene, scale = framed(roller, "validity")
-    given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
-    speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
+    speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
+    given = {name: checked(name, each, unit=scale) for name, each in speeds.items()}
+    with np.errstate(over="ignore"):
+        speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
     free = scene.freely(speed)
     found = free.strained(scene.kappa)

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..core.checks import number
 from ..core.errors import ModelWarning, outside
+from ..core.scale import SI
 from ..kernels.compile.notice import is_worker
 from ..materials.law_table import law_table
 from ..materials.material import Material
@@ -104,7 +105,7 @@ class Known:
     def judge(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None, plane: str) -> Validity:
         """What is added to the validity of a state, of which ``lam`` is."""
         if density is not None:
-            density = number("density", density, low=0.0, strict=True)
+            density = number("density", density, unit=SI, low=0.0, strict=True)
         fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
         pair, length = self.pair, lam * self.l0
         long = "a long cylinder, or one held between walls (plane strain)"

@@ -246,6 +246,11 @@ class Parameters(Rolls):
         return f"Scene({', '.join(f'{name}={short(value)}' for name, value in self._given.items())})"
 
 
+def scale_of(given: Any) -> Scale:
+    """Scale of what rolls; what is neither a scene nor a cylinder has that of a scene, and is refused elsewhere."""
+    return given.scale if isinstance(given, Rolls) else DIMENSIONLESS
+
+
 def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> tuple[Rolls, Parameters, Scale]:
     """What rolls, on its slope, its parameters and its scale; ``moves``: with a gamma.
 

@@ -60,11 +60,13 @@ def stress(
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
-    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta})
+    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
     at, speed, creep = (checked(*given) for given in places.items())
+    places = dict(zip(places, (at, speed, creep), strict=True))
     if scale.si:
         roller.look(speed)
-        at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
+        with np.errstate(over="ignore"):  # a place so far away has no stress, such a speed is refused
+            at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
     state = states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(speed < 0.0, -1.0, 1.0)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..core.checks import checked, number
 from ..core.errors import ParameterError
 from ..core.results import Row, Shown
+from ..core.scale import SI
 from ..core.typed import Floats
 from .importers import FromPrograms, poisson
 from .measured import Measured
@@ -66,7 +67,7 @@ class Material(FromPrograms):
     def __post_init__(self) -> None:
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
-        if isinstance(self.E, (int, float, np.floating)) and float(self.E) == math.inf:
+        if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
                 raise ParameterError("E", self.E, "finite where the material relaxes")
@@ -75,7 +76,7 @@ class Material(FromPrograms):
         object.__setattr__(self, "nu", poisson(self.nu))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        keep(self, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
+        keep(self, SI, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
         if self.temperature is not None:
@@ -97,8 +98,8 @@ class Material(FromPrograms):
         ParameterError
             A value out of range.
         """
-        T_epsilon = number("T_epsilon", T_epsilon, low=0.0, strict=True)
-        T_sigma = number("T_sigma", T_sigma, low=0.0, strict=True)
+        T_epsilon = number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
+        T_sigma = number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
         refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
         prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
@@ -282,7 +283,7 @@ class Material(FromPrograms):
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Storage and loss modulus over E; omega times a relaxation time beyond the doubles is as good as infinite."""
         with np.errstate(over="ignore"):
-            product = checked("omega", omega, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+            product = checked("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
         fast = product > 1.0
         ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
         whole, E = 1.0 + ratio * ratio, self.prony.E
@@ -292,7 +293,7 @@ class Material(FromPrograms):
     def _over(self, t: ArrayLike, name: str, times: Floats) -> Floats:
         """t over each of the times."""
         with np.errstate(over="ignore"):
-            return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)
+            return checked(name, t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 
 from ..core.checks import number
 from ..core.errors import ModelWarning, ParameterError, outside
+from ..core.scale import SI, Units
 
 #: J/(mol K), exact since 2019
 GAS_CONSTANT = 8.31446261815324
@@ -115,7 +116,7 @@ def celsius(name: str, temperature: Any) -> float:
     ModelWarning
         Outside :data:`USUAL_RANGE`.  The words hold no value, so that Python says them once for each line of a program.
     """
-    found = number(name, temperature, low=ABSOLUTE_ZERO, strict=True)
+    found = number(name, temperature, unit="degC", low=ABSOLUTE_ZERO, strict=True)
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
         low, high = USUAL_RANGE
         text = f"{name} is outside {low:g} to {high:g}: temperatures are in degrees Celsius, and this looks like kelvin"
@@ -146,10 +147,13 @@ def relative(shift: Callable[[float], float], temperature: float, reference: flo
     return number("a_T", factor / number("a_T", shift(reference), low=0.0, strict=True), low=0.0, strict=True)
 
 
-def keep(given: Any, **lows: float) -> None:
-    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError."""
+def keep(given: Any, unit: Units = SI, **lows: float) -> None:
+    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError.
+
+    ``unit`` : of all of them, or what has units by name.
+    """
     for name, low in lows.items():
-        object.__setattr__(given, name, number(name, getattr(given, name), low=low, strict=low > -math.inf))
+        object.__setattr__(given, name, number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf))
 
 
 def _shift(temperature: float, exponent: float) -> float:

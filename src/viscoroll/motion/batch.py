@@ -8,9 +8,9 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Parameters, Rolls
+from ..contact_law.parameters import Parameters, Rolls, scale_of
 from ..core.blocks import flattened, run_blocks, thread_count
-from ..core.checks import broadcast_shape, extent, number
+from ..core.checks import broadcast_shape, extent, number, one_name, yes_or_no
 from ..core.drive import Feedback, Schedule, over
 from ..core.errors import MotionStatus, ParameterError, refuse_unknown
 from ..core.scale import OF_TIME
@@ -110,10 +110,13 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
-    times, names = output_times(t), refuse_unknown("fields", fields, FIELDS, "a field")
-    if method not in ("auto", "flow", "integrate"):
-        raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
-    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V))
+    units = scale_of(roller)
+    times, names = output_times(t, units), refuse_unknown("fields", fields, FIELDS, "a field")
+    one_name("method", method, "auto", "flow", "integrate")
+    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
+    progress = yes_or_no("progress", progress)
+    if speed is not None:
+        speed = number("speed", speed, unit=units, low=0.0, strict=True)
     asked = Asked(rtol, rest, max_steps, resolve)
     begun = begin(roller, starts, given, times[-1], asked, unsteady=unsteady, rested=rested)
     begun.roller.look_at_starts(*starts)
@@ -219,7 +222,7 @@ def _map_of(
     """The flow map for these starts; None where all are at rest."""
     if speed is None:
         speed = max((abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0)
-    elif not 0.0 < number("speed", speed) <= SPEED_RANGE[1]:
+    elif speed > SPEED_RANGE[1]:
         raise ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]")
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 

@@ -11,7 +11,7 @@ from ..core.checks import broadcast_shape, checked
 from ..core.drive import Feedback, Schedule, over, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.labels import Labels, unlabelled
-from ..core.scale import Scale
+from ..core.scale import HasUnits, Scale
 from ..core.typed import Floats
 from ..kernels.motion.records import NEITHER
 from .checks import start_speeds
@@ -47,7 +47,7 @@ class Drive(NamedTuple):
     @property
     def acting(self) -> Drive:
         """The same without a force, torque, slope, brake or drag of 0."""
-        gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(each)}
+        gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(name, each)}
         return self._replace(**gone)
 
     @property
@@ -79,16 +79,16 @@ def _is_number(given: Any) -> bool:
     return not (callable(given) or isinstance(given, Feedback | Schedule))
 
 
-def _still(given: Any) -> bool:
-    """Whether it is 0 at all times."""
+def _still(name: str, given: Any) -> bool:
+    """Whether it is 0 at all times; raises ParameterError for what is no number and no function of time."""
     if isinstance(given, Feedback):
-        return not (np.any(given.V) or np.any(given.omega)) and _still(given.value)
-    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else given))
+        return not (np.any(given.V) or np.any(given.omega)) and _still(name, given.value)
+    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else checked(name, given)))
 
 
-def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, Labels | None]:
-    """Start speeds and drive of many motions without labels of xarray and pandas, and these."""
-    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()})
+def bare(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> tuple[tuple[Any, Any], Drive, Labels | None]:
+    """Start speeds and drive without units and labels of xarray and pandas, and these labels; raises ParameterError."""
+    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels
 
 
@@ -184,6 +184,8 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolv
     force, torque, brake = checked_course("force"), checked_course("torque"), checked_course("brake", low=0.0)
     prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NEITHER)
     speed = checked_course(SPEEDS[prescribed]) if prescribed else None
+    if isinstance(speed, np.ndarray) and not speed.size:
+        raise ParameterError(SPEEDS[prescribed], "an empty array", "a number, one a motion, or a function of t")
     courses = Courses(force, torque, brake, np.asarray(tangent), speed, prescribed)
     starts = {"omega": omega0, "V": V0}
     if prescribed:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..contact_law.assumptions import Validity
 from ..contact_law.judged import validity
 from ..contact_law.steadiness import Steadiness
 from ..core.checks import checked
-from ..core.errors import MotionStatus
+from ..core.errors import MotionStatus, ParameterError, described
 from ..core.labels import Labels
 from ..core.results import Row
 from ..core.typed import Booleans, Floats, Integers
@@ -91,11 +91,15 @@ class Ensemble(Rolled):
         Raises
         ------
         ParameterError
-            If there are no motions.
+            If there are no motions, or quantiles are none.
         """
         from .summaries import summary_of
 
-        return summary_of(self, tuple(checked("quantiles", tuple(quantiles), low=0.0, high=1.0).tolist()))
+        given: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
+        levels = checked("quantiles", given, low=0.0, high=1.0)
+        if levels.ndim != 1:
+            raise ParameterError("quantiles", described(quantiles), "a list of numbers")
+        return summary_of(self, tuple(levels.tolist()))
 
     def validity(self) -> Validity:
         """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.

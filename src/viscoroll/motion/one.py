@@ -186,9 +186,9 @@ class Motion(Rolled):
         ParameterError
             Times that are not ascending or lie beyond the end of the motion.
         """
-        times = output_times(t)
+        times = output_times(t, self.scale)
         end = self._begun.end * self.scale["t"]
-        if times[-1] > end and times[-1] / self.scale["t"] > self._begun.end:
+        if times[-1] > end and float(times[-1]) / self.scale["t"] > self._begun.end:
             raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
         return integrated(self._begun, times)
 

@@ -12,12 +12,13 @@ from ..contact_law.contact import contact
 from ..contact_law.parameters import Parameters, Rolls, framed
 from ..contact_law.steadiness import CAUGHT
 from ..core.blocks import flattened, run_blocks
-from ..core.checks import checked
+from ..core.checks import checked, yes_or_no
 from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
+from ..core.scale import HasUnits
 from ..core.typed import Floats, Integers
 from ..materials.law_table import law_table
-from .checks import controls, in_words, refuse_many
+from .checks import controls, in_words, refuse_end, refuse_many
 from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
 
 _ALL = np.arange(len(ROWS))
@@ -73,26 +74,28 @@ def begin(
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
-    if unsteady and not scene.like_bodies:
+    if unsteady is not False and yes_or_no("unsteady", unsteady) and not scene.like_bodies:
         sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     try:
-        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end / scale["t"])
+        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end) / scale["t"]
+        if last == math.inf:
+            refuse_end(float(end), scale["t"])
         own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
         spacing = None if resolve is None else over("resolve", resolve, scale)
         ready = prepared(drive.over(scale), *own, last, rtol, spacing)
         if ready.courses is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + ready.courses.corners)
         refuse_rest(limits[1], ready)
-        ready, caught = _climbed(ready, scene, _time_of_rest(rested) / scale["t"])
+        ready, caught = _climbed(ready, scene, _time_of_rest(rested, scale) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
     if one and ready.courses is not None and (many := ready.motions) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
-    return Begun(roller, scene, drive, ready, caught, last, limits, unsteady)
+    return Begun(roller, scene, drive, ready, caught, last, limits, bool(unsteady))
 
 
-def _time_of_rest(rested: bool | float) -> float:
+def _time_of_rest(rested: Any, units: HasUnits) -> float:
     """The time of the rest, infinite for a long one.
 
     Raises
@@ -100,11 +103,12 @@ def _time_of_rest(rested: bool | float) -> float:
     ParameterError
         What is not one number >= 0.
     """
-    if isinstance(rested, bool):
+    if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
-    if checked("rested", rested, low=0.0).ndim:
+    time = checked("rested", rested, unit=units, low=0.0)
+    if time.ndim:
         raise ParameterError("rested", rested, "one time >= 0, or True")
-    return float(rested)
+    return float(time)
 
 
 def _climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepared, Any]:

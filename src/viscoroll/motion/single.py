@@ -7,9 +7,11 @@ from collections.abc import Callable
 
 from ..contact_law.parameters import Rolls
 from ..core.drive import Feedback, Schedule
+from ..core.labels import BARE
+from ..core.scale import DIMENSIONLESS
 from ..core.typed import Numbers
 from .checks import output_times
-from .driven import Drive
+from .driven import Drive, bare
 from .one import Motion, integrated
 from .rolling import Asked, begin
 from .warned import look
@@ -116,7 +118,10 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    times, given = output_times(t), Drive(force, torque, slope, brake, drag, omega, V)
+    units = roller.scale if isinstance(roller, Rolls) else DIMENSIONLESS  # begin() refuses what is no roller
+    times, given = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
+    if not BARE.issuperset(map(type, (V0, omega0, *given))):
+        (V0, omega0), given, _ = bare((V0, omega0), given, units)
     asked = Asked(rtol, rest, max_steps, resolve)
     begun = begin(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
     begun.roller.look_at_starts(V0, omega0)

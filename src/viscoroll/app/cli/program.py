@@ -123,6 +123,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(argv: Sequence[str]) -> int:
     try:
         given = parser().parse_args(argv)
+        from ...core.blocks import thread_count
+
+        thread_count()  # refuses a wrong $VISCOROLL_THREADS, whatever the command
         code = given.run(given) or 0
     except SystemExit as finished:  # argparse's own way to end after --help and --version
         code = int(finished.code or 0)

@@ -23,6 +23,8 @@ FEWEST_POINTS = 3
 MOST_POINTS, _BINS = 1000, 500
 #: a slope is taken over a quarter of a decade on either side, and over five points at least
 _WINDOW, _NEIGHBOURS = 0.25 * math.log(10.0), 5
+#: of the columns of a curve
+UNITS = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "t": "s", "relaxation": "Pa"}
 #: of ln omega, below which frequencies are one
 _APART = 1e-12
 
@@ -143,7 +145,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    values = [checked(name, given, low=0.0, strict=True) for name, given in columns.items()]
+    values = [checked(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
     first = next(iter(columns))
     for name, column in zip(columns, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:

@@ -163,7 +163,7 @@ class SeriesFit(Shown):
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
             raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
-        speed = checked("V", V)
+        speed = checked("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
         seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return measurement(seen, {"the material": self.measured})

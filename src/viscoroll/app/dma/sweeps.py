@@ -8,8 +8,9 @@ import numpy as np
 
 from ...core.checks import checked
 from ...core.errors import ParameterError
+from ...core.quantities import in_unit
 from ...core.typed import Floats, Integers
-from .curve import Curve
+from .curve import UNITS, Curve
 from .record import SAME_TEMPERATURE
 
 #: K; a temperature that is further from all others belongs to another set, as sweeps are made 5 or 10 K apart
@@ -28,7 +29,8 @@ class Sets(NamedTuple):
 
 def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
     """A temperature each point, and the columns; of lists of curves the first point of each, else None."""
-    given = checked("temperature", temperature)
+    given = checked("temperature", temperature, unit="degC")
+    columns = tuple(in_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         if given.ndim != 1:
             raise ParameterError("temperature", f"of shape {given.shape}", "one a curve")

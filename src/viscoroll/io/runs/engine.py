@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ...core.blocks import heed, thread_count
+from ...core.checks import yes_or_no
 from ...core.errors import FileError, Interrupted, ParameterError, ViscorollError
 from ...core.extras import imported
 from .evaluate import look_at_materials
@@ -84,6 +85,8 @@ def run_ensemble(
     The files are the same, byte for byte, for any number of threads or workers and after any number
     of kills (``tests/runs/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
     """
+    if progress != "lines":
+        progress = yes_or_no("progress", progress)
     store = Store(Path(path).absolute(), run)
     imported("zarr", "zarr", "runs")
     store.refuse_other()

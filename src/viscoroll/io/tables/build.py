@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked, number, whole
+from ...core.checks import checked, number, one_name, whole
 from ...core.errors import ParameterError
 from ...core.typed import Floats
 from ...cylinder import Cylinder
@@ -39,8 +39,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     ParameterError
         An unknown spacing, low >= high, high - low beyond the doubles, count < 2, or "log" with low <= 0.
     """
-    if spacing not in ("linear", "log"):
-        raise ParameterError("spacing", repr(spacing), "'linear' or 'log'")
+    one_name("spacing", spacing, "linear", "log")
     low = number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
     high = number("high", high)
     if not high > low:
@@ -91,7 +90,7 @@ def build(
     import xarray as xr
 
     what = _single(what)
-    axes = {"V": increasing("V", V, low=0.0, strict=True), "delta": increasing("delta", delta)}
+    axes = {"V": increasing("V", V, unit=what.scale, low=0.0, strict=True), "delta": increasing("delta", delta)}
     if alpha is not None:
         if isinstance(what, Cylinder) or what.material is not None:
             raise ParameterError("alpha", "given", "left out: the material has its own")
