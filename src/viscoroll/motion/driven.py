@@ -142,7 +142,8 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
     force = _added(curve("force", drive.force, end, rtol), tangent)
     torque = curve("torque", drive.torque, end, rtol)
     brake = curve("brake", drive.brake, end, rtol, low=0.0)
-    rate, prescribed, error = curve("rate", None, end, rtol), NEITHER, 0.0
+    rate = speed = curve("rate", None, end, rtol)
+    prescribed, error = NEITHER, 0.0
     starts = {"omega": omega0, "V": V0}
     for code, name in ((OMEGA, "omega"), (SPEED, "V")):
         given = getattr(drive, name)
@@ -154,7 +155,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
             starts[name] = _prescribed_start(f"{name}0", starts[name], speed, own)
         if starts[name] is None:
             raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")
-    pieces = pieces_of((force, torque, rate, brake), end)
+    pieces = pieces_of((force, torque, rate, brake, speed), end)
     error = max(error, force.error, torque.error, brake.error)
     return Prepared(pieces, _gains(drive), prescribed, *start_speeds(starts["V"], starts["omega"]), error)
 

@@ -172,7 +172,8 @@ def next_piece(moving, state, frame, clock, case):
     clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
     if moving:
         state, frame = at_new_piece(state, frame, clock, case)
-        moving = not frame.slips or state.V != 0.0 or state.second != 0.0
+        # in partial slip omega is 0 where V is
+        moving = state.V != 0.0 or (frame.slips and state.second != 0.0)
     return moving, state, frame, clock
 
 

@@ -51,6 +51,7 @@ from .nodes import (
     time_at,
 )
 from .rates import rates_at, strong
+from .records import SPEED as PRESCRIBED_V
 
 _MOST_ITERATIONS = 12
 #: error per panel is kept at this share of rtol; Newton's iteration stops at this share of that; the least that it can
@@ -86,7 +87,9 @@ def scales(panel, frame, case):
         fastest, own = max(fastest, nodes[SPEED + i]), max(own, abs(nodes[V + i]))
     fastest = max(fastest, own)
     if frame.slips:
-        return own if panel.alone else fastest, fastest
+        # a prescribed V does not know omega, and M(V) asks for V beside itself
+        by_itself = panel.alone or (case.drive.prescribed == PRESCRIBED_V and own > 0.0)
+        return own if by_itself else fastest, fastest
     # an error of d is one of omega, and of V where p is given
     for i in range(1, N + 1):
         moved = max(moved, abs(nodes[P_SECOND + i] * nodes[PER_P + i]))
