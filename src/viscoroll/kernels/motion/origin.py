@@ -25,7 +25,7 @@ _HALVINGS, _ROUNDING = 200, 1e-16
 _SOON = 1e-6
 #: over what holds the cylinder, what rounding leaves of what it takes more to move it
 _BARELY = 4e-15
-#: parts of a piece in each of which what holds the cylinder is looked at, and of d in which a way off is
+#: parts of a piece in each of which what holds the cylinder is looked at
 _PARTS = 64
 #: force and torque that move nothing: speeds under them would leave the range in which panels set out
 _FAINT = 1e-75
@@ -60,6 +60,35 @@ def _burdened(load, scene):
     return Load(force, torque, V_rate, omega_rate, brake, per_V * light, per_omega * share, gains)
 
 
+@kernel(inline=True)
+def _crest(load, scene):
+    """Where :func:`_pull` has its local maximum over d < 0, of which it is a polynomial of degree 3.
+
+    With Q = mu (2 d + d^2) and k = mu/(2 kappa) the terms with d are
+
+        -[2 mu (per_omega + per_V)/k + C] d - mu [(per_omega + per_V)/k + 2 per_V] d^2 - mu per_V d^3
+
+    where C = per_V f + V_rate, so that of both places with slope 0 the right one is the maximum.
+
+    Parameters
+    ----------
+    load : Load
+        At V = 0, without brake and added mass.
+    scene : Scene
+        Of the motion.
+
+    Returns
+    -------
+    float
+        d there; -inf where the polynomial falls for all d.
+    """
+    moved = (load.per_omega + load.per_V) * 2.0 * scene.kappa
+    first, second = -2.0 * moved - load.per_V * load.force - load.V_rate, -moved - 2.0 * scene.mu * load.per_V
+    # the larger root of first + 2 second d - 3 mu per_V d^2, with second < 0
+    under = second * second + 3.0 * scene.mu * load.per_V * first
+    return first / (np.sqrt(under) - second) if under > 0.0 else -np.inf
+
+
 @kernel
 def departing(load, spin, scene):
     """(Whether the cylinder may roll off sticking with V > 0, d then), against a brake where ``spin`` is 1."""
@@ -70,10 +99,7 @@ def departing(load, spin, scene):
     if turning > -1.0 and _pull(turning, load, scene)[0] > 0.0:
         low = turning
     elif turning > -1.0:  # before it, it may rise first
-        for n in range(1, _PARTS + 1):
-            low, high = turning - (1.0 + turning) * n / _PARTS, turning - (1.0 + turning) * (n - 1) / _PARTS
-            if _pull(low, load, scene)[0] > 0.0:
-                break
+        low, high = min(max(low, _crest(load, scene)), turning), turning
     if _pull(low, load, scene)[0] <= 0.0 or _pull(high, load, scene)[0] >= 0.0:
         return False, 0.0
     d, V_rate = 0.5 * (low + high), 0.0

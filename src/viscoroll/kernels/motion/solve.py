@@ -25,6 +25,7 @@ from .nodes import (
     CHANGE,
     COUPLED,
     DIAGONAL,
+    DRIVE,
     FED,
     OF_SECOND,
     OF_V,
@@ -51,7 +52,6 @@ from .nodes import (
     time_at,
 )
 from .rates import rates_at, strong
-from .records import SPEED as PRESCRIBED_V
 
 _MOST_ITERATIONS = 12
 #: error per panel is kept at this share of rtol; Newton's iteration stops at this share of that; the least that it can
@@ -60,6 +60,8 @@ SHARE, _NEWTON, _LEAST = 0.25, 0.016, 1e-14
 #: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, at most,
 #: and over its change
 _ANEW, _SLOWED, _FIRST_GAIN, _SQUARED = 1e-2, 1e-3, 0.1, 10.0
+#: unit of rounding
+_ROUNDING = 2.2e-16
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
 #: a mismatch that is no small share of how the rates vary does not overstate it: over that share
@@ -80,6 +82,21 @@ def _creep_weight(share):
 
 
 @kernel(inline=True)
+def _least_speed(panel, case):
+    """The V of full slip that rounding of V' leaves a share of the tolerance of Newton's iteration of; 0 where nothing
+    drives.
+
+    V' = Q - M + f may be a small difference of Q and f.  Its rounding moves V for the length of the panel, or for the
+    time in which V relaxes where that is shorter.
+    """
+    nodes = case.nodes
+    if panel.alone:
+        return 0.0
+    moved = _ROUNDING * (case.scene.mu + abs(nodes[DRIVE + N])) * 0.5 * panel.length / (1.0 + abs(nodes[DIAGONAL + N]))
+    return moved / max(_NEWTON * SHARE * case.limits.rtol, _LEAST)
+
+
+@kernel(inline=True)
 def scales(panel, frame, case):
     """(Of V, of the second unknown): what errors are measured by; speeds by the largest of the panel."""
     nodes, fastest, own, moved = case.nodes, 0.0, 0.0, 0.0
@@ -87,9 +104,9 @@ def scales(panel, frame, case):
         fastest, own = max(fastest, nodes[SPEED + i]), max(own, abs(nodes[V + i]))
     fastest = max(fastest, own)
     if frame.slips:
-        # a prescribed V does not know omega, and M(V) asks for V beside itself
-        by_itself = panel.alone or (case.drive.prescribed == PRESCRIBED_V and own > 0.0)
-        return own if by_itself else fastest, fastest
+        # where no gain feeds omega into V', V is measured beside itself: omega may be larger by any factor, and a V
+        # that is right beside omega alone may leave the speed at which it settles
+        return fastest if case.drive.gains.force_omega != 0.0 else max(own, _least_speed(panel, case)), fastest
     # an error of d is one of omega, and of V where p is given
     for i in range(1, N + 1):
         moved = max(moved, abs(nodes[P_SECOND + i] * nodes[PER_P + i]))
