@@ -261,7 +261,8 @@ def phase(fresh, state, frame, clock, case):
     alone, free = undriven(clock.piece, case.drive), unloaded(clock.piece, case.drive)
     lasting, noise = not free and constant(clock.piece, case.drive.pieces), 0.0
     if lasting:
-        noise = rounding(clock.piece, case.drive.pieces) + _ROUNDING * case.scene.mu
+        # of p', which in full slip holds Q = mu
+        noise = rounding(clock.piece, case.drive.pieces) + (_ROUNDING * case.scene.mu if frame.slips else 0.0)
     track = Panel(clock.tau, 0.0, clock.piece, False, alone)
     while clock.tau < end and clock.steps < limits.max_steps and not (free and creeps(state, frame, case)):
         frame = _begin(state, frame, clock, case)

@@ -62,6 +62,8 @@ SHARE, _NEWTON, _LEAST = 0.25, 0.016, 1e-14
 _ANEW, _SLOWED, _FIRST_GAIN, _SQUARED = 1e-2, 1e-3, 0.1, 10.0
 #: unit of rounding
 _ROUNDING = 2.2e-16
+#: what the rounding of Q makes of a mismatch of V', over mu: some tens of units, as its extrapolation enlarges it
+_RATE_NOISE = 30.0 * _ROUNDING
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
 #: a mismatch that is no small share of how the rates vary does not overstate it: over that share
@@ -247,7 +249,10 @@ def panel_error(panel, frame, case):
     nodes, half = case.nodes, 0.5 * panel.length
     of_V, of_second = scales(panel, frame, case)
     per = abs(nodes[PER_P + N])
-    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes) * per
+    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes)
+    if strong(load_there(0, frame, case), frame, case.scene):  # V' may be a small difference of Q and f
+        error = max(error - _RATE_NOISE * case.scene.mu * panel.length, 0.0)
+    error *= per
     varies = _variation(half, nodes) * per + case.limits.rtol * of_V
     error *= min(max(_UNRESOLVED * error / varies, 1.0), 1.0 / _OVERSTATED)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not

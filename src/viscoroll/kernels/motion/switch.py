@@ -12,6 +12,8 @@ from .records import EDGE, KINK, NEITHER, OMEGA, SPEED, STOP, TURN, Frame, State
 
 #: V at the end of a panel, over that at its start, below which it is 0 there
 _CLOSED = 1e-14
+#: omega over V in partial slip above which V follows a prescribed omega at the same d
+_FOLLOWED = 0.5
 #: what an event may be off by, over rtol
 _OFF = 10.0
 
@@ -110,15 +112,18 @@ def as_prescribed(state, frame, clock, case):
     Returns
     -------
     (State, Frame)
-        With the prescribed speed, the frame turned where that has V < 0.  In partial slip a prescribed omega is left
-        as integrated, and V is at least 0: omega and V are there of one sign.
+        With the prescribed speed, the frame turned where that has V < 0 in full slip; in partial slip V is at least 0.
+        There V follows a prescribed omega with d kept, except where friction is so strong that omega is far below V.
     """
     drive, (slips, direction, sigma, spin, locked) = case.drive, frame
     if drive.prescribed == NEITHER or clock.piece == 0:
         return state, frame
     speed = direction * prescribed_speed(clock.tau, clock.piece, drive)
+    if drive.prescribed == OMEGA and slips:
+        return State(state.V, speed), frame
     if drive.prescribed == OMEGA:
-        return (State(state.V, speed) if slips else state), frame
+        omega = here(state, frame, clock, case)[1].omega
+        return (State(state.V * max(speed / omega, 0.0), state.second) if omega > _FOLLOWED * state.V else state), frame
     if slips and speed < 0.0:
         return State(-speed, -state.second), Frame(slips, -direction, -sigma, -spin, locked)
     return State(speed if slips else max(speed, 0.0), state.second), frame
