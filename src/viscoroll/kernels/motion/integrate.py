@@ -1,4 +1,4 @@
-"""A driven motion from start to end: one regime after the other, one piece of the drive after the other.
+"""A motion, free or driven, from start to end: one regime after the other, one piece of the drive after the other.
 
 A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or held by its brake.
 """

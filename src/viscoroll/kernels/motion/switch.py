@@ -1,4 +1,4 @@
-"""What follows where a regime of a driven motion ends, and where a piece of the drive begins."""
+"""What follows where a regime of a motion ends, and where a piece of the drive begins."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..compile.jit import kernel
 from .load import acting, brakes, load_at, prescribed_speed
 from .nodes import V, extremes
 from .rates import rates_of
-from .records import EDGE, KINK, NEITHER, OMEGA, SPEED, STOP, TURN, Frame, State
+from .records import EDGE, KINK, NEITHER, OMEGA, STOP, TURN, Frame, State
 
 #: V at the end of a panel, over that at its start, below which it is 0 there
 _CLOSED = 1e-14
