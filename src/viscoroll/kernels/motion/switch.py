@@ -68,13 +68,51 @@ def turned(state, frame):
 
 
 @kernel
+def as_prescribed(state, frame, clock, case):
+    """The prescribed speed set to what it is, where a piece of the drive begins or stick forms.
+
+    What the integration so far leaves of its error is small beside the speeds so far, but may be large beside the speed
+    that is prescribed from here on.  Where stick forms a prescribed omega follows from V.
+
+    Parameters
+    ----------
+    state, frame : State, Frame
+        As integrated, with V >= 0 in the frame.
+    clock : Clock
+        At that time.
+    case : Case
+        Of the motion.
+
+    Returns
+    -------
+    (State, Frame)
+        With the prescribed speed, the frame turned where that has V < 0 in full slip; in partial slip V is at least 0.
+        There V follows a prescribed omega with d kept, except where friction is so strong that omega is far below V.
+    """
+    drive, (slips, direction, sigma, spin, locked) = case.drive, frame
+    if drive.prescribed == NEITHER:
+        return state, frame
+    speed = direction * prescribed_speed(clock.tau, clock.piece, drive)
+    if drive.prescribed == OMEGA and slips:
+        return State(state.V, speed), frame
+    if drive.prescribed == OMEGA:
+        omega = here(state, frame, clock, case)[1].omega
+        return (State(state.V * max(speed / omega, 0.0), state.second) if omega > _FOLLOWED * state.V else state), frame
+    if slips and speed < 0.0:
+        return State(-speed, -state.second), Frame(slips, -direction, -sigma, -spin, locked)
+    return State(speed if slips else max(speed, 0.0), state.second), frame
+
+
+@kernel
 def switch(event, state, frame, clock, case):
     """(Whether the cylinder moves, state, frame) behind an event that changes the regime."""
     slips, direction, sigma, spin, locked = frame
     if event == EDGE and slips:
         if closed(state, frame, clock, case):
             return False, state, frame
-        return True, State(state.V, sigma), Frame(False, direction, sigma, spin, locked)
+        state, frame = State(state.V, sigma), Frame(False, direction, sigma, spin, locked)
+        state, frame = as_prescribed(state, frame, clock, case)
+        return state.V > 0.0, state, frame
     if event == EDGE:
         omega = here(state, frame, clock, case)[1].omega
         return True, State(state.V, omega), Frame(True, direction, sigma, spin, locked)
@@ -94,42 +132,6 @@ def switch(event, state, frame, clock, case):
 
 
 @kernel
-def as_prescribed(state, frame, clock, case):
-    """The prescribed speed set to what it is where a piece of the drive begins.
-
-    What the integration over the pieces before leaves of its error there is small beside the speeds of these, but may
-    be large beside the speed that is prescribed from here on.
-
-    Parameters
-    ----------
-    state, frame : State, Frame
-        As integrated, with V >= 0 in the frame.
-    clock : Clock
-        At the beginning of a piece.
-    case : Case
-        Of the motion.
-
-    Returns
-    -------
-    (State, Frame)
-        With the prescribed speed, the frame turned where that has V < 0 in full slip; in partial slip V is at least 0.
-        There V follows a prescribed omega with d kept, except where friction is so strong that omega is far below V.
-    """
-    drive, (slips, direction, sigma, spin, locked) = case.drive, frame
-    if drive.prescribed == NEITHER or clock.piece == 0:
-        return state, frame
-    speed = direction * prescribed_speed(clock.tau, clock.piece, drive)
-    if drive.prescribed == OMEGA and slips:
-        return State(state.V, speed), frame
-    if drive.prescribed == OMEGA:
-        omega = here(state, frame, clock, case)[1].omega
-        return (State(state.V * max(speed / omega, 0.0), state.second) if omega > _FOLLOWED * state.V else state), frame
-    if slips and speed < 0.0:
-        return State(-speed, -state.second), Frame(slips, -direction, -sigma, -spin, locked)
-    return State(speed if slips else max(speed, 0.0), state.second), frame
-
-
-@kernel
 def setting_out(state, frame, clock, case):
     """(State, frame) of full slip where a piece of the drive begins: seen from where V goes if it is 0."""
     falls = state.V == 0.0 and here(state, frame, clock, case)[1].V_rate < 0.0
@@ -139,7 +141,8 @@ def setting_out(state, frame, clock, case):
 @kernel
 def at_new_piece(state, frame, clock, case):
     """(State, frame) where a piece of the drive begins: brakes take hold or let go, V may turn."""
-    state, frame = as_prescribed(state, frame, clock, case)
+    if clock.piece > 0:  # the start is as given
+        state, frame = as_prescribed(state, frame, clock, case)
     if frame.slips:
         state, frame = setting_out(state, frame, clock, case)
     slips, direction, sigma, spin, locked = frame
