@@ -72,7 +72,7 @@ def as_prescribed(state, frame, clock, case):
     """The prescribed speed set to what it is, where a piece of the drive begins or stick forms.
 
     What the integration so far leaves of its error is small beside the speeds so far, but may be large beside the speed
-    that is prescribed from here on.  Where stick forms a prescribed omega follows from V.
+    that is prescribed from here on.
 
     Parameters
     ----------
@@ -110,8 +110,11 @@ def switch(event, state, frame, clock, case):
     if event == EDGE and slips:
         if closed(state, frame, clock, case):
             return False, state, frame
+        rates = here(state, frame, clock, case)[1]
         state, frame = State(state.V, sigma), Frame(False, direction, sigma, spin, locked)
-        state, frame = as_prescribed(state, frame, clock, case)
+        if case.drive.prescribed == OMEGA and abs(rates.V_rate) >= abs(rates.rate):
+            # the time of the event is known to the tolerance, and by it the slower speed better than the faster one
+            state, frame = as_prescribed(state, frame, clock, case)
         return state.V > 0.0, state, frame
     if event == EDGE:
         omega = here(state, frame, clock, case)[1].omega
