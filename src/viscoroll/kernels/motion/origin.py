@@ -42,6 +42,36 @@ def _pull(d, load, scene):
     return (omega_rate - V_rate) * per - d * V_rate, slope, V_rate
 
 
+@kernel(inline=True)
+def _turning(scene):
+    """d at which omega stays 0 as V grows from 0; in partial slip, above -1, only where mu > 2 kappa."""
+    return -2.0 * scene.kappa / scene.mu
+
+
+@kernel
+def _spin_off(load, scene):
+    """Which way omega goes against a brake as V grows from 0 in partial slip.
+
+    Parameters
+    ----------
+    load : Load
+        At V = 0, with a brake.
+    scene : Scene
+        Of the motion.
+
+    Returns
+    -------
+    (float, bool)
+        The sign of omega, and whether the brake holds it at 0 instead: so it does where mu > 2 kappa and the traction
+        at omega = 0 leaves less torque than the brake can take.
+    """
+    turning, load = _turning(scene), _burdened(load, scene)
+    if turning <= -1.0:
+        return 1.0, False
+    free = load.torque - scene.mu * turning * (2.0 + turning)
+    return np.sign(free), abs(free) <= load.brake
+
+
 @kernel
 def _under_brake(load, spin):
     """The load with the torque of the brake at this sign of omega."""
@@ -93,9 +123,9 @@ def _crest(load, scene):
 def departing(load, spin, scene):
     """(Whether the cylinder may roll off sticking with V > 0, d then), against a brake where ``spin`` is 1."""
     load, low, high = _burdened(_under_brake(load, spin), scene), -1.0, 1.0
-    turning = (
-        -2.0 * scene.kappa / scene.mu
-    )  # d at which omega stays 0: from there on the left less the right side falls
+    turning = _turning(scene)  # from there on the left less the right side falls
+    if turning > -1.0 and load.per_omega == 0.0 and load.omega_rate == 0.0:
+        return _pull(turning, load, scene)[2] > 0.0, turning
     if turning > -1.0 and _pull(turning, load, scene)[0] > 0.0:
         low = turning
     elif turning > -1.0:  # before it, it may rise first
@@ -177,14 +207,18 @@ def depart(tau, piece, case):
     kind, way, beginning = STAYS, still, 0.0
     for direction in (1.0, -1.0):
         frame = Frame(False, direction, 1.0, 0.0, False)
-        spin = 1.0 if braked else 0.0
-        sticks, d = departing(load_at(when, piece, frame, case), spin, scene)
+        load = load_at(when, piece, frame, case)
+        spin, locked = _spin_off(load, scene) if braked else (0.0, False)
+        if locked:
+            frame, spin = Frame(False, direction, -1.0, 0.0, True), 0.0
+            load = load_at(when, piece, frame, case)
+        sticks, d = departing(load, spin, scene)
         if sticks and kind == STICKS:
             return EITHER, still, 0.0
         if sticks:
             # d is that of now: the limit that the motion leaves from
             kind, beginning = STICKS, departing(load_at(tau, piece, frame, case), spin, scene)[1]
-            way = Frame(False, direction, 1.0 if d >= 0.0 else -1.0, spin, False)
+            way = Frame(False, direction, 1.0 if d >= 0.0 else -1.0, spin, locked)
             if scene.mu <= 2.0 * scene.kappa:
                 return kind, way, beginning
     slides = _slide_off(when, piece, braked, 0.0 if kind == STAYS else 0.5 * scene.mu / scene.kappa, case)
