@@ -20,6 +20,7 @@ from .nodes import (
     SLOPE,
     SPEED,
     V_RATE,
+    P,
     Panel,
     V,
     cut,
@@ -41,6 +42,8 @@ _FIRST, _RELAXED = 0.4, 3.0
 _BEND = 12.0
 #: unit of rounding
 _ROUNDING = 2.2e-16
+#: distance from an equilibrium of V over that up to which a motion has come to it, below which this is looked at
+_NEARLY_STEADY = 2.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
 #: error over the tolerance up to which a panel is taken where a shorter one could not be told from none: the error of a
@@ -226,7 +229,6 @@ def _begin(state, frame, clock, case):
     # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
     nodes[V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.p_V
     nodes[SLOPE], nodes[DIAGONAL] = rates.rate_second / rates.weight, rates.p_rate_V / rates.p_V
-    nodes[PER_P] = 1.0 / rates.p_V
     if not frame.slips and state.second == 0.0 and frame.sigma * rates.rate < 0.0:
         # both branches say the same here
         return Frame(False, frame.direction, -frame.sigma, frame.spin, frame.locked)
@@ -248,8 +250,8 @@ def _slows(noise, case):
     """Whether V at node 0 may be at its equilibrium, by the slope of p' over V alone; ``noise`` as in
     :func:`is_steady`."""
     nodes = case.nodes
-    off, relaxes = (abs(nodes[P_RATE]) - noise) * nodes[PER_P], -nodes[DIAGONAL] * nodes[V]
-    return relaxes > 0.0 and off <= nearness(case.limits.rtol) * relaxes
+    # p is about its slope over V times V
+    return abs(nodes[P_RATE]) - noise <= -_NEARLY_STEADY * nearness(case.limits.rtol) * nodes[DIAGONAL] * abs(nodes[P])
 
 
 @kernel

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..compile.held import loaded
 from ..compile.jit import kernel
+from ..compile.rarely import rarely
 from .collocation import SLOPES, TO_START, WIDE, N, invert, product, rise_terms, weighted_slopes
 from .guess import guess
 from .load import rounding
@@ -250,7 +251,8 @@ def panel_error(panel, frame, case):
     of_V, of_second = scales(panel, frame, case)
     per = abs(nodes[PER_P + N])
     error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes)
-    if strong(load_there(0, frame, case), frame, case.scene):  # V' may be a small difference of Q and f
+    # V' may be a small difference of Q and f; only where mu > kappa friction may be so strong
+    if rarely(case.scene.mu > case.scene.kappa) and strong(load_there(0, frame, case), frame, case.scene):
         error = max(error - _RATE_NOISE * case.scene.mu * panel.length, 0.0)
     error *= per
     varies = _variation(half, nodes) * per + case.limits.rtol * of_V
