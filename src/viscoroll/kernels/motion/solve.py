@@ -17,8 +17,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.by_reference import by_value
+from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
-from ..compile.rarely import rarely
 from .collocation import SLOPES, TO_START, WIDE, N, invert, product, rise_terms, weighted_slopes
 from .guess import guess
 from .load import rounding
@@ -252,7 +252,7 @@ def panel_error(panel, frame, case):
     per = abs(nodes[PER_P + N])
     error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes)
     # V' may be a small difference of Q and f; only where mu > kappa friction may be so strong
-    if rarely(case.scene.mu > case.scene.kappa) and strong(load_there(0, frame, case), frame, case.scene):
+    if unlikely(case.scene.mu > case.scene.kappa) and strong(load_there(0, frame, case), frame, case.scene):
         error = max(error - _RATE_NOISE * case.scene.mu * panel.length, 0.0)
     error *= per
     varies = _variation(half, nodes) * per + case.limits.rtol * of_V
