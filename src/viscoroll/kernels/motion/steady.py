@@ -32,19 +32,20 @@ def nearness(rtol):
 
 
 @kernel
-def _is_steady_slip(state, rates, frame, noise, near):
-    """Whether V has come to a stable equilibrium in full slip, and omega does not come nearer to V, nor to 0 under a
-    brake; both speeds without gains on omega."""
+def _steady_slip(state, rates, frame, noise, near):
+    """:func:`equilibrium` in full slip: of V, where omega comes no nearer to V, nor to 0 under a brake, and no gain
+    feeds omega back."""
     if rates.p_rate_second != 0.0 or rates.rate_second != 0.0 or not rates.p_rate_V < 0.0:
-        return False
+        return False, state
     if frame.sigma * rates.rate < 0.0 or frame.spin * rates.rate < 0.0:
-        return False
-    return max(abs(rates.p_rate) - noise, 0.0) <= near * abs(rates.p_rate_V) * state.V
+        return False, state
+    V_off = rates.p_rate / rates.p_rate_V
+    return abs(V_off) <= near * state.V - noise / rates.p_rate_V, State(state.V - V_off, state.second)
 
 
 @kernel
-def is_steady(state, frame, noise, clock, case):
-    """Whether a motion has come to a stable equilibrium of the drive as it is now.
+def equilibrium(state, frame, noise, clock, case):
+    """The stable equilibrium of the drive as it is now, if a motion has come to it.
 
     Parameters
     ----------
@@ -55,26 +56,28 @@ def is_steady(state, frame, noise, clock, case):
 
     Returns
     -------
-    bool
-        True where Newton's step to the equilibrium is below :func:`nearness`, of V beside itself and of d, and the
-        equilibrium is stable.
+    (bool, State)
+        Whether Newton's step to an equilibrium is below :func:`nearness`, of V beside itself and of d, or rounding, and
+        the equilibrium is stable; the state behind that step.
     """
     load, V, near = load_at(clock.tau, clock.piece, frame, case), state.V, nearness(case.limits.rtol)
     rates = rates_of(state, load, frame, case.scene)
     if frame.slips:
-        return _is_steady_slip(state, rates, frame, noise, near)
-    gains = load.gains
+        return _steady_slip(state, rates, frame, noise, near)
+    gains, p_d = load.gains, rates.p_second
     # gains on omega feed p' with d, which Newton's matrix of a panel leaves out
-    p_rate_d = rates.p_rate_second + load.per_omega * (gains.force_omega + gains.torque_omega) * rates.p_second
-    p_rate = rates.p_rate if abs(rates.p_rate) > noise else 0.0
+    p_rate_d = rates.p_rate_second + load.per_omega * (gains.force_omega + gains.torque_omega) * p_d
     d_rate, d_V, d_d = rates.rate / V, rates.rate_V / V, rates.rate_second / V
-    V_rate = (p_rate - rates.p_second * d_rate) / rates.p_V
-    V_V, V_d = (rates.p_rate_V - rates.p_second * d_V) / rates.p_V, (p_rate_d - rates.p_second * d_d) / rates.p_V
+    V_rate = (rates.p_rate - p_d * d_rate) / rates.p_V
+    V_V, V_d = (rates.p_rate_V - p_d * d_V) / rates.p_V, (p_rate_d - p_d * d_d) / rates.p_V
     determinant = V_V * d_d - V_d * d_V
     if not (V_V + d_d < 0.0 < determinant):
-        return False
+        return False, state
     V_off, d_off = (V_rate * d_d - d_rate * V_d) / determinant, (d_rate * V_V - V_rate * d_V) / determinant
-    return abs(V_off) <= near * V and abs(d_off) <= near
+    rounding = abs(noise / (rates.p_V * determinant))
+    steady = abs(V_off) <= near * V + rounding * abs(d_d) and abs(d_off) <= near + rounding * abs(d_V)
+    # force and torque that cancel leave V = 0 but for rounding
+    return steady, State(max(V - V_off, 0.0), state.second - d_off)
 
 
 @kernel
