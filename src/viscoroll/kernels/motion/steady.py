@@ -58,12 +58,14 @@ def equilibrium(state, frame, noise, clock, case):
     -------
     (bool, State)
         Whether Newton's step to an equilibrium is below :func:`nearness`, of V beside itself and of d, or rounding, and
-        the equilibrium is stable; the state behind that step.
+        the equilibrium is stable; the state behind that step.  False in partial slip with a speed prescribed.
     """
     load, V, near = load_at(clock.tau, clock.piece, frame, case), state.V, nearness(case.limits.rtol)
     rates = rates_of(state, load, frame, case.scene)
     if frame.slips:
         return _steady_slip(state, rates, frame, noise, near)
+    if load.per_V == 0.0 or load.per_omega == 0.0:  # one speed is given, and p' says nothing of the other
+        return False, state
     gains, p_d = load.gains, rates.p_second
     # gains on omega feed p' with d, which Newton's matrix of a panel leaves out
     p_rate_d = rates.p_rate_second + load.per_omega * (gains.force_omega + gains.torque_omega) * p_d
