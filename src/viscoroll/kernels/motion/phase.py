@@ -34,7 +34,7 @@ from .rates import last_pulls, rates_of
 from .records import EDGE, NO_EVENT, SLOW, STUCK, TURN, Clock, Frame, State
 from .records import SPEED as VELOCITY
 from .solve import panel_error, solve
-from .steady import equilibrium, nearness, stay_steady
+from .steady import nearness, stay_steady
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
 _FIRST, _RELAXED = 0.4, 3.0
@@ -248,7 +248,7 @@ def creeps(state, frame, case):
 @kernel(inline=True)
 def _slows(noise, case):
     """Whether V at node 0 may be at its equilibrium, by the slope of p' over V alone; ``noise`` as in
-    :func:`equilibrium`."""
+    :func:`stay_steady`."""
     nodes = case.nodes
     # p is about its slope over V times V
     return abs(nodes[P_RATE]) - noise <= -_NEARLY_STEADY * nearness(case.limits.rtol) * nodes[DIAGONAL] * abs(nodes[P])
@@ -269,9 +269,8 @@ def phase(fresh, state, frame, clock, case):
     while clock.tau < end and clock.steps < limits.max_steps and not (free and creeps(state, frame, case)):
         frame = _begin(state, frame, clock, case)
         if lasting and _slows(noise, case):
-            steady, there = equilibrium(state, frame, noise, clock, case)
+            steady, state, clock = stay_steady(end, noise, state, frame, clock, case)
             if steady:
-                state, clock = stay_steady(end, there, frame, clock, case)
                 return NO_EVENT, state, frame, clock
         if length == 0.0:
             length = max(_first_length(fresh, clock, frame, case), _INSTANT * clock.tau)

@@ -83,21 +83,28 @@ def equilibrium(state, frame, noise, clock, case):
 
 
 @kernel
-def stay_steady(end, state, frame, clock, case):
-    """Outputs up to the end of a piece of the drive of a motion whose V stays as it is; omega is linear in full slip.
+def stay_steady(end, noise, state, frame, clock, case):
+    """Outputs up to the end of a piece of the drive if a motion has come to its equilibrium; omega is linear in full
+    slip.
 
     Parameters
     ----------
     end : float
         tau at the end of the piece.
+    noise : float
+        As in :func:`equilibrium`.
     state, frame, clock, case : State, Frame, Clock, Case
-        The motion at its equilibrium.
+        The motion, with V > 0.
 
     Returns
     -------
-    (State, Clock)
-        At the end of the piece, one step later.
+    (bool, State, Clock)
+        Whether it has; state and clock at the end of the piece, one step later, or as they were.
     """
+    steady, there = equilibrium(state, frame, noise, clock, case)
+    if not steady:
+        return False, state, clock
+    state = there
     rates = rates_of(state, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
     rise = rates.rate * (end - clock.tau) if frame.slips else 0.0
     nodes, panel = case.nodes, Panel(clock.tau, end - clock.tau, clock.piece, True, False)
@@ -107,4 +114,4 @@ def stay_steady(end, state, frame, clock, case):
     nodes[OF_SECOND] = 0.5 * rise  # of v = 0 ... 2
     put_drive(panel, case)
     clock = Clock(clock.tau, clock.at, clock.piece, clock.steps + 1, clock.ends, 0.0)
-    return State(state.V, state.second + rise), pass_panel(end, 2.0, panel, frame, clock, case)
+    return True, State(state.V, state.second + rise), pass_panel(end, 2.0, panel, frame, clock, case)
