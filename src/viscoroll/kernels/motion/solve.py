@@ -84,17 +84,14 @@ def _creep_weight(share):
     return max(_D_SHARE, share * share) / (abs(share) + _D_SHARE)
 
 
-@kernel(inline=True)
+@kernel
 def _least_speed(panel, case):
-    """The V of full slip that rounding of V' leaves a share of the tolerance of Newton's iteration of; 0 where nothing
-    drives.
+    """The V of full slip that rounding of V' leaves a share of the tolerance of Newton's iteration of.
 
     V' = Q - M + f may be a small difference of Q and f.  Its rounding moves V for the length of the panel, or for the
     time in which V relaxes where that is shorter.
     """
     nodes = case.nodes
-    if panel.alone:
-        return 0.0
     moved = _ROUNDING * (case.scene.mu + abs(nodes[DRIVE + N])) * 0.5 * panel.length / (1.0 + abs(nodes[DIAGONAL + N]))
     return moved / max(_NEWTON * SHARE * case.limits.rtol, _LEAST)
 
@@ -109,6 +106,8 @@ def scales(panel, frame, case):
     if frame.slips:
         # where no gain feeds omega into V', V is measured beside itself: omega may be larger by any factor, and a V
         # that is right beside omega alone may leave the speed at which it settles
+        if panel.alone:
+            return own, fastest
         return fastest if case.drive.gains.force_omega != 0.0 else max(own, _least_speed(panel, case)), fastest
     # an error of d is one of omega, and of V where p is given
     for i in range(1, N + 1):
@@ -244,6 +243,13 @@ def _least(panel, case):
     return least / largest if largest > 0.0 else 1.0
 
 
+@kernel
+def _strong_noise(frame, case):
+    """What rounding makes of a mismatch of V' where friction is strong, per length of the panel: V' may be a small
+    difference of Q and f.  0 elsewhere, so wherever mu <= kappa."""
+    return _RATE_NOISE * case.scene.mu if strong(load_there(0, frame, case), frame, case.scene) else 0.0
+
+
 @kernel(inline=True)
 def panel_error(panel, frame, case):
     """Error of the interpolants over their tolerance; of d only what its relaxation leaves of it counts."""
@@ -251,9 +257,8 @@ def panel_error(panel, frame, case):
     of_V, of_second = scales(panel, frame, case)
     per = abs(nodes[PER_P + N])
     error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes)
-    # V' may be a small difference of Q and f; only where mu > kappa friction may be so strong
-    if unlikely(case.scene.mu > case.scene.kappa) and strong(load_there(0, frame, case), frame, case.scene):
-        error = max(error - _RATE_NOISE * case.scene.mu * panel.length, 0.0)
+    if unlikely(case.scene.mu > case.scene.kappa):
+        error = max(error - _strong_noise(frame, case) * panel.length, 0.0)
     error *= per
     varies = _variation(half, nodes) * per + case.limits.rtol * of_V
     error *= min(max(_UNRESOLVED * error / varies, 1.0), 1.0 / _OVERSTATED)
