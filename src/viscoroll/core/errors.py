@@ -153,8 +153,10 @@ class MotionStatus(IntEnum):
 _MESSAGES = (
     "reached the last output time",
     "|V| and R |omega| fell below the rest threshold",
-    "the step limit was reached first: loosen rtol, raise max_steps or shorten the motion",
-    "the step size fell to rounding level: rtol is too tight for this start",
+    "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed grows without bound,"
+    " loosen rtol",
+    "the step size fell to rounding level: the motion changes faster than time can be told there, by a gain, drag,"
+    " speed or friction of extreme size, or for a tight rtol",
     "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
     "too slow for the added mass, which came to 1 + j or to half of that below 0",
     "caught in the imprint of its rest, which takes seven tenths of its energy",

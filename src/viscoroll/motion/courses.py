@@ -68,7 +68,7 @@ class Courses(NamedTuple):
         """Number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""
         if self.motions == 1:
             return most
-        columns = 2 + 4 * (TERMS if any(isinstance(one, Curve) for one in self.each.values()) else 2)
+        columns = 2 + 5 * (TERMS if any(isinstance(one, Curve) for one in self.each.values()) else 2)
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def starts(self) -> tuple[Floats, Floats]:
@@ -92,8 +92,10 @@ class Courses(NamedTuple):
     def pieces(self, end: float) -> Floats:
         """All of them over common pieces up to ``end``, (1 or m, k, columns), as the kernel takes them."""
         force = _added(curve(self.force), self.tangent)
-        rate = curve(np.zeros(())) if self.speed is None else slope_of(SPEEDS[self.prescribed], curve(self.speed))
-        return pieces_of((force, curve(self.torque), rate, curve(self.brake)), end)
+        speed = rate = curve(np.zeros(()) if self.speed is None else self.speed)
+        if self.speed is not None:
+            rate = slope_of(SPEEDS[self.prescribed], speed)
+        return pieces_of((force, curve(self.torque), rate, curve(self.brake), speed), end)
 
 
 def _added(one: Curve, more: Any) -> Curve:

@@ -18,6 +18,8 @@ from .fitted import fitted
 
 #: of the values of a piece, its first one where that is rounding
 _ROUNDING = 1e-14
+#: duration of a piece that counts as none: the scale of its time, 2 over it and over gamma, is to be finite
+_INSTANT = 1e-280
 #: the same of the slope of a piece
 _ROUNDING_OF_SLOPE = 1e-12
 
@@ -174,13 +176,13 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
     apart = max(len(each.starts) for each in curves)
     own = [np.broadcast_to(each.starts, (apart, each.starts.shape[1])) for each in curves]
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
-    starts = starts[:, (_ends(starts) > starts).any(axis=0)]
+    starts = starts[:, (_ends(starts) > starts + _INSTANT).any(axis=0)]
     kept = max(int((starts < end).any(axis=0).sum()), 1)
     starts, ends = starts[:, :kept], _ends(starts)[:, :kept]
     count, terms = max(len(each.terms) for each in curves), max(each.terms.shape[-1] for each in curves)
     rows, lengths = np.zeros((count, starts.shape[1], FIRST + len(curves) * terms)), ends - starts
     rows[..., START] = starts
-    rows[..., SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > 0.0)
+    rows[..., SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT)
     for n, (each, first) in enumerate(zip(curves, own, strict=True)):
         which = _piece_at(each.starts, starts)
         begin, last = (np.take_along_axis(np.broadcast_to(of, first.shape), which, 1) for of in (first, each.ends))

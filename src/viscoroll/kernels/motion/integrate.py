@@ -1,4 +1,4 @@
-"""A driven motion from start to end: one regime after the other, one piece of the drive after the other.
+"""A motion, free or driven, from start to end: one regime after the other, one piece of the drive after the other.
 
 A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or held by its brake.
 """
@@ -172,7 +172,8 @@ def next_piece(moving, state, frame, clock, case):
     clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
     if moving:
         state, frame = at_new_piece(state, frame, clock, case)
-        moving = not frame.slips or state.V != 0.0 or state.second != 0.0
+        # in partial slip omega is 0 where V is
+        moving = state.V != 0.0 or (frame.slips and state.second != 0.0)
     return moving, state, frame, clock
 
 

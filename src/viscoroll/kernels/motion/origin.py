@@ -25,7 +25,7 @@ _HALVINGS, _ROUNDING = 200, 1e-16
 _SOON = 1e-6
 #: over what holds the cylinder, what rounding leaves of what it takes more to move it
 _BARELY = 4e-15
-#: parts of a piece in each of which what holds the cylinder is looked at, and of d in which a way off is
+#: parts of a piece in each of which what holds the cylinder is looked at
 _PARTS = 64
 #: force and torque that move nothing: speeds under them would leave the range in which panels set out
 _FAINT = 1e-75
@@ -40,6 +40,36 @@ def _pull(d, load, scene):
     per = 2.0 * scene.kappa / scene.mu
     slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - d * load.per_V * Q_d
     return (omega_rate - V_rate) * per - d * V_rate, slope, V_rate
+
+
+@kernel(inline=True)
+def _turning(scene):
+    """d at which omega stays 0 as V grows from 0; in partial slip, above -1, only where mu > 2 kappa."""
+    return -2.0 * scene.kappa / scene.mu
+
+
+@kernel
+def _spin_off(load, scene):
+    """Which way omega goes against a brake as V grows from 0 in partial slip.
+
+    Parameters
+    ----------
+    load : Load
+        At V = 0, with a brake.
+    scene : Scene
+        Of the motion.
+
+    Returns
+    -------
+    (float, bool)
+        The sign of omega, and whether the brake holds it at 0 instead: so it does where mu > 2 kappa and the traction
+        at omega = 0 leaves less torque than the brake can take.
+    """
+    turning, load = _turning(scene), _burdened(load, scene)
+    if turning <= -1.0:
+        return 1.0, False
+    free = load.torque - scene.mu * turning * (2.0 + turning)
+    return np.sign(free), abs(free) <= load.brake
 
 
 @kernel
@@ -60,20 +90,46 @@ def _burdened(load, scene):
     return Load(force, torque, V_rate, omega_rate, brake, per_V * light, per_omega * share, gains)
 
 
+@kernel(inline=True)
+def _crest(load, scene):
+    """Where :func:`_pull` has its local maximum over d < 0, of which it is a polynomial of degree 3.
+
+    With Q = mu (2 d + d^2) and k = mu/(2 kappa) the terms with d are
+
+        -[2 mu (per_omega + per_V)/k + C] d - mu [(per_omega + per_V)/k + 2 per_V] d^2 - mu per_V d^3
+
+    where C = per_V f + V_rate, so that of both places with slope 0 the right one is the maximum.
+
+    Parameters
+    ----------
+    load : Load
+        At V = 0, without brake and added mass.
+    scene : Scene
+        Of the motion.
+
+    Returns
+    -------
+    float
+        d there; -inf where the polynomial falls for all d.
+    """
+    moved = (load.per_omega + load.per_V) * 2.0 * scene.kappa
+    first, second = -2.0 * moved - load.per_V * load.force - load.V_rate, -moved - 2.0 * scene.mu * load.per_V
+    # the larger root of first + 2 second d - 3 mu per_V d^2, with second < 0
+    under = second * second + 3.0 * scene.mu * load.per_V * first
+    return first / (np.sqrt(under) - second) if under > 0.0 else -np.inf
+
+
 @kernel
 def departing(load, spin, scene):
     """(Whether the cylinder may roll off sticking with V > 0, d then), against a brake where ``spin`` is 1."""
     load, low, high = _burdened(_under_brake(load, spin), scene), -1.0, 1.0
-    turning = (
-        -2.0 * scene.kappa / scene.mu
-    )  # d at which omega stays 0: from there on the left less the right side falls
+    turning = _turning(scene)  # from there on the left less the right side falls
+    if turning > -1.0 and load.per_omega == 0.0 and load.omega_rate == 0.0:
+        return _pull(turning, load, scene)[2] > 0.0, turning
     if turning > -1.0 and _pull(turning, load, scene)[0] > 0.0:
         low = turning
     elif turning > -1.0:  # before it, it may rise first
-        for n in range(1, _PARTS + 1):
-            low, high = turning - (1.0 + turning) * n / _PARTS, turning - (1.0 + turning) * (n - 1) / _PARTS
-            if _pull(low, load, scene)[0] > 0.0:
-                break
+        low, high = min(max(low, _crest(load, scene)), turning), turning
     if _pull(low, load, scene)[0] <= 0.0 or _pull(high, load, scene)[0] >= 0.0:
         return False, 0.0
     d, V_rate = 0.5 * (low + high), 0.0
@@ -151,14 +207,18 @@ def depart(tau, piece, case):
     kind, way, beginning = STAYS, still, 0.0
     for direction in (1.0, -1.0):
         frame = Frame(False, direction, 1.0, 0.0, False)
-        spin = 1.0 if braked else 0.0
-        sticks, d = departing(load_at(when, piece, frame, case), spin, scene)
+        load = load_at(when, piece, frame, case)
+        spin, locked = _spin_off(load, scene) if braked else (0.0, False)
+        if locked:
+            frame, spin = Frame(False, direction, -1.0, 0.0, True), 0.0
+            load = load_at(when, piece, frame, case)
+        sticks, d = departing(load, spin, scene)
         if sticks and kind == STICKS:
             return EITHER, still, 0.0
         if sticks:
             # d is that of now: the limit that the motion leaves from
             kind, beginning = STICKS, departing(load_at(tau, piece, frame, case), spin, scene)[1]
-            way = Frame(False, direction, 1.0 if d >= 0.0 else -1.0, spin, False)
+            way = Frame(False, direction, 1.0 if d >= 0.0 else -1.0, spin, locked)
             if scene.mu <= 2.0 * scene.kappa:
                 return kind, way, beginning
     slides = _slide_off(when, piece, braked, 0.0 if kind == STAYS else 0.5 * scene.mu / scene.kappa, case)

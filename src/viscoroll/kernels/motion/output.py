@@ -1,4 +1,4 @@
-"""Outputs of a driven motion."""
+"""Outputs of a motion: V, omega, delta and the regime; what acts; what adds up along the way."""
 
 from __future__ import annotations
 
