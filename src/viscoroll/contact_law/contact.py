@@ -20,9 +20,10 @@ from ..core.results import Values
 from ..core.scale import DIMENSIONS
 from ..core.typed import Numbers
 from ..materials.bodies import Bodies
+from ..materials.cover import Cover
 from ..materials.law_table import LawTable
 from ..materials.prony import Prony
-from .contact_fields import OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
+from .contact_fields import FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .contact_table import FASTEST, refuse_overflow, states_of
 from .parameters import Parameters, Rolls, framed
 
@@ -130,6 +131,8 @@ def contact(
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
+    if isinstance(scene.material, Cover):
+        names = _of_cover(names, fields is None)
     creep_name = "omega" if delta is None else "delta"
     given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta})
     speed, ends = checked_extent("V", given["V"])
@@ -179,6 +182,13 @@ def states(
     if "full_slip" in names:
         rows["full_slip"] = rows["full_slip"] != 0.0
     return {name: rows[name].reshape(shape) if shape else rows[name] for name in names}
+
+
+def _of_cover(names: tuple[str, ...], plain: bool) -> tuple[str, ...]:
+    """The fields of a cover: where none were named, delta_0 with them; raises ParameterError where N is."""
+    if UNSTEADY in names:
+        raise ParameterError("fields", repr(UNSTEADY), "left out for a cover: N of a layer of finite thickness is not known")
+    return (*names, FREE) if plain else names
 
 
 @lru_cache(maxsize=64)

@@ -36,7 +36,7 @@ SCENE = np.dtype(
 @kernel(inline=True, allocates=True)
 def _law_of(scene):
     rows, marks = doubles(scene.rows, scene.count * WIDTH), integers(scene.marks, scene.count * PARTS)
-    return Law(rows, marks, rows[:0], 0, 0, 0)
+    return Law(rows, marks, rows[:0], 0, 0, 0, None)
 
 
 @kernel(allocates=True)

@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .law import bodies, lengths, place, press, press_secants, share, speed, way_of
+from .cover import sliding_creep, slope_over_speed
+from .law import bodies, lengths, place, press, press_secants, share, shift, speed, way_of
 from .record import hold
 from .states import put, slip_and_creep, state_of
 
@@ -86,9 +87,10 @@ def traction_slopes(u, L, dL, D, law):
 
 
 @kernel(inline=True)
-def _creep(L, state):
-    """(A number with the sign of omega - V, creep ratio, D or, in full slip, infinity)."""
+def _creep(u, L, state, law):
+    """(A number with the sign of Q, the creep that makes Q, D or, in full slip, infinity)."""
     slip, delta = slip_and_creep(state)
+    slip, delta = sliding_creep(slip, delta, shift(u, law)[0], state, law.free)
     full = abs(delta) >= 0.5 * state.mu / state.kappa * L
     return slip, delta, np.inf if full else 2.0 * state.kappa / state.mu * abs(delta)
 
@@ -96,21 +98,22 @@ def _creep(L, state):
 @kernel(inline=True)
 def traction_of(u, L, state, law):
     """Q."""
-    slip, _, D = _creep(L, state)
+    slip, _, D = _creep(u, L, state, law)
     return np.copysign(state.mu * traction(u, L, D, law), slip)
 
 
 @kernel(inline=True)
 def slopes_of_Q(u, L, dL, state, law):
     """Slopes of Q: over V at fixed delta or omega, whichever is given; over delta and over omega."""
-    _, delta, D = _creep(L, state)
+    _, delta, D = _creep(u, L, state, law)
     if D == np.inf:
         return 0.0, 0.0, 0.0
     over_u, over_D = traction_slopes(u, L, dL, D, law)
     over_delta = 2.0 * state.kappa * over_D
     over_V, over_omega = np.sign(delta) * state.mu * state.kappa * over_u, over_delta / abs(state.V)
+    over_V = slope_over_speed(over_V, over_delta, shift(u, law)[1], law.free)
     if state.creep_is_omega:
-        over_V -= over_omega * (1.0 + delta)
+        over_V -= over_omega * (1.0 + slip_and_creep(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
 
 
@@ -160,7 +163,7 @@ def _at_creep(k, at, room, law, asked):
     """What depends on the creep too."""
     to, (state, n, u) = asked.to, _turn(k, asked)
     L = room[0, at]
-    _, delta, D = _creep(L, state)
+    _, _, D = _creep(u, L, state, law)
     if to.Q >= 0:
         put(to.Q, traction_of(u, L, state, law), n, asked)
     if to.beta >= 0:
@@ -168,7 +171,8 @@ def _at_creep(k, at, room, law, asked):
     if to.grip >= 0:
         put(to.grip, grip(u, L, D, law), n, asked)
     put(to.delta_star, 0.5 * state.mu / state.kappa * L, n, asked)
-    put(to.delta, delta, n, asked)
+    put(to.delta, slip_and_creep(state)[1], n, asked)
+    put(to.delta_0, 0.5 * shift(u, law)[0] / state.kappa, n, asked)
     put(to.full_slip, 1.0 if D == np.inf else 0.0, n, asked)
     if _of_Q(to):
         over_V, over_delta, over_omega = slopes_of_Q(u, L, room[2, at], state, law)

@@ -1,0 +1,76 @@
+"""What the law of a cover of finite thickness has beside its rows: the creep of free rolling, and its own fast limit.
+
+``free`` is None of half-spaces: then every function here returns what it was given or 0, and nothing of a cover is
+compiled.  Of a cover it holds numbers in front, then a row each of 2 kappa delta_0 over u = kappa |V| (:mod:`lanes`,
+the same function twice, for its second slope).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from . import lanes
+
+#: numbers in front: lam and 2 kappa delta_0 as u -> infinity, each with its factor of 1/u; epsilon u; M u^2/V times 2
+#: over L; eta/F as v -> infinity and its factor of 1/v
+_LAM, _LAM_SLOPE, _FREE, _FREE_SLOPE, _EPSILON, _MOMENT, _SHARE, _SHARE_SLOPE = range(8)
+#: how many these are, and how long a row is
+FRONT, ROW = 8, 2 * lanes.TERMS
+
+
+@kernel(inline=True)
+def fast_moment(shift, u, free):
+    """M/V over its scale behind the last row; ``shift``: that of a half-space."""
+    if free is None:
+        return shift
+    return free[_MOMENT] / u
+
+
+@kernel(inline=True)
+def fast_lengths(lam, shift, u, free):
+    """(lam, epsilon) behind the last row."""
+    if free is None:
+        return lam, shift
+    return free[_LAM] + free[_LAM_SLOPE] / u, free[_EPSILON] / u
+
+
+@kernel(inline=True)
+def fast_share(share, v, free):
+    """eta/F behind the last row."""
+    if free is None:
+        return share
+    return free[_SHARE] + free[_SHARE_SLOPE] / v
+
+
+@kernel(inline=True)
+def free_creep(at, u, free):
+    """(2 kappa delta_0 at u, its slope over u, and the slope of that)."""
+    if free is None:
+        return 0.0, 0.0, 0.0
+    if at.row < 0:
+        fall = free[_FREE_SLOPE] / u
+        return free[_FREE] + fall, -fall / u, 2.0 * fall / (u * u)
+    value, _, slope, _, bend, _ = lanes.pair(free, FRONT + ROW * at.row, at.t)
+    return value, slope * at.per, bend * at.per * at.per
+
+
+@kernel(inline=True)
+def sliding_creep(slip, delta, shift, state, free):
+    """(A number with the sign of the traction, the creep that makes it): delta less that of free rolling.
+
+    ``slip``: a number with the sign of omega - V; ``shift``: 2 kappa delta_0.
+    """
+    if free is None:
+        return slip, delta
+    own = delta - 0.5 * shift / state.kappa
+    return own * np.copysign(1.0, state.V), own
+
+
+@kernel(inline=True)
+def slope_over_speed(over_V, over_delta, rise, free):
+    """dQ/dV at fixed creep of which ``over_V`` is that at fixed creep less that of free rolling; ``rise``: the slope of
+    2 kappa delta_0 over u."""
+    if free is None:
+        return over_V
+    return over_V - 0.5 * over_delta * rise
