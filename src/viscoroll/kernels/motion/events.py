@@ -7,7 +7,7 @@ from ..compile.jit import kernel
 from .collocation import NODES, WIDE, N, rise_at, rise_terms
 from .load import BRAKE
 from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, extremes, may_end
-from .rates import creep_limit, edge
+from .rates import creep_at, edge
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
 #: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
@@ -129,7 +129,7 @@ def _itself(event, v, frame, case):
     if event == SLOW:
         return max(abs(speed), abs(second)) - case.limits.rest
     if event == STOP:
-        return frame.spin * (1.0 + creep_limit(speed, case.scene) * second)
+        return frame.spin * (1.0 + creep_at(speed, second, case.scene))
     return edge(speed, second, frame, loaded(case.scene))
 
 

@@ -5,6 +5,8 @@ Rolling off in the direction where V' > 0, d is that at which the right side of 
 
     2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
 
+(of a cover with L d + 2 kappa delta_0/mu in place of d on the right).
+
 Its left side less its right one falls with d where mu <= 2 kappa, and for |d| < 1 there is a root or slip is full from
 the start: one way on.  Where mu > 2 kappa it falls from d = -2 kappa/mu on, where omega' = 0, and a force that holds
 nearly what friction can leaves two ways.
@@ -14,7 +16,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.held import loaded
 from ..compile.jit import kernel
+from ..rows.cover import of_cover
+from ..rows.law import creep_at_rest
 from .load import brakes, constant, load_at, piece_end
 from .rates import inertia_at
 from .records import Frame, Load
@@ -37,9 +42,11 @@ def _pull(d, load, scene):
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.per_V * (Q + load.force) + load.V_rate
     omega_rate = load.per_omega * (load.torque - Q) + load.omega_rate
-    per = 2.0 * scene.kappa / scene.mu
-    slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - d * load.per_V * Q_d
-    return (omega_rate - V_rate) * per - d * V_rate, slope, V_rate
+    L, free = creep_at_rest(scene.kappa, loaded(scene.law))
+    per = 2.0 * scene.kappa / scene.mu / L
+    tilt = d + free * per if of_cover(loaded(scene.law).free) else d
+    slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - tilt * load.per_V * Q_d
+    return (omega_rate - V_rate) * per - tilt * V_rate, slope, V_rate
 
 
 @kernel
@@ -60,13 +67,22 @@ def _burdened(load, scene):
     return Load(force, torque, V_rate, omega_rate, brake, per_V * light, per_omega * share, gains)
 
 
+@kernel(inline=True)
+def _turning(scene):
+    """d at which omega is 0 as V -> 0."""
+    law = loaded(scene.law)
+    if law.free is None:
+        return -2.0 * scene.kappa / scene.mu
+    L, free = creep_at_rest(scene.kappa, law)
+    return -2.0 * scene.kappa / scene.mu / L * (1.0 + free)
+
+
 @kernel
 def departing(load, spin, scene):
     """(Whether the cylinder may roll off sticking with V > 0, d then), against a brake where ``spin`` is 1."""
     load, low, high = _burdened(_under_brake(load, spin), scene), -1.0, 1.0
-    turning = (
-        -2.0 * scene.kappa / scene.mu
-    )  # d at which omega stays 0: from there on the left less the right side falls
+    # d at which omega stays 0: from there on the left less the right side falls
+    turning = _turning(scene)
     if turning > -1.0 and _pull(turning, load, scene)[0] > 0.0:
         low = turning
     elif turning > -1.0:  # before it, it may rise first
@@ -171,6 +187,7 @@ def depart(tau, piece, case):
 def _slide_off(when, piece, braked, band, case):
     """Full slip out of rest, of the sign that lasts: with omega - V beyond this share of V."""
     scene = case.scene
+    L, free = creep_at_rest(scene.kappa, loaded(scene.law))
     load = load_at(when, piece, Frame(True, 1.0, 1.0, 0.0, False), case)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu
@@ -179,7 +196,7 @@ def _slide_off(when, piece, braked, band, case):
         spin = np.sign(free) if braked and abs(free) > load.brake else 0.0
         locked = braked and spin == 0.0
         omega_rate = 0.0 if locked else load.per_omega * (free - spin * load.brake) + load.omega_rate
-        if sigma * (omega_rate - V_rate) > band * abs(V_rate):
+        if sigma * (omega_rate - V_rate * (1.0 + free)) > band * L * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return SLIDES, Frame(True, direction, direction * sigma, direction * spin, locked), 0.0
     return STAYS, Frame(False, 1.0, 1.0, 0.0, False), 0.0

@@ -7,6 +7,8 @@ the same function twice, for its second slope).
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..compile.jit import kernel
@@ -74,3 +76,34 @@ def slope_over_speed(over_V, over_delta, rise, free):
     if free is None:
         return over_V
     return over_V - 0.5 * over_delta * rise
+
+
+class FreeCreep(NamedTuple):
+    """What the creep of free rolling adds to the kinematics omega = V (1 + delta_0 + k L d), k = mu/(2 kappa).
+
+    creep : delta_0.
+    aside : d(V delta_0)/dV over k d(u L)/du, a shift of d.
+    bend : d^2(u delta_0)/du^2 over k.
+    """
+
+    creep: float
+    aside: float
+    bend: float
+
+
+@kernel(inline=True)
+def free_kinematics(at, u, kappa, k, spread, free):
+    """:class:`FreeCreep` at u; ``spread``: d(u L)/du.  Of half-spaces -0.0, which a compiler leaves out of sums."""
+    if free is None:
+        return FreeCreep(-0.0, -0.0, -0.0)
+    value, slope, bend = free_creep(at, u, free)
+    per = 0.5 / kappa
+    return FreeCreep(per * value, per * (value + u * slope) / (k * spread), per * (2.0 * slope + u * bend) / k)
+
+
+@kernel(inline=True)
+def of_cover(free):
+    """Whether the law is that of a cover."""
+    if free is None:
+        return False
+    return True

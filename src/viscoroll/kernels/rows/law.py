@@ -159,6 +159,15 @@ def shift(u, law):
     return free_creep(place(u, law), u, law.free)
 
 
+@kernel(inline=True)
+def creep_at_rest(kappa, law):
+    """(L, delta_0) as V -> 0: 1 and -0.0 of half-spaces."""
+    if law.free is None:
+        return 1.0, -0.0
+    at = place(0.0, law)
+    return speed(at, 0.0, law).L, 0.5 * free_creep(at, 0.0, law.free)[0] / kappa
+
+
 # --- over v = 1/F(eta), y = 1/v ---
 
 
