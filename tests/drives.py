@@ -5,7 +5,8 @@ import viscoroll as vr
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 #: whose law is unsteady
 RUBBER = ROLLER.replace(gamma=18.0)
-#: fits of docs/examples/dma.csv, and a roller of them as of docs/may_i.md: 0.1 m, T_ref 3 s, so that V = 30 is 1 m/s
+#: fits of src/viscoroll/datasets/dma.csv, and a roller of them as of docs/validity.md: 0.1 m,
+#: T_ref 3 s, so that V = 30 is 1 m/s
 DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
 ON_DMA = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
 

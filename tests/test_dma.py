@@ -177,7 +177,7 @@ def test_units_are_asked_for(tmp_path):
 
 def test_what_the_contact_sees_of_the_data():
     """As of the cylinder, of which ``si/test_warned.py`` holds where the data end."""
-    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv"))
     cylinder = vr.Cylinder(R=0.1, m=30.0, material=fit.material(0.5), mu=0.5)
     V = np.geomspace(1e-6, 1e4, 30)
     found = fit.validity(cylinder, V)
@@ -187,7 +187,7 @@ def test_what_the_contact_sees_of_the_data():
 
 
 def test_what_was_measured_stays_with_the_material():
-    data = vr.read_dma(ROOT / "docs/examples/dma.csv")
+    data = vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv")
     fit = vr.fit_prony(*data, source="dma.csv")
     assert fit.material(0.5).measured == vr.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv")
     poor = vr.Cylinder(R=0.1, m=30.0, material=vr.fit_prony(*data, 1).material(0.5), mu=0.5).validity(0.1).measured

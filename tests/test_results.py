@@ -26,7 +26,7 @@ ROLLER = vr.presets.RUBBER_CYLINDER
 def results():
     """One of each kind, dimensionless and in SI units."""
     t, V = np.linspace(0.0, 4e-3, 9), np.geomspace(1e-2, 1.0, 5)
-    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"), modes=3, misfit=0.2)
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv"), modes=3, misfit=0.2)
     return {
         "contact": vr.contact(SCENE, V[:, None], delta=np.linspace(-0.02, 0.02, 4)),
         "contact in SI": ROLLER.contact(V, delta=0.01),

@@ -1,4 +1,4 @@
-"""Steady rolling under load: humps, all equilibria, stability, feedback, limits of existence."""
+"""Steady rolling under load: extrema of M, all equilibria, stability, feedback, limits of existence."""
 
 import math
 
@@ -38,7 +38,7 @@ def residuals(scene: vr.Scene, s) -> tuple[np.ndarray, np.ndarray]:
 def test_speeds_against_extended_precision():
     """Also close to the fold: an error of 1e-16 of the load is one of its square root there."""
     scene = vr.Scene(11.0, KAPPA, 10.0)
-    hump = vr.humps(scene)
+    hump = vr.resistance_extrema(scene)
     with mp.workdps(50), flint.ctx.workprec(600):
 
         def curve(x):
@@ -99,7 +99,7 @@ def test_all_equilibria_of_random_materials():
         other = vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
         scene = series_scene(series if n % 2 else vr.Bodies(series, other, rng.uniform(0.1, 0.9)), mu=0.03)
         speeds = np.geomspace(1e-7, 1e12, 40001)
-        top = vr.humps(scene).M.max()
+        top = vr.resistance_extrema(scene).M.max()
         for _ in range(8):
             g, q = rng.uniform(0.0, 1.1) * top, rng.uniform(-0.03, 0.03)
             s = vr.steady(scene, force=g - q, torque=q)
@@ -114,8 +114,8 @@ def test_all_equilibria_of_random_materials():
 
 def test_ten_humps():
     scene = series_scene(TEN)
-    hump = vr.humps(scene)
-    assert hump.top.tolist() == [True, False] * 9 + [True]
+    hump = vr.resistance_extrema(scene)
+    assert hump.is_maximum.tolist() == [True, False] * 9 + [True]
     slopes = vr.contact(scene, hump.V, delta=0.0, fields="dM_dV").dM_dV
     assert (np.abs(slopes * hump.V) <= tol.STEADY_FLAT * hump.M).all()
     for g in (0.5 * hump.M.min(), 0.5 * (hump.M[2] + hump.M[4]), 0.99 * hump.M[0]):
@@ -138,7 +138,7 @@ def test_ten_humps():
 def test_eigenvalues_are_those_of_the_slopes_of_the_contact_law():
     """Of (V', omega') over gamma t by V and omega; the falling branch of every hump is a saddle."""
     for scene in (SCENE.replace(j=0.3), series_scene(TWO), series_scene(UNLIKE, j=2.0), series_scene(TEN)):
-        g = 0.6 * vr.humps(scene).M[0]
+        g = 0.6 * vr.resistance_extrema(scene).M[0]
         for gains in (np.zeros((2, 2)), np.array([[-0.02, 0.01], [0.01, -0.05]])):
             force, torque = (vr.Feedback(part * g, *row) for part, row in zip((0.3, 0.7), gains, strict=True))
             s = vr.steady(scene, force=force, torque=torque)
@@ -164,7 +164,7 @@ def test_slow_rate_of_slow_rolling():
 
 def test_focus_where_friction_is_all_but_spent():
     """Complex eigenvalues: |Q| -> mu, j < 1."""
-    hump = vr.humps(SCENE)
+    hump = vr.resistance_extrema(SCENE)
     f = 0.5 * hump.M[0]
     s = vr.steady(SCENE.replace(mu=0.5 * f * (1.0 + 1e-8), j=0.1), force=f)
     assert close(s.grip[0], 1e-8, rel=1e-6)
@@ -197,7 +197,7 @@ def test_motions_settle_at_equilibria():
 def test_critical_slope():
     """tan(theta) = M_top of kappa/sqrt(cos(theta)): the definition."""
     turned = lambda theta: SCENE.replace(kappa=KAPPA / np.sqrt(np.cos(theta)))  # noqa: E731
-    theta = brentq(lambda theta: math.tan(theta) - vr.humps(turned(theta)).M[0], 0.0, 1.0, xtol=1e-16)
+    theta = brentq(lambda theta: math.tan(theta) - vr.resistance_extrema(turned(theta)).M[0], 0.0, 1.0, xtol=1e-16)
     assert close(math.degrees(theta), 4.8, rel=0.05 / 4.8)
     s = vr.steady(SCENE, slope=theta * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
     assert s.count.tolist() == [2, 0]
@@ -248,7 +248,7 @@ def test_feedback_on_omega_misses_none():
     V, several = np.geomspace(1e-5, 1e6, 400001), 0
     for n in range(24):
         scene = (SCENE, series_scene(TWO, mu=0.02), series_scene(UNLIKE, mu=0.02))[n % 3]
-        size = vr.humps(scene).M[0]
+        size = vr.resistance_extrema(scene).M[0]
         gains = rng.uniform(-1.0, 1.0, 4) * 10.0 ** rng.uniform(-2.0, 0.0)
         force = vr.Feedback(rng.uniform(-1.5, 1.5) * size, V=gains[0], omega=gains[1])
         torque = vr.Feedback(rng.uniform(-1.5, 1.5) * size, V=gains[2], omega=gains[3])
@@ -273,7 +273,7 @@ def test_opposite_gains_on_omega():
     elastic = vr.Scene(1.0, KAPPA, MU)
     assert close(vr.steady(elastic, torque=vr.Feedback(0.3, omega=-1.0)).V, [0.3], rel=tol.STEADY)
     assert close(vr.steady(elastic, V=1.0, torque=0.1).force, [-0.1], rel=tol.STEADY)
-    assert vr.humps(elastic).V.size == 0
+    assert vr.resistance_extrema(elastic).V.size == 0
 
 
 def test_spinning_on_the_spot():
@@ -304,7 +304,7 @@ def test_edge_of_grip():
 def test_losses_are_what_the_loads_put_in():
     rng = np.random.default_rng(4)
     for scene in (SCENE, series_scene(UNLIKE)):
-        g = rng.uniform(-0.9, 0.9, 50) * vr.humps(scene).M[0]
+        g = rng.uniform(-0.9, 0.9, 50) * vr.resistance_extrema(scene).M[0]
         q = rng.uniform(-0.3, 0.3, 50) * scene.mu
         s = vr.steady(scene, force=g - q, torque=q)
         put_in, lost = s.force * s.V + s.torque * s.omega, s.loss.slip + s.loss.half_space + s.loss.cylinder

@@ -1,40 +1,49 @@
-"""The pictures of the summary page in their order: section -> figure -> what it shows, in one or two sentences."""
+"""Captions of the figures of the summary page, in order: section -> figure -> caption."""
 
 from __future__ import annotations
 
 SECTIONS: dict[str, dict[str, str]] = {
     "The cylinder and its contact": {
-        "geometry": "What the symbols mean.  The contact has the length λ l₀, its middle lies ahead of the axis, and "
-        "its front part, the share β, sticks.",
-        "figure-2": "The critical creep ratio, beyond which all of the contact slips, over speed.  A fast contact is "
-        "stiffer and slips sooner.  (Fig. 2 of the paper.)",
-        "figure-3": "Traction over creep, and rolling resistance over speed with its hump.  (Fig. 3 of the paper.)",
+        "geometry": "Symbols.  The contact has the length λ l₀.  Its middle lies ahead of the axis.  Its front part, "
+        "of the length "
+        "β λ l₀, sticks.",
+        "figure-2": "Critical creepage over speed; above it the whole contact slips.  A fast contact is stiffer, and "
+        "slips at a "
+        "smaller creepage.  κ = 29.1 in this figure and the next, as in Figs. 2 and 3 of the paper.",
+        "figure-3": "Creep force over creepage, and rolling resistance over speed with its maximum (Fig. 3 of the "
+        "paper).",
     },
-    "Three throws": {
-        "figure-5": "Speed and spin of the three starts.  Each slides until rim and axis meet, at t*, and then rolls.  "
-        "(Fig. 5 of the paper.)",
-        "figure-6": "The contact during the first: creep, length, shift and stick zone.  The stick zone opens within a "
-        "few ten-thousandths of T_epsilon.  (Fig. 6 of the paper.)",
-        "figure-7": "Shear and the limit of friction along the contact at four times.  The narrow peak at the front of "
-        "the last is real: material that has just come in is not relaxed yet.  For the first the paper prints "
-        "β = 0.45: β climbs by 0.2 in 10⁻⁶ there, and is 0.45 within the last digit of t.  (Fig. 7 of the paper.)",
-        "phase-portrait": "The plane of V and ω.  From anywhere friction leads to one common curve, and along "
+    "Free motion from three initial conditions": {
+        "figure-5": "V and ω for three starts.  Each cylinder slides until the onset of stick at t*, and then rolls.  "
+        "This is the exact solution of Eq. (22); the speeds are below the range of the quasi-steady assumption "
+        "(Fig. 5 of the paper).",
+        "figure-6": "The contact during the first motion: creepage, length, shift and stick zone.  The stick zone "
+        "grows within some "
+        "10⁻⁴ T_epsilon (Fig. 6 of the paper).",
+        "figure-7": "Shear stress and friction limit along the contact at four times.  The narrow peak at the "
+        "leading edge of the "
+        "last is real: material that has just entered has not relaxed yet.  For the first time the paper prints "
+        "β = 0.45: β rises by 0.2 in 10⁻⁶ there, and equals 0.45 within the last digit of t (Fig. 7 of the paper).",
+        "phase-portrait": "The plane of V and ω.  Friction leads every motion to one common curve, the slow "
+        "manifold, and along "
         "it to rest.",
     },
-    "Random throws": {
-        "ensemble": "Left: over time, by quantiles.  Right: at the end.",
+    "Random initial conditions": {
+        "ensemble": "A sample of the ensemble.  Left: quantiles over time.  Right: distribution at the end.",
     },
     "Under load": {
-        "rolling-equilibria": "Where the pull of a slope meets rolling resistance.  Behind a hump the balance is "
-        "unstable.",
-        "slope": "On a slope: what settles (left of the orange line) and what runs away.",
-        "wheel-spin": "A motor that gives too much torque: the wheel spins, and grips again.",
-        "reversal": "Braked through V = 0: the traction jumps, for the stick zone forms anew at the other end.",
+        "rolling-equilibria": "Steady speeds, where the force of a slope equals the rolling resistance.  On a "
+        "falling branch of M the "
+        "equilibrium is unstable.",
+        "slope": "Motions on a slope: those that start left of the orange line settle, the others accelerate without "
+        "limit.",
+        "wheel-spin": "Too large a torque of the motor: the wheel spins, until the torque is reduced.",
+        "reversal": "Braked through V = 0: the traction jumps, since the stick zone forms again at the other end.",
     },
     "Other materials": {
         "rolling-resistance": "Rolling resistance of a rubber at three temperatures.",
-        "law-of-modes": "One relaxation time and many, with the same moduli: humps far apart, or a plateau.",
-        "law-of-pairs": "Rubber on rubber and on steel under one load; dashed: the part of M in the base.",
+        "law-of-modes": "One relaxation time and many, with the same moduli: separate maxima, or a plateau.",
+        "law-of-pairs": "Rubber on rubber and on steel at the same load; dashed: the part of M in the base.",
         "broad-stresses": "Pressure and shear of a rubber with ten relaxation times at four speeds.",
     },
 }  # fmt: skip

@@ -11,7 +11,7 @@ from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
 from viscoroll.motion.single import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 
-from .title import caveat, describe, number
+from .title import describe, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,10 +26,9 @@ _UNIT = 1e4
 def figure_7() -> Figure:
     """Shear stress and mu p along the contact at four times of the paper's first motion."""
     scene, start = PAPER_SECTION_5, PAPER_STARTS["IC1"]
-    thrown = f"$V(0) = {start[0]:g}$, {labelled('omega')}$(0) = {start[1]:g}$"
-    title = f"Stresses, Eqs. (11)-(13), during deceleration from {thrown}\nfor {describe(scene, *_SCENE)}"
-    title += caveat(scene, start[0])
-    figure, panels = new_figure(title, 2, 2, (8.4, 6.0), sharex=True, sharey=True)
+    figure, panels = new_figure(
+        f"Stresses during IC1, Eqs. (11)-(13), {describe(scene, *_SCENE)}", 2, 2, (8.4, 6.0), sharex=True, sharey=True
+    )
     motion = roll(scene, *start, PAPER_TIMES)
     state = motion.contact(("lam", "epsilon", "beta"))
     for n, axes in enumerate(panels.flat):

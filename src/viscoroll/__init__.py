@@ -31,6 +31,11 @@ __all__ = ["__version__", *_HOMES]  # noqa: PLE0604
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
+        from .core.renamed import RENAMED, warn_renamed
+
+        if name in RENAMED:
+            warn_renamed(f"viscoroll.{name}", RENAMED[name])
+            return getattr(sys.modules[__name__], RENAMED[name])
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if (home := _HOMES[name]) == ".":
         value = import_module(f".{name}", __name__)

@@ -1,5 +1,6 @@
 """The public names, a line each, for type checkers, editors and ``__init__.py``, which loads them on first use."""
 
+from . import datasets as datasets
 from . import presets as presets
 from .app import fmu as fmu
 from .app.dma import Fit as Fit
@@ -13,9 +14,9 @@ from .contact_law.assumptions import Validity as Validity
 from .contact_law.bound import Law as Law
 from .contact_law.bound import law as law
 from .contact_law.contact import contact as contact
-from .contact_law.equilibria.resistance import humps as humps
+from .contact_law.equilibria.resistance import resistance_extrema as resistance_extrema
 from .contact_law.equilibria.result import Steady as Steady
-from .contact_law.equilibria.rolling import steady as steady
+from .contact_law.equilibria.steady import steady as steady
 from .contact_law.judged import validity as validity
 from .contact_law.stress import stress as stress
 from .core.drive import Feedback as Feedback

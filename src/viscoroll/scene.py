@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from .contact_law.bound import law
 from .contact_law.contact import contact
-from .contact_law.equilibria.resistance import humps
-from .contact_law.equilibria.rolling import steady
+from .contact_law.equilibria.resistance import ResistanceExtrema, resistance_extrema
+from .contact_law.equilibria.steady import steady
 from .contact_law.judged import validity
 from .contact_law.parameters import Parameters, Rolls
 from .contact_law.stress import stress
+from .core.renamed import warn_renamed
 from .motion.batch import ensemble
 from .motion.single import roll
 
@@ -19,11 +20,16 @@ class Methods(Rolls):
     contact = contact
     stress = stress
     steady = steady
-    humps = humps
+    resistance_extrema = resistance_extrema
     law = law
     roll = roll
     ensemble = ensemble
     validity = validity
+
+    def humps(self) -> ResistanceExtrema:
+        """Old name of ``resistance_extrema``."""
+        warn_renamed("humps", "resistance_extrema")
+        return self.resistance_extrema()
 
 
 class Scene(Methods, Parameters):

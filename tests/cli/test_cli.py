@@ -171,7 +171,7 @@ ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
 
 def test_material_fit(run, here):
     """The report, and a file that holds the fit to the bit."""
-    data = str(ROOT / "docs/examples/dma.csv")
+    data = str(ROOT / "src/viscoroll/datasets/dma.csv")
     report = run("material", "fit", data, "--nu", "0.5", "--name", "a rubber", "-o", "a.toml")
     fit = vr.fit_prony(*vr.read_dma(data), source="dma.csv")
     assert report == f"{fit}\n"
@@ -182,7 +182,7 @@ def test_material_fit(run, here):
 
 def test_a_belt_of_a_fit_that_was_saved(run, here):
     """From columns without units to the resistance of a steel roller: each step reads what the one before wrote."""
-    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv"))
     columns = np.transpose([fit.omega / (2.0 * np.pi), fit.storage / 1e6, fit.loss / 1e6])
     np.savetxt(here / "bare.txt", columns)
     bare = python("-m", "viscoroll", "material", "fit", here / "bare.txt")

@@ -23,7 +23,7 @@ vr.steady(scene, slope=V[:9] / 9.0)
 vr.steady(scene.replace(mu=np.array([0.1, 0.2])), force=0.01, torque=vr.Feedback(0.0, V=-0.1, omega=-0.2))
 pair = vr.Bodies(vr.Prony([1.0], [1.0]), vr.Prony([2.0], [0.1]), 0.4)
 vr.steady(vr.Scene(material=pair, kappa=3.0, mu=0.1), V=V[:3], force=0.0)
-vr.humps(scene)
+vr.resistance_extrema(scene)
 two = vr.Bodies(vr.Prony([3.0], [2.0]), vr.Prony([1.0, 4.0, 2.0], [1.0, 0.1, 1e-3]), 0.2)
 for law in (two, two.total):
     each = vr.Scene(material=law, kappa=9.0, mu=0.2)

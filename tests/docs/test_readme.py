@@ -35,7 +35,7 @@ def test_readme_block_runs(capsys):
     assert "V is right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s" in printed
 
 
-@pytest.mark.parametrize("page", ["index", "may_i"])
+@pytest.mark.parametrize("page", ["index", "validity"])
 def test_first_pages_run(page, capsys):
     for code in blocks(ROOT / f"docs/{page}.md", "python"):
         exec(compile(code, page, "exec"), {})
@@ -67,9 +67,9 @@ def test_howto_runs(page, tmp_path, monkeypatch):
 def test_the_page_of_measurements_runs(monkeypatch, capsys):
     monkeypatch.chdir(ROOT)
     session: dict = {}
-    fits, plans = blocks(ROOT / "docs/identify.md", "python")
+    (fits,), (plans,) = (blocks(ROOT / f"docs/{page}.md", "python") for page in ("identify", "identify_design"))
     for code in (fits.replace("starts=2", "starts=1").replace("print(fit)", "print(repr(fit))"), plans):
-        exec(compile(code, "identify.md", "exec"), session)
+        exec(compile(code, "identify", "exec"), session)
     shown = capsys.readouterr().out
     assert "Identification of 7 unknowns from 240 points" in shown
     assert "planned: what to expect if the cylinder is the truth" in shown

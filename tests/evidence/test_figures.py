@@ -131,7 +131,11 @@ def test_summary_page(demo):
     text = (out / "index.html").read_text()
     links = set(re.findall('href="([^"]+)"', text))
     assert all(escape(caption) in text for figures in SECTIONS.values() for caption in figures.values())
-    assert text.index("preset paper-section-5") < text.index("Three throws") < text.index("How long it took")
+    assert (
+        text.index("preset paper-section-5")
+        < text.index("Free motion from three initial conditions")
+        < text.index("How long it took")
+    )
     assert "too slow for the law of steady rolling to drive a motion" in text
     assert text.count("data:image/png;base64,") == sum(map(len, SECTIONS.values())) + 1  # and the benchmark's
     assert {"ensemble.nc", "validation.csv", "validation.txt"} <= links

@@ -30,10 +30,10 @@ def test_committed_memory_is_bounded():
 def test_a_map_is_filled_within_its_arrays():
     """For any kappa, and any octave that is served."""
     script = """
-from viscoroll.motion.flow import build
+from viscoroll.motion.flow import build_map
 for kappa in (1e250, 1e300, 1e-250, 2.9):
     for octave in (-16, 0, 14):
-        made = build((11.0, kappa, 0.2, 0.5), octave)
+        made = build_map((11.0, kappa, 0.2, 0.5), octave)
         assert (made.problem == "") == (kappa == 2.9), (kappa, octave, made.problem)
         assert made.problem or 0.0 < made.errors[0] < 1e-8, (octave, made.errors)
 """

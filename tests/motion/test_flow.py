@@ -192,8 +192,8 @@ def test_auto():
 
 def test_kept_on_disk_and_built_once(monkeypatch):
     calls = []
-    build = flow.build
-    monkeypatch.setattr(flow, "build", lambda *a: calls.append(a) or build(*a))
+    build = flow.build_map
+    monkeypatch.setattr(flow, "build_map", lambda *a: calls.append(a) or build(*a))
     first = flow.flow_map(SCENE, 2.0)
     assert flow.flow_map(SCENE, 1.9) is first  # the same power of 16
     forget()

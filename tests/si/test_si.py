@@ -76,7 +76,7 @@ CALLS = {
         lambda body, u: body.steady(force=-2.0 / u.force, torque=0.15 / u.torque, slope=DOWN),
         ("V", "omega", "delta", "Q", "M", "force", "torque", "grip", "eigenvalues"),
     ),
-    "humps": (lambda body, u: body.humps(), ("V", "M")),
+    "resistance_extrema": (lambda body, u: body.resistance_extrema(), ("V", "M")),
     "law": (
         lambda body, u: body.law()(0.05 / u.V, 0.5 / u.omega, slopes=True),
         ("Q", "M", *PARTS, "dQ_dV", "dQ_domega"),
@@ -118,10 +118,10 @@ def test_the_dimensionless_call_in_other_units(name):
 
 def test_functions_are_the_methods():
     """Of scene and cylinder, with one signature; what is neither is refused by name."""
-    for name in ("contact", "stress", "steady", "humps", "law", "roll", "ensemble", "validity"):
+    for name in ("contact", "stress", "steady", "resistance_extrema", "law", "roll", "ensemble", "validity"):
         function = getattr(vr, name)
         assert function is getattr(vr.Scene, name) is getattr(vr.Cylinder, name)
-        arguments = {"stress": 2, "steady": 0, "humps": 0, "law": 0, "roll": 3, "ensemble": 3}.get(name, 1)
+        arguments = {"stress": 2, "steady": 0, "resistance_extrema": 0, "law": 0, "roll": 3, "ensemble": 3}.get(name, 1)
         said = refused(lambda function=function, n=arguments: function("a roller", *[0.1] * n))
         assert said == f"{name} takes a Scene or a Cylinder, not 'a roller'"
 

@@ -6,14 +6,12 @@ A rubber was measured in a dynamic test (DMA): storage and loss modulus at 25 fr
 from 0.01 to 100 Hz.  The file has three columns, and its heading names their units.
 """
 
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 
 import viscoroll as vr
 
-data = Path("../dma.csv")  # docs/examples/dma.csv of the source tree
+data = vr.datasets.path("dma.csv")  # a sample file that is installed with the package
 print("\n".join(data.read_text().splitlines()[:5]))
 omega, storage, loss = vr.read_dma(data)  # rad/s, Pa, Pa
 

@@ -139,7 +139,7 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
             calls[name] = start[0].size, ensemble(PAPER, start, times, fields, method="flow")
     rows = timed(calls, sizes["repeats"])
     once = timed(
-        {"build": (1e9, partial(flow.build, *flow.asked(PAPER, 2.0), 1)), "load": (1e9, load)}, sizes["repeats"]
+        {"build": (1e9, partial(flow.build_map, *flow.map_key(PAPER, 2.0), 1)), "load": (1e9, load)}, sizes["repeats"]
     )
     few = start[:, : sizes["exact"]]
     mine = ensemble(PAPER, few, t, method="flow")()

@@ -78,7 +78,7 @@ ROWS = [
 ]  # fmt: skip
 MOTION = [
     ("flow/states.py", "edge, V[i] * found.scale * found.m\n", "edge, V[i] * found.scale * found.m * (1.0 + 1e-7)\n", "tests/motion/test_flow.py"),
-    ("flow/read.py", "(E + layer_value(table, layout.LAYER_ANGLE", "(E - layer_value(table, layout.LAYER_ANGLE", "tests/motion/test_flow.py"),
+    ("flow/lookup.py", "(E + layer_value(table, layout.LAYER_ANGLE", "(E - layer_value(table, layout.LAYER_ANGLE", "tests/motion/test_flow.py"),
     ("motion/rates.py", "left = max(1.0 - sign * d, 0.0)", "left = max(1.0 - 0.999 * sign * d, 0.0)", _MOTION),
     ("motion/rates.py", "spread = L + u * dL\n", "spread = L\n", _MOTION),
     ("motion/rates.py", "press_secants(at, place(2.0 * u / L, law), v, D / w, law)", "press_secants(at, at, v, D / w, law)", _DRIVE),

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 ALPHA_3, ALPHA_11 = ([2.0], [1.0 / 3.0]), ([10.0], [1.0 / 11.0])
 WEAK, STRONG = ([0.2, 3.0], [1.0, 0.01]), ([3.0, 1.0], [1.0, 0.01])
-#: as docs/examples/dma.csv; 0.1 m, T_ref 3 s: g 583, u 318 is 1 m/s
+#: as src/viscoroll/datasets/dma.csv; 0.1 m, T_ref 3 s: g 583, u 318 is 1 m/s
 DMA = ([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
 #: E and tau, u = kappa V and g = gamma/(1 + j) at the start
 MOTIONS = [

@@ -1,7 +1,8 @@
 """How far a free motion goes by the law of steady rolling: from the term that follows it, M = M(V) + N(V) V'.
 
 N acts as an added mass.  Its share, the unsteadiness g |N(V)| with g = gamma/(1 + j), is about the error of V over V
-in a motion where it was no larger before (docs/may_i.md).  Free rolling depends on u = kappa V, on g and the material:
+in a motion where it was no larger before (docs/validity.md).
+Free rolling depends on u = kappa V, on g and the material:
 u' = -g kappa M(u), over a way of the integral of u du/(g kappa M), in l0.
 """
 
@@ -27,7 +28,8 @@ from .contact_table import rolling
 #: to 1e-6
 _PER_OCTAVE, _MARGIN = 16, 20
 #: of the work of leaving the imprint of a rest, measured with a transient solver: of the length of a mode's memory, and
-#: of the way of a motion that is shorter, at least as far as the contact climbs; half lengths at rest (docs/may_i.md)
+#: of the way of a motion that is shorter, at least as far as the contact climbs; half lengths at
+#: rest (docs/validity.md)
 _MEMORY, _SHORT, _CLIMB = 0.681, 4.84, 20.0
 #: kappa |V|, where every contact is at its limits
 _FASTEST = 1e300

@@ -11,7 +11,7 @@ import numpy as np
 from .assumptions import Assumption
 from .free_rolling import Free, Reach, Start
 
-#: unsteadiness up to which V is right to some 10 %: measured with a transient solver of many modes (docs/may_i.md)
+#: unsteadiness up to which V is right to some 10 %: measured with a transient solver of many modes (docs/validity.md)
 STEADY_LIMIT = 0.1
 #: share of its speed, seven tenths of its energy, that a start from rest may lose: beyond, the cylinder was caught
 CAUGHT = 0.45

@@ -31,7 +31,7 @@ def registry() -> Any:
     """The pint registry of this package, in which 1 Hz is 2 pi rad/s and 1 rpm is 2 pi/60 rad/s."""
     import pint
 
-    found = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, on_redefinition="ignore")
+    found: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, on_redefinition="ignore")
     found.define("hertz = 2 * pi * radian / second = Hz")
     return found
 

@@ -20,7 +20,7 @@ from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
 from .checks import SPEED_RANGE, in_words, output_times
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, bare
-from .flow import Answer, FlowMap, ask, flow_map
+from .flow import FlowMap, FlowResult, flow_map, look_up_ensemble
 from .many import Ensemble
 from .rolling import Begun, begin, integrate
 from .warned import look
@@ -163,7 +163,7 @@ class _Many(NamedTuple):
     bar: str | None
 
 
-def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict[str, Any]]:
+def _answer(many: _Many, method: str, speed: float | None) -> tuple[FlowResult, dict[str, Any]]:
     """The motions, and by what they were found."""
     begun, rows, times, count = many.begun, many.rows, many.times, many.caught.size
     scene, (rtol, threshold, _) = begun.scene, begun.limits
@@ -181,13 +181,13 @@ def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict
         if chosen is not None and error <= rtol:
             of = tuple((STATES + LOSSES).index(name) for name in rows)
             given = scene.gamma * unit * unit, threshold * unit, V0, omega0, times / unit
-            answer = ask(chosen, *given, of, threads=many.threads, progress=many.bar)
+            answer = look_up_ensemble(chosen, *given, of, threads=many.threads, progress=many.bar)
             if unit != 1.0:
                 for n, name in enumerate(rows):
                     answer.out[n] *= unit ** OF_TIME.get(name, 0)
                 answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
     if answer is None:
-        answer = Answer.empty(len(rows), count, times.size)
+        answer = FlowResult.empty(len(rows), count, times.size)
     flow = answer.status >= 0
     if (caught := many.caught).any():  # motions that never leave the imprint of their rest
         answer.out[:, caught] = answer.onset[caught] = answer.rest[caught] = np.nan
@@ -221,7 +221,7 @@ def _map_of(
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
 
-def _integrate_others(answer: Answer, many: _Many) -> Integers:
+def _integrate_others(answer: FlowResult, many: _Many) -> Integers:
     """Integrate the motions without an answer; returns the steps of each."""
     begun, inputs = many.begun, many.inputs.values()
     law, rows = _law_of(begun.scene, begun.unsteady), np.array([ROWS.index(name) for name in many.rows], np.int64)

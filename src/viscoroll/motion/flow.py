@@ -1,8 +1,8 @@
-"""Flow map of one scene: built once, kept on disk, and asked for any number of motions.
+"""Flow map of one scene: built once, kept on disk, and used to look up any number of motions.
 
-The tables are those of :mod:`viscoroll.kernels.flow.layout`.  They depend on alpha, kappa,
-mu and j; gamma only scales time.  A map covers stick onsets at up to 2**20 times below a
-highest speed, which is the next power of 16 (times a constant) above the speeds at hand.
+The tables are described in :mod:`viscoroll.kernels.flow.layout`.  They depend on alpha, kappa,
+mu and j; gamma only scales time.  A map covers onsets of partial slip at speeds down to 2**-20 of a
+highest speed, which is the next power of 16 (times a constant) above the speeds of the call.
 """
 
 from __future__ import annotations
@@ -21,101 +21,129 @@ from ..core.typed import Floats, Integers
 from .flow_store import FlowMap, load, path_of, save
 from .rolling import motions
 
-#: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
-#: speeds, the path, the energy lost), below which the integrator's own error shows
-_MARGIN, _FLOOR = 4.0, np.array([1e-10, 5e-10, 1e-10])
-_SAMPLED, _SAMPLE_TIMES = 100, 40
-#: V, omega, x, angle, slip_loss, rolling_loss
-_MEASURED = (0, 1, 2, 3, 6, 7)
-#: distance and angle are differences of what is left to rest: of the path, their error is relative to the path so
-#: far and to this share of the whole
+#: ratio of the stated error to the largest error of the sampled motions
+_MARGIN = 4.0
+#: least stated error of speeds, path and losses: below it the error of the integrator at rtol 1e-12 is visible
+_FLOOR = np.array([1e-10, 5e-10, 1e-10])
+#: motions on which the error of a new map is measured
+_SAMPLE_SIZE = 100
+#: output times of such a motion within its boundary layer
+_SAMPLE_TIMES = 40
+#: output rows that are measured: V, omega, x, angle, slip_loss, rolling_loss
+_MEASURED_ROWS = (0, 1, 2, 3, 6, 7)
+#: errors of distance and angle are divided by the path so far plus this fraction of the whole path, since the map
+#: computes both as differences of the remaining path to rest
 _PATH_SHARE = 1e-5
 #: maps kept in memory
-_IN_MEMORY = 4
+_MAPS_IN_MEMORY = 4
+#: motions of one block of work: some milliseconds
 _BLOCK = 1 << 14
-#: octaves that the highest speed is rounded up to
-_OCTAVES = 4
+#: the highest speed of a map is rounded up to a multiple of this number of octaves
+_OCTAVE_STEP = 4
 
 
-def asked(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
-    """(parameters, octave) of the map for a scene and speeds up to ``speed`` > 0."""
+def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
+    """Parameters and highest octave of the map for a scene.
+
+    scene : parameters of one scene.  speed : highest speed, > 0.
+
+    Returns ((material, kappa, mu, j), octave): the map covers kappa V < 2**octave at onset.
+    """
     from ..kernels.flow.layout import OCTAVE_RANGE
 
     parameters = (scene.in_own_time()[0], scene.kappa, scene.mu, scene.j)
-    octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVES) * _OCTAVES
+    octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVE_STEP) * _OCTAVE_STEP
     return parameters, min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
 
 
 def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:
     """The map of a scene for speeds up to ``speed`` > 0: from memory, from disk, or built.
 
-    A map on disk that is damaged is built again, with a RuntimeWarning; where the disk cannot
-    be written the map is kept in memory only.
+    scene : parameters of one scene.  speed : highest speed.  threads : of the construction.
+
+    A damaged map on disk is built again, with a RuntimeWarning.  If the disk cannot be written, the map is kept in
+    memory.
     """
-    return _map(*asked(scene, speed), threads)
+    return _map(*map_key(scene, speed), threads)
 
 
-@lru_cache(_IN_MEMORY)
+@lru_cache(_MAPS_IN_MEMORY)
 def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
     path = path_of(parameters, octave)
     found = load(path, parameters)
     if found is None:
-        found = build(parameters, octave, threads)
+        found = build_map(parameters, octave, threads)
         save(found, path)
     return found
 
 
-def build(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
-    """Build the map for kappa V < 2**octave at stick onset, and measure its error."""
+def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
+    """Build a map, and measure its error.
+
+    parameters : (material, kappa, mu, j).  octave : the map covers kappa V < 2**octave at onset.  threads : of the
+    work.
+
+    Returns a :class:`FlowMap`; if the scene has none, its ``problem`` says why.
+    """
     from ..kernels.flow.layout import OCTAVES, SIZE
-    from .flow_fill import fill
+    from .flow_fill import fill_tables
 
-    made = FlowMap(parameters, octave - OCTAVES, np.zeros(SIZE), (math.inf,) * 3, "")
-    problem = fill(made, threads)
+    new_map = FlowMap(parameters, octave - OCTAVES, np.zeros(SIZE), (math.inf,) * 3, "")
+    problem = fill_tables(new_map, threads)
     if problem:
-        return replace(made, problem=problem)
-    return replace(made, errors=_measure(made, octave, threads))
+        return replace(new_map, problem=problem)
+    return replace(new_map, errors=_measure_errors(new_map, octave, threads))
 
 
-def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
-    """Largest errors against the integrator, times the margin, on motions spread over the map."""
-    _, kappa, mu, _ = made.parameters
+def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
+    """Stated errors of a new map: the largest errors against the integrator on sampled motions, times the margin.
+
+    new_map : the map.  octave : highest octave of kappa V.  threads : of the work.
+
+    Returns the errors of speeds, path and losses.
+    """
+    _, kappa, mu, _ = new_map.parameters
     rng = np.random.default_rng(20)
-    size = 2.0 ** (octave - rng.uniform(0.0, 10.0, _SAMPLED)) / kappa
-    angle = rng.uniform(0.0, 2.0 * math.pi, _SAMPLED)
+    size = 2.0 ** (octave - rng.uniform(0.0, 10.0, _SAMPLE_SIZE)) / kappa
+    angle = rng.uniform(0.0, 2.0 * math.pi, _SAMPLE_SIZE)
     starts = size[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
-    near = starts[: _SAMPLED // 5]  # inside the stick zone, or close to it
+    near = starts[: _SAMPLE_SIZE // 5]  # inside the stick zone, or close to it
     near[:, 1] = near[:, 0] * (1.0 + mu / kappa * rng.uniform(-0.5, 0.5, near.shape[0]))
-    errors = np.zeros((_SAMPLED, 3))
+    errors = np.zeros((_SAMPLE_SIZE, 3))
 
     def work(start: int, stop: int) -> None:
         for n in range(start, stop):
-            errors[n] = _error_of(made, *starts[n])
+            errors[n] = _motion_errors(new_map, *starts[n])
 
-    run_blocks(work, _SAMPLED, 1, threads=threads)
+    run_blocks(work, _SAMPLE_SIZE, 1, threads=threads)
     worst = np.maximum(_MARGIN * errors.max(axis=0), _FLOOR)
     return tuple(worst.tolist())
 
 
-def _error_of(made: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
-    """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
-    _, _, _, j = made.parameters
-    decay, start = 1.0 / made.slow_rate, (np.array([V0]), np.array([omega0]))
+def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
+    """Largest relative errors of one motion of a new map against the integrator.
 
-    def flow(times: NDArray) -> Answer:
-        return ask(made, 1.0, 0.0, *start, times, _MEASURED)
+    new_map : the map.  V0, omega0 : initial speeds.
+
+    Returns the errors of the speeds (with the onset time), of distance and angle, and of the losses.
+    """
+    _, _, _, j = new_map.parameters
+    decay, start = 1.0 / new_map.slow_rate, (np.array([V0]), np.array([omega0]))
+
+    def flow(times: NDArray) -> FlowResult:
+        return look_up_ensemble(new_map, 1.0, 0.0, *start, times, _MEASURED_ROWS)
 
     at_rest = flow(np.array([0.0, 800.0 * decay]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
-    stiff_time = _stiff_time(made, max(abs(V0), abs(omega0)))
+    stiff_time = _stiff_time(new_map, max(abs(V0), abs(omega0)))
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
     late = np.linspace(0.1, 4.0, 6) * decay
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    exact, how = motions(made.parameters, start, np.ones(1), times)
-    out, true_onset = exact[list(_MEASURED), 0], how[0, 3]
+    exact, how = motions(new_map.parameters, start, np.ones(1), times)
+    out, true_onset = exact[list(_MEASURED_ROWS), 0], how[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
     path = np.maximum.accumulate(np.abs(out[2:4]).max(axis=0)) + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
@@ -126,19 +154,24 @@ def _error_of(made: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
     return tuple(float(error) if math.isfinite(error) else math.inf for error in errors)
 
 
-def _stiff_time(made: FlowMap, speed: float) -> float:
-    """1/k0 for an onset at about this speed, of those in the map."""
+def _stiff_time(new_map: FlowMap, speed: float) -> float:
+    """Relaxation time 1/k0 of omega - V for an onset at about this speed."""
     from ..kernels.flow.layout import PLUS, views
 
-    rates = views(made.table).entry[PLUS, :, 2]  # the constant of the second of a pair: at the middle of an octave
-    octave = math.floor(math.log2(made.parameters[1] * speed)) - made.first
+    rates = views(new_map.table).asymptote[
+        PLUS, :, 2
+    ]  # the constant of the second of a pair: at the middle of an octave
+    octave = math.floor(math.log2(new_map.parameters[1] * speed)) - new_map.first
     return float(1.0 / rates[min(max(octave, 0), rates.size - 1)])
 
 
-class Answer(NamedTuple):
-    """Motions as arrays: outputs (rows, motions, times), and one entry a motion of the rest.
+class FlowResult(NamedTuple):
+    """Motions as arrays.
 
-    ``status`` < 0 stands for a motion that is not in the map, whose other entries mean nothing.
+    out : outputs, (rows, motions, times).  status : of each motion; < 0 for a motion outside the map, whose other
+    entries are
+    undefined.  onset, rest : times of the onset of partial slip and of rest, NaN where there is none.
+    switches : number of regime changes.
     """
 
     out: Floats
@@ -148,31 +181,37 @@ class Answer(NamedTuple):
     switches: Integers
 
     @classmethod
-    def empty(cls, rows: int, count: int, times: int) -> Answer:
-        """No motion answered yet."""
+    def empty(cls, rows: int, count: int, times: int) -> FlowResult:
+        """Arrays for ``count`` motions with ``rows`` quantities at ``times`` times; no motion is looked up yet."""
         return cls(
             np.empty((rows, count, times)), np.full(count, -1, np.int8), np.empty(count), np.empty(count),
             np.zeros(count, np.int64),
         )  # fmt: skip
 
 
-def ask(
+def look_up_ensemble(
     chosen: FlowMap, gamma: float, rest: float, V0: NDArray, omega0: NDArray, times: NDArray, rows: tuple[int, ...],
     *, threads: int | None = 1, progress: str | None = None,
-) -> Answer:  # fmt: skip
-    """Roll motions by a map; ``rows`` as in ``kernels/flow/loop.py``, ``rest`` = 0 for none."""
-    from ..kernels.flow.loop import flow_loop
+) -> FlowResult:  # fmt: skip
+    """Look up motions in a map.
+
+    chosen : the map.  gamma : time scale of the scene.  rest : rest threshold, 0 for none.
+    V0, omega0 : initial speeds, vectors of one or n numbers.  times : output times.
+    rows : output quantities, as in ``kernels/flow/loop.py``.  threads : of the work.  progress : title of a progress
+    bar.
+    """
+    from ..kernels.flow.loop import look_up_motions
     from ..kernels.flow.records import Flow
 
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
-    answer = Answer.empty(len(rows), count, times.size)
+    result = FlowResult.empty(len(rows), count, times.size)
     wanted = np.array(rows, np.int64)
     _, kappa, mu, j = chosen.parameters
     flow = Flow(chosen.table, chosen.first, kappa, mu, j, chosen.slow_rate)
 
     def work(start: int, stop: int) -> None:
-        flow_loop(flow, gamma, rest, V0, omega0, times, wanted, answer, start, stop)
+        look_up_motions(flow, gamma, rest, V0, omega0, times, wanted, result, start, stop)
 
-    run_blocks(work, answer.status.size, _BLOCK, threads=threads, progress=progress)
-    return answer
+    run_blocks(work, result.status.size, _BLOCK, threads=threads, progress=progress)
+    return result

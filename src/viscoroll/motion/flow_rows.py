@@ -1,4 +1,4 @@
-"""Functions of one variable as polynomials, an octave each: fit, integral, value, inverse."""
+"""Piecewise polynomials of one variable, one for each octave: fit, integral, value, inverse."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ from ..core.typed import Floats
 from ..kernels.numerics.nodes import Interpolation, chebyshev, powers_of_chebyshev, to_chebyshev
 from ..kernels.rows.lanes import TERMS
 
-#: of Newton's iteration; a step after which only the square of its size is left
-_MOST_STEPS, _LAST = 20, 1e-8
+#: limit of Newton's iteration for the inverse function
+_MAX_ITERATIONS = 20
+#: relative step after which the iteration ends: the error that remains is about its square
+_CONVERGED = 1e-8
 
 
 class Nodes:
-    """Chebyshev's nodes, and what is done with values there along the last axis.
+    """Chebyshev nodes, and linear maps of values at them, along the last axis.
 
-    An integral is fitted through its own values: that drops its highest Chebyshev term, which is not known.
+    An integral is fitted through its values; this drops its highest Chebyshev term, which the values do not
+    determine.
     """
 
     def __init__(self, count: int) -> None:
@@ -27,22 +30,27 @@ class Nodes:
         self._chebyshev, self._powers = to_chebyshev(count), powers_of_chebyshev(count, 0.0, 1.0).T.copy()
 
     def powers(self, values: Floats) -> Floats:
-        """Coefficients of the powers of t in [-1, 1], by way of Chebyshev's, which keeps rounding out of them."""
+        """Coefficients of the powers of t in [-1, 1], by way of Chebyshev coefficients, which limits the rounding
+        errors.
+        """
         return _applied(self._powers, _applied(self._chebyshev, values))
 
     def integrals(self, slopes: Floats, half: Any, start: Any = 0.0) -> Floats:
-        """At the nodes, from ``start`` at the left end of the first row; rows follow one another, ``half`` as long."""
+        """Integral at the nodes, from ``start`` at the left end of the first row.
+
+        slopes : values of the integrand, (rows, nodes).  half : half the length of each row.  start : initial value.
+        """
         whole = _applied(self._integrals, slopes) * np.asarray(half)[..., None]
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
         return whole[..., :-1] + (start + rises)[..., None]
 
     def end(self, slopes: Floats, half: Any) -> Floats:
-        """The integral over all rows."""
+        """Integral over all rows."""
         return (_applied(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
 
 
 def _applied(matrix: Floats, values: Floats) -> Floats:
-    """By no library of linear algebra: its last digits differ from machine to machine."""
+    """A matrix applied along the last axis, without BLAS, whose last bits differ between machines."""
     return np.einsum("...n,mn->...m", values, matrix)
 
 
@@ -50,18 +58,20 @@ NODES = Nodes(TERMS)
 
 
 class Rows:
-    """Polynomials one after the other, between ``edges``."""
+    """Consecutive polynomials between ``edges``."""
 
     def __init__(self, edges: Floats) -> None:
         self.edges, self.half = edges, 0.5 * np.diff(edges)
         self.x = self.at(NODES)
 
     def at(self, nodes: Nodes) -> Floats:
-        """The nodes of all rows."""
+        """Interpolation nodes of all rows."""
         return self.edges[:-1, None] + self.half[:, None] * (1.0 + nodes.t)
 
     def value(self, powers: Floats, x: Floats) -> Floats:
-        """Of the function with these ``powers``, (row, power); beyond the ends by the first or last row."""
+        """Values at x of the function with the coefficients ``powers``, (row, power); beyond the ends the first or
+        last row is used.
+        """
         row = np.searchsorted(self.edges[1:-1], x, side="right")
         t, total = (x - self.edges[row]) / self.half[row] - 1.0, np.zeros(x.shape)
         for k in range(powers.shape[1] - 1, -1, -1):
@@ -69,17 +79,20 @@ class Rows:
         return total
 
     def inverse(self, powers: Floats, target: Floats) -> Floats:
-        """Where an increasing function takes these values; at the upper end what is beyond."""
+        """Arguments at which an increasing function takes the values ``target``; the upper end for values beyond it.
+
+        powers : coefficients, (row, power).
+        """
         slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]
         x = np.interp(np.log(target), np.log(self.value(powers, self.x).ravel()), self.x.ravel())
-        for _ in range(_MOST_STEPS):
+        for _ in range(_MAX_ITERATIONS):
             change = (self.value(powers, x) - target) / self.value(slopes, x)
             x = np.minimum(x - change, self.edges[-1])
-            if (np.abs(change) <= _LAST * np.abs(x)).all():
+            if (np.abs(change) <= _CONVERGED * np.abs(x)).all():
                 break
         return x
 
 
 def octaves(low: int, high: int) -> Rows:
-    """From 2^low to 2^high."""
+    """Rows for the octaves from 2^low to 2^high."""
     return Rows(np.ldexp(1.0, np.arange(low, high + 1)))

@@ -1,4 +1,4 @@
-"""Flow maps, and what is kept of them on disk beside the compiled kernels: sealed, those used last."""
+"""Flow maps, and their files beside the compiled kernels: sealed, and limited to those used last."""
 
 from __future__ import annotations
 
@@ -24,17 +24,16 @@ KEPT = 64
 
 @dataclass(frozen=True)
 class FlowMap:
-    """Tables that roll the motions of one scene.
+    """Tables of the motions of one scene.
 
-    Attributes
-    ----------
+    Attributes ----------
     parameters : alpha or series in its own unit of time, kappa, mu, j.
-    first : kappa V of the slowest stick onset in it is 2**first.
+    first : kappa V of the slowest tabulated onset is 2**first.
     table : all tables, see ``kernels/flow/layout.py``.
-    errors : stated ones, four times the worst of 100 motions that the integrator rolled at rtol 1e-12 when the map was
-        built: of V and omega relative to the larger of the two; of distance and angle, relative to the larger of the
-        two so far (and to 1e-5 of that at rest: they are differences of what is left to it); of the energy lost in
-        slip and in rolling, relative to that at the start.
+    errors : stated errors, four times the largest of 100 motions against the integrator at rtol 1e-12, measured when
+    the map
+        was built: of V and omega relative to the larger of the two; of distance and angle relative to the larger of
+        the two so far (and to 1e-5 of that at rest); of slip and rolling loss relative to the initial energy.
     problem : why the scene has no map, or "".
     """
 
@@ -46,25 +45,25 @@ class FlowMap:
 
     @property
     def slow_rate(self) -> float:
-        """At which ln V falls in the end, as gamma t counts time: T_mean/(1 + j)."""
+        """Rate at which ln V falls at low speeds, in time gamma t: T_mean/(1 + j)."""
         material, _, _, j = self.parameters
         T_mean: float = material.T_mean if isinstance(material, Prony) else (material - 1.0) / material
         return T_mean / (1.0 + j)
 
     def stated_error(self, *, path: bool, loss: bool) -> float:
-        """The largest of the errors of the speeds and, where asked for, of the path and the losses."""
+        """Largest stated error of the speeds and, if requested, of path and losses."""
         speeds, way, lost = self.errors
         return max(speeds, way if path else 0.0, lost if loss else 0.0)
 
 
 def folder() -> Path:
-    """Where maps are kept: they are worth no more than the kernels and modules that fill and read them."""
+    """Folder of the maps, named by the sources of kernels and modules that make and read them."""
     return cache_root() / f"flow-{_digest(Path(__file__).parents[1])}"
 
 
 @lru_cache(maxsize=1)
 def _digest(package: Path) -> str:
-    """Hash of the sources of kernels, materials and motions."""
+    """SHA-256 of the sources of kernels, materials and motions in the folder ``package``, its first 16 digits."""
     from ..kernels.compile.cache import sources_digest
 
     digest = hashlib.sha256(sources_digest().encode())
@@ -75,7 +74,7 @@ def _digest(package: Path) -> str:
 
 
 def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
-    """The parameters as numbers: those of a series are alpha, the rates of relaxation, and their strengths."""
+    """The parameters as numbers; those of a series are alpha, relaxation rates and strengths."""
     material, *others = parameters
     if isinstance(material, Prony):
         return (material.alpha, *material.modes.a.tolist(), *material.modes.E.tolist(), *others)
@@ -83,13 +82,15 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
 
 
 def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
-    """File of the map for kappa V < 2**octave at stick onset."""
+    """File of the map for kappa V < 2**octave at onset."""
     numbers = np.array((*_numbers(parameters), octave), np.float64)
     return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
-    """The map in a file; None if there is none, or after a warning, none that is whole."""
+    """The map in the file ``path``; None if there is none, or, after a warning, if it is damaged or of other
+    ``parameters``.
+    """
     try:
         content = read_own(path)
     except OSError:
@@ -105,6 +106,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
 
 
 def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
+    """The map in the bytes ``content`` of a file; raises ValueError if it is damaged or of other ``parameters``."""
     from ..kernels.flow.layout import SIZE
 
     if not seal_holds(content):
@@ -118,11 +120,13 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
         return FlowMap(parameters, int(data["first"]), data["table"], errors, str(data["problem"]))
 
 
-def save(made: FlowMap, path: Path) -> None:
-    """Keep a map; where it cannot be written it is built anew next time."""
+def save(new_map: FlowMap, path: Path) -> None:
+    """Write ``new_map`` to ``path``, and delete the oldest maps beyond the limit; if it cannot be written nothing
+    happens.
+    """
     try:
-        content, numbers = io.BytesIO(), _numbers(made.parameters)
-        np.savez(content, **(vars(made) | {"parameters": numbers}))
+        content, numbers = io.BytesIO(), _numbers(new_map.parameters)
+        np.savez(content, **(vars(new_map) | {"parameters": numbers}))
         write_own(path, seal(content.getvalue()))
         oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
         for file in oldest[:-KEPT]:

@@ -72,7 +72,7 @@ def roll(
         From there on V = omega = 0 and x, angle stay; the distance so left out is close to (1 + j) V/(gamma c).
     unsteady : in partial slip take M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N) V' = -gamma M where
         creep is slow.  Errors of V that the law of steady rolling makes become some five times smaller
-        (docs/may_i.md).  The motion ends where gamma N is 1 + j or -(1 + j)/2, at least -1: below that speed the
+        (docs/validity.md).  The motion ends where gamma N is 1 + j or -(1 + j)/2, at least -1: below that speed the
         contact comes to stand in its own imprint.  A drive may jump; V' does too then, which the contact in truth
         follows late.  Refused where bodies differ.
     rested : whether the contact had rested long before it starts to roll, or the time that it had.

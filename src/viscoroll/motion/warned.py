@@ -29,7 +29,7 @@ _LARGEST_M = 0.25
 #: of a motion that is let go, the share of its way where V is not right to 10 %: all of it where it starts beyond
 _SLOW_PART = 0.1
 #: (kappa V)^2 over gamma (1 - 1/alpha)/(1 + j) from which on it cannot be more, of any material: (kappa V)^2 |N| is at
-#: most 1.35/16 of 1 - 1/alpha (docs/may_i.md), and the way grows at least as V
+#: most 1.35/16 of 1 - 1/alpha (docs/validity.md), and the way grows at least as V
 _PLAIN = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
 #: motions of an ensemble that are looked at
 _LOOKED_AT = 256

@@ -2,9 +2,9 @@
 Stick and slip in the contact
 =============================
 
-A driven or braked cylinder creeps: its rim is a little faster or slower than its axis.
-The front of the contact sticks, the rear slips.  With more creep the stick zone shrinks,
-and at the critical creep ``delta_star`` it is gone.
+A driven or braked cylinder has a creepage: its circumferential speed differs slightly from the
+travelling speed.  The front of the contact sticks, the rear slips.  The stick zone shrinks with
+increasing creepage and vanishes at the critical creepage ``delta_star``.
 """
 
 import matplotlib.pyplot as plt
@@ -22,18 +22,19 @@ for axes, share in zip(panels, (0.2, 0.6, 1.0), strict=True):
     rear, front = (
         0.5 * c.lam * (c.epsilon - 1.0),
         0.5 * c.lam * (c.epsilon + 1.0),
-    )  # over l0, from below the axis
+    )  # in units of l0, from below the axis
     x = np.linspace(rear, front, 501)
     s = vr.stress(scene, x, V=0.05, delta=share * limit)
-    axes.plot(x, 1e3 * scene.mu * s.p, "--", color="0.4", label="mu p")
-    axes.plot(x, 1e3 * s.tau, label="shear")
-    axes.axvspan(front - c.beta * c.lam, front, color="0.92", label="stick")
+    axes.plot(x, 1e3 * scene.mu * s.p, "--", color="0.4", label=r"$\mu p$")
+    axes.plot(x, 1e3 * s.tau, label=r"shear stress $\tau$")
+    axes.axvspan(front - c.beta * c.lam, front, color="0.92", label="stick zone")
     axes.set(
-        title=f"creep {share:g} delta_star, Q = {c.Q / scene.mu:.2f} mu", xlabel="x / l0"
+        title=rf"$\delta = {share:g}\,\delta^*$, $Q = {c.Q / scene.mu:.2f}\,\mu P$",
+        xlabel="$x/l_0$",
     )
-panels[0].set_ylabel("stress / E', times 1000")
+panels[0].set_ylabel(r"stress$/E'\times 10^3$")
 panels[0].legend(frameon=False, loc="upper left")
 
 # %%
-# The cylinder moves to the right.  Pressure leans forward, because the material in front
-# has not yet relaxed: that is where rolling resistance comes from.
+# The cylinder moves to the right.  The pressure centre is shifted to the leading edge, because the
+# material there has not relaxed yet; its moment about the axis is the rolling resistance.

@@ -1,9 +1,9 @@
 """
-Traction over creep
-===================
+Creep force over creepage
+=========================
 
-How much friction does a given creep raise?  At rest and for an elastic material the answer
-is Carter's parabola. Viscosity changes its scale: a fast contact is shorter and stiffer.
+The creep force Q at a given creepage.  At low speed, and for an elastic material, it is Carter's
+parabola.  Relaxation changes its scale: a fast contact is shorter and stiffer.
 """
 
 import matplotlib.pyplot as plt
@@ -16,7 +16,7 @@ creep = np.linspace(-0.02, 0.02, 401)
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 for V in (1e-4, 0.03, 0.1, 1.0):
     axes.plot(
-        100.0 * creep, vr.contact(scene, V, delta=creep, fields="Q").Q, label=f"V = {V:g}"
+        100.0 * creep, vr.contact(scene, V, delta=creep, fields="Q").Q, label=f"$V = {V:g}$"
     )
 axes.plot(
     100.0 * creep,
@@ -24,5 +24,5 @@ axes.plot(
     "k:",
     label="elastic (Carter)",
 )
-axes.set(xlabel="creep (omega - V)/V, %", ylabel="traction Q, over load")
+axes.set(xlabel=r"creepage $(\omega R - V)/V$, %", ylabel="creep force $Q/P$")
 axes.legend(frameon=False)

@@ -2,9 +2,8 @@
 A start with wheel spin
 =======================
 
-A motor raises its torque in a ramp.  Beyond (1 + j) mu times load and radius the contact
-cannot hold it: the wheel spins, until the throttle is let go and the wheel grips again.
-Full slip is shaded.
+The torque of a motor rises linearly.  Above (1 + j) mu times load and radius the whole contact
+slips and the wheel spins.  When the torque is reduced, the stick zone forms again.  Full slip is grey.
 """
 
 import matplotlib.pyplot as plt
@@ -22,11 +21,11 @@ m = vr.roll(scene, 0.0, 0.0, t, torque=vr.Schedule(times, torque))
 figure, (top, bottom) = plt.subplots(
     2, 1, figsize=(7.2, 5.6), sharex=True, layout="constrained"
 )
-top.plot(t, m.V, "k", label="V")
-top.plot(t, m.omega, "--", label="omega")
-bottom.plot(t, m.contact("Q").Q, "k", label="traction Q")
-bottom.plot(t, m.torque, "--", label="torque")
-for limit, name in ((scene.mu, "mu"), (grip, "(1 + j) mu")):
+top.plot(t, m.V, "k", label="$V$")
+top.plot(t, m.omega, "--", label=r"$\omega$")
+bottom.plot(t, m.contact("Q").Q, "k", label="traction $Q/P$")
+bottom.plot(t, m.torque, "--", label="torque$/(PR)$")
+for limit, name in ((scene.mu, r"$\mu$"), (grip, r"$(1 + j)\,\mu$")):
     bottom.axhline(limit, color="0.7", linewidth=0.6)
     bottom.text(t[-1], limit, name, ha="right", va="bottom")
 ends = [*(switch.t for switch in m.switches[1:]), t[-1]]
@@ -34,7 +33,7 @@ for switch, end in zip(m.switches, ends, strict=True):
     if switch.regime == "full slip":
         for axes in (top, bottom):
             axes.axvspan(switch.t, end, color="0.87", linewidth=0.0)
-top.set(ylabel="V, omega", xlim=(0.0, t[-1]))
-bottom.set(xlabel="t", ylabel="Q, torque", ylim=(None, 2.15 * grip))
+top.set(ylabel=r"$V T/R$, $\omega T$", xlim=(0.0, t[-1]))
+bottom.set(xlabel="$t/T$", ylabel="$Q/P$, torque$/(PR)$", ylim=(None, 2.15 * grip))
 for axes in (top, bottom):
     axes.legend(loc="upper left")

@@ -2,9 +2,8 @@
 Braked through V = 0
 ====================
 
-A torque against the motion brakes the cylinder, stops it, and sends it back.  V and omega
-pass zero with a kink only. The traction Q jumps, because the stick zone forms anew at what
-is now the front.
+A torque against the motion slows the cylinder down and reverses it.  V and omega pass through
+zero with a kink.  The traction Q jumps, because the stick zone forms again at the new leading edge.
 """
 
 import matplotlib.pyplot as plt
@@ -22,11 +21,11 @@ m = vr.roll(scene, V0, V0, t, torque=torque)
 Q = m.contact("Q").Q
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
-left.plot(t, m.V, "k", label="V")
-left.plot(t, m.omega, "--", label="omega")
+left.plot(t, m.V, "k", label="$V$")
+left.plot(t, m.omega, "--", label=r"$\omega$")
 left.axvline(turn, color="0.7", linewidth=0.6)
 left.axhline(0.0, color="0.7", linewidth=0.6)
-left.set(xlabel="t", ylabel="V, omega", title="a) speeds")
+left.set(xlabel="$t/T$", ylabel=r"$V T/R$, $\omega T$", title="a) speeds")
 left.legend(frameon=False)
 inset = right.inset_axes((0.5, 0.5, 0.46, 0.44))
 near = np.abs(t - turn) < 0.06 * turn
@@ -34,5 +33,6 @@ for axes, shown in ((right, t > 0.0), (inset, near)):
     for side in (t < turn, t > turn):
         axes.plot(t[side & shown], Q[side & shown], "k")
 right.axhline(-scene.mu, color="0.7", linewidth=0.6)
-right.set(xlabel="t", ylabel="Q", title="b) traction; inset: V = 0")
+right.text(0.0, -scene.mu, r"$-\mu$", va="bottom", fontsize=8)
+right.set(xlabel="$t/T$", ylabel="$Q/P$", title="b) traction; inset: near $V = 0$")
 right.set(ylim=(-1.05 * scene.mu, 0.02 * scene.mu))

@@ -1,10 +1,10 @@
 """
-What settles and what runs away
-===============================
+Motions on a slope
+==================
 
-The plane (V, omega) on a slope of 3 degrees: all motions left of the orange line settle at
-the stable speed (filled dot), all right of it run away.  The line ends in the unstable
-speed (open dot).
+The plane (V, omega) on a slope of 3 degrees.  Motions that start left of the orange line (separatrix)
+settle at the stable steady speed (filled dot).  Motions that start right of it accelerate without
+limit.  The line ends in the unstable steady speed (open dot).
 """
 
 import matplotlib.pyplot as plt
@@ -18,8 +18,8 @@ node, saddle = s.V
 plane = np.array([-0.5, 2.0]) * saddle
 
 # %%
-# The orange line: for each omega the V whose motion ends in the unstable speed, by halving.
-# 30 times as long as the slowest change there takes, it is clear on which side a start lies.
+# The separatrix: for each omega the V whose motion ends in the unstable speed, by bisection.
+# After 30 times the slowest time constant there the motion is clearly on one side.
 across = np.linspace(*plane, 81)
 rate = s.eigenvalues[1].real.max() * scene.gamma * np.cos(slope)
 # V + j omega hardly changes while all of the contact slips
@@ -36,7 +36,7 @@ for _ in range(40):
 separatrix = 0.5 * (low + high)
 
 # %%
-# Right: the difference omega - V, a thousand times enlarged.
+# Right: the difference omega - V, enlarged a thousand times.
 V = np.linspace(*plane, 801)
 band = vr.contact(scene, V, delta=0.0).delta_star * np.abs(V)
 end = 150.0 / scene.gamma
@@ -51,13 +51,19 @@ for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
     for m in motions:
         fine = m.at(np.unique(np.linspace(m.t[:-1], m.t[1:], 6)))
         axes.plot(fine.V, tilt * fine.V + unit * (fine.omega - fine.V), "C0", lw=0.9)
-    axes.plot(separatrix, tilt * separatrix + unit * (across - separatrix), "C1")
-    for n, face in enumerate(("black", "white")):
+    axes.plot(
+        separatrix,
+        tilt * separatrix + unit * (across - separatrix),
+        "C1",
+        label="separatrix",
+    )
+    for n, face, name in ((0, "black", "stable"), (1, "white", "unstable")):
         height = tilt * s.V[n] + unit * (s.omega[n] - s.V[n])
-        axes.plot(s.V[n], height, "o", color="black", mfc=face, zorder=4)
-    axes.set_xlabel("V")
-left.set(xlim=plane, ylim=plane, aspect="equal", ylabel="omega")
+        axes.plot(s.V[n], height, "o", color="black", mfc=face, zorder=4, label=name)
+    axes.set(xlabel=r"$V T/R$", box_aspect=1.0)
+left.set(xlim=plane, ylim=plane, ylabel=r"$\omega T$")
 room = 1.2e3 * band[(V > -0.2 * saddle) & (V < 1.6 * saddle)].max()
 right.set(xlim=(-0.2 * saddle, 1.6 * saddle), ylim=(-room, room))
-right.set_ylabel("(omega - V), times 1000")
-figure.suptitle("White: partial slip; grey: full slip", fontsize="medium")
+right.set_ylabel(r"$(\omega T - V T/R)\times 10^3$")
+left.legend(loc="upper left", fontsize="small")
+figure.suptitle("White: partial slip; grey: full slip; blue: motions", fontsize="medium")

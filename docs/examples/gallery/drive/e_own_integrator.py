@@ -1,10 +1,10 @@
 """
-The law in an integrator of your own
-====================================
+The law in your own integrator
+==============================
 
-A roller is towed by a spring.  It swings behind the tractor until the force of the spring
-is that of rolling resistance.  ``vr.law`` binds the contact law to a scene: a call costs
-microseconds, and gives the slopes that an implicit method wants.
+A roller is towed by a spring.  It oscillates behind the tractor until the force of the spring
+equals the rolling resistance.  ``vr.law`` binds the contact law to a scene: a call takes
+microseconds, and gives the slopes that an implicit method needs.
 """
 
 import matplotlib.pyplot as plt
@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 
-# times over 1 s, lengths over R = 0.1 m, forces over the load
+# units: time 1 s, length R = 0.1 m, force the load
 scene = vr.presets.RUBBER_ROLLER
 law, gamma, j = vr.law(scene), scene.gamma, scene.j
 speed = 0.5  # of the tractor, radii a second
@@ -56,4 +56,4 @@ print(f"{found.nfev} calls of the law, {found.njev} of its slopes")
 
 # %%
 # Grey: rolling resistance at the speed of the tractor.  The same law serves numba
-# (``law.jitted``) and C (``law.address``): :doc:`/howto/contact`.
+# (``law.jitted``) and C (``law.address``): :doc:`/howto/law`.

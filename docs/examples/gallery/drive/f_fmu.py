@@ -2,8 +2,8 @@
 A roller in another tool
 ========================
 
-``viscoroll fmu`` makes an FMU, which Modelica tools, Simulink and others run.  Here it is fmpy that
-runs one: a roller lies still, and a motor pulls for a second.
+``viscoroll fmu`` makes an FMU for Modelica tools, Simulink and others.  Here fmpy runs one: a roller
+at rest is driven by a motor for one second.
 """
 
 import tempfile
@@ -30,13 +30,13 @@ with tempfile.TemporaryDirectory() as folder:
     )  # fmt: skip
 
 figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
-axes.plot(found["time"], found["v"], label="v, m/s")
-axes.plot(found["time"], roller.R * found["omega"], "--", label="omega R, m/s")
-axes.set(xlabel="t, s")
+axes.plot(found["time"], found["v"], label="$v$")
+axes.plot(found["time"], roller.R * found["omega"], "--", label=r"$\omega R$")
+axes.set(xlabel="$t$, s", ylabel="speed, m/s")
 axes.legend()
 print(f"v = {found['v'][-1]:.6f} m/s after 3 s")
 
 # %%
 # ``Roller`` takes its own steps between those of the tool.  ``--model ContactElement`` is the contact
-# alone, from v, omega and load to force and torque with their slopes, for a mechanism that has the
-# cylinder already.
+# alone: v, omega and load give force and torque with their slopes, for a mechanism that contains the
+# cylinder.

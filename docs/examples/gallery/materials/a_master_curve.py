@@ -3,8 +3,8 @@ From a DMA curve to a Prony series
 ==================================
 
 A dynamic mechanical analysis (DMA) measures storage and loss modulus over frequency.
-``fit_prony`` turns them into as few relaxation times as the wanted misfit needs, and says
-what the data leave open.
+``fit_prony`` fits as few relaxation times as the requested misfit needs, and reports what the data
+do not determine.
 """
 
 import matplotlib.pyplot as plt
@@ -12,7 +12,7 @@ import numpy as np
 
 import viscoroll as vr
 
-tau = np.logspace(2, -7, 19)  # a rubber made up, in place of a measurement
+tau = np.logspace(2, -7, 19)  # a synthetic rubber in place of a measurement
 strength = 2e6 * np.logspace(-2, 2, 19)
 omega = np.logspace(-3, 7, 51)  # rad/s
 z = np.multiply.outer(omega, tau)
@@ -31,7 +31,7 @@ axes.loglog(omega, loss, "s", color="C1", markersize=3, label="loss modulus")
 for values, color in zip(fit.modulus(fine), ("C0", "C1"), strict=True):
     axes.loglog(fine, values, color=color)
 axes.set(
-    xlabel="frequency, rad/s",
+    xlabel="angular frequency, rad/s",
     ylabel="modulus, Pa",
     title=f"{fit.prony.E.size} relaxation times",
 )

@@ -2,10 +2,9 @@
 Rolling resistance at three temperatures
 ========================================
 
-Temperature multiplies all relaxation times of a rubber by one factor (here that of
-Williams, Landel and Ferry).  So the curve of rolling resistance keeps its shape and slides
-along the speed axis: in the cold it peaks at a snail's pace, in the heat beyond any speed
-of rollers.
+Temperature multiplies all relaxation times of a rubber by one factor a_T (here by the equation of
+Williams, Landel and Ferry).  The curve of rolling resistance keeps its shape and shifts along the
+speed axis: to low speeds in the cold, to high speeds in the heat.
 """
 
 import matplotlib.pyplot as plt
@@ -28,5 +27,5 @@ for temperature in (-10.0, 20.0, 60.0):
     )
     M = roller.contact(speed, delta=0.0, fields="M").M  # N m per m of length
     axes.semilogx(speed, 100.0 * M / (roller.R * roller.load), label=f"{temperature:g} °C")
-axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
+axes.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
 axes.legend(frameon=False)

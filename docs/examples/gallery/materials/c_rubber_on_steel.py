@@ -2,8 +2,8 @@
 Rubber on steel
 ===============
 
-Only the rubber deforms, so only it loses energy.  Pressed by the same load as rubber on
-rubber, the contact is narrower, and rolling resistance smaller.
+Only the rubber deforms and dissipates energy.  At the same load the contact is shorter than that
+of rubber on rubber, and rolling resistance is smaller.
 """
 
 import matplotlib.pyplot as plt
@@ -32,12 +32,12 @@ for name, base in {"rubber on rubber": rubber, "rubber on steel": steel}.items()
         100.0 * c.M_half_space / (roller.R * roller.load),
         "--",
         color=line.get_color(),
-        label="   of it in the base",
+        label="   loss in the base",
     )
-axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
+axes.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
 axes.legend(frameon=False, fontsize="small")
 
 # %%
-# Does the theory hold for the pair?  Dundurs' constant says how much shear disturbs the
-# pressure; rubber on steel is close to 0, where it does not.
+# Does the theory hold for the pair?  Dundurs' constant measures the influence of shear on the
+# pressure; for rubber on steel it is close to 0.
 print(roller.validity(1.0).bodies.sentence)

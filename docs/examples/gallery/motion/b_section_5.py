@@ -2,10 +2,9 @@
 The example of the paper
 ========================
 
-Sect. 5 of the paper throws a soft, slow cylinder in three ways; its Fig. 5 shows V and
-omega.  A caveat: this is the exact solution of the paper's Eq. (22), but not the motion of
-such a cylinder, which at 9 mm/s would rock in its own imprint: it is too slow for the law of
-steady rolling (:doc:`/may_i`).
+Sect. 5 of the paper has three motions of a soft, slow cylinder; its Fig. 5 shows V and omega.
+The figure is the exact solution of Eq. (22) of the paper.  A real cylinder would not move so: at
+9 mm/s the quasi-steady assumption is violated (:doc:`/validity_measured`).
 """
 
 import matplotlib.pyplot as plt
@@ -18,26 +17,36 @@ t = np.linspace(0.0, 4e-3, 2001)  # in units of T_epsilon
 figure, axes = plt.subplots(figsize=(7.6, 4.6), layout="constrained")
 for n, (name, start) in enumerate(vr.presets.PAPER_STARTS.items()):
     m = vr.roll(scene, *start, t)
-    axes.plot(1e4 * t, m.V, f"C{n}", label=f"{name}: V")
-    axes.plot(1e4 * t, m.omega, f"C{n}--", label=f"{name}: omega")
+    axes.plot(1e4 * t, m.V, f"C{n}", label=f"{name}: $V$")
+    axes.plot(1e4 * t, m.omega, f"C{n}--", label=rf"{name}: $\omega$")
     axes.axvline(1e4 * m.onset_time, color=f"C{n}", linewidth=0.6, linestyle=":")
-axes.set(xlabel="t, times 10^4", ylabel="V, omega", xlim=(0.0, 40.0))
-axes.set_title("Fig. 5 of the paper; dotted: stick begins", fontsize="medium")
+axes.set(
+    xlabel=r"$t/T_\varepsilon\times 10^4$",
+    ylabel=r"$V T_\varepsilon/R$, $\omega T_\varepsilon$",
+    xlim=(0.0, 40.0),
+)
+axes.set_title("Fig. 5 of the paper; dotted: onset of stick", fontsize="medium")
 axes.legend(frameon=False, ncols=3)
 
 # %%
-# The contact during the first of these motions (Fig. 6): at the onset of stick the stick
-# zone ``beta`` opens within a few ten-thousandths of T_epsilon, and the creep ``delta``
-# falls to nearly nothing.  Circles: the times of Fig. 7.
+# The contact during the first motion (Fig. 6): after the onset of stick the stick zone ``beta``
+# grows within some 1e-4 T_epsilon, and the creepage ``delta`` falls to nearly 0.  Circles mark the
+# times of Fig. 7.
 onset = vr.roll(scene, 1.5, 0.5, t).onset_time
 t = np.unique(np.concatenate([t, onset * np.linspace(0.9, 1.3, 401)]))
 m = vr.roll(scene, 1.5, 0.5, t)
 marked = vr.roll(scene, 1.5, 0.5, [1.52e-4, 4e-4, 24e-4, 30e-4])
+SYMBOLS = {
+    "delta": r"$\delta$",
+    "lam": r"$\lambda$",
+    "epsilon": r"$\varepsilon$",
+    "beta": r"$\beta$",
+}
 contact, (near, whole) = plt.subplots(
     1, 2, figsize=(9.6, 4.2), sharey=True, width_ratios=(1.0, 1.6), layout="constrained"
 )
 for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
-    for n, name in enumerate(("delta", "lam", "epsilon", "beta")):
+    for n, name in enumerate(SYMBOLS):
         for motion, style in ((m, "-"), (marked, "o")):
             values = (
                 motion.delta if name == "delta" else getattr(motion.contact(name), name)
@@ -47,7 +56,11 @@ for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
                 values,
                 f"C{n}{style}",
                 mfc="none",
-                label=name if style == "-" else "_",
+                label=SYMBOLS[name] if style == "-" else "_",
             )
-    axes.set(xlim=(0.0, 1e4 * end), ylim=(-0.75, 1.1), xlabel="t, times 10^4")
+    axes.set(
+        xlim=(0.0, 1e4 * end), ylim=(-0.75, 1.1), xlabel=r"$t/T_\varepsilon\times 10^4$"
+    )
+near.set_ylabel("contact state")
 whole.legend(frameon=False)
+contact.suptitle("Circles: times of Fig. 7", fontsize="medium")

@@ -2,9 +2,9 @@
 Phase portrait
 ==============
 
-Every motion has two parts.  While all of the contact slips (grey) friction brings rim and
-axis together, and V + j omega hardly changes.  Then the motion turns onto one common
-curve, the slow manifold, and creeps along it towards rest.
+Every motion has two parts.  In full slip (grey) friction equalises the speeds of rim and axis,
+and V + j omega hardly changes.  Then the motion approaches one common curve, the slow manifold
+(black), and follows it towards rest.
 """
 
 import matplotlib.pyplot as plt
@@ -18,7 +18,7 @@ starts = [(radius * np.cos(a), radius * np.sin(a)) for a in angles]
 motions = [vr.roll(scene, *start, 60.0 / scene.gamma).course for start in starts]
 rest = vr.roll(scene, 2.5, 2.5, 1e6 / scene.gamma, rest=1e-3).rest_time
 rolling = vr.roll(scene, 2.5, 2.5, rest).course
-late = rolling.t > 0.05 / scene.gamma  # the first panel leads onto the manifold
+late = rolling.t > 0.05 / scene.gamma  # the first step approaches the manifold
 
 V = np.linspace(-2.5, 2.5, 801)
 band = vr.contact(scene, V, delta=0.0).delta_star * np.abs(V)
@@ -33,12 +33,16 @@ for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
     for sign in (1.0, -1.0):
         height = tilt * slow.V + unit * (slow.omega - slow.V)
         axes.plot(sign * slow.V, sign * height, "k", zorder=3)
-    axes.set_xlabel("V")
+    axes.set(xlabel=r"$V T/R$", box_aspect=1.0)
 left.plot(*np.transpose(starts), "C0.")
-left.set(xlim=(-2.3, 2.3), ylim=(-2.3, 2.3), aspect="equal", ylabel="omega")
+figure.suptitle(
+    "White: partial slip; grey: full slip; black: slow manifold; dots: starts",
+    fontsize="medium",
+)
+left.set(xlim=(-2.3, 2.3), ylim=(-2.3, 2.3), ylabel=r"$\omega T$")
 room = 1.15e3 * band[np.abs(V) <= radius].max()
-right.set(xlim=(-2.0, 2.0), ylim=(-room, room), ylabel="(omega - V), times 1000")
+right.set(xlim=(-2.0, 2.0), ylim=(-room, room), ylabel=r"$(\omega T - V T/R)\times 10^3$")
 
 # %%
-# White: partial slip.  Right: the difference omega - V a thousand times enlarged.  The band
-# of partial slip, which the left panel cannot show, is a few thousandths of V wide.
+# White: partial slip.  Right: the difference omega - V, enlarged a thousand times.  The band
+# of partial slip is some thousandths of V wide, too narrow for the left panel.

@@ -14,7 +14,9 @@ from scipy.integrate import cumulative_trapezoid
 
 import viscoroll as vr
 
-rubber = vr.fit_prony(*vr.read_dma("../../dma.csv")).material(nu=0.49, density=1100.0)
+rubber = vr.fit_prony(*vr.read_dma(vr.datasets.path("dma.csv"))).material(
+    nu=0.49, density=1100.0
+)
 roller = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.5)
 scene, V = roller.scene(), np.geomspace(1e-4, 10.0, 4000)  # m/s
 c = vr.contact(scene, V / roller.scale["V"], delta=0.0, fields=("M", "N"))
@@ -49,4 +51,4 @@ print(cold.validity(1.0).steady.sentence)
 
 # %%
 # The dots are where V is right to 1 % and 10 %; rolling ends little behind.  A thousand
-# times slower rubber is as right.  What is known of lower speeds: :doc:`/may_i`.
+# times slower rubber is as right.  What is known of lower speeds: :doc:`/validity`.

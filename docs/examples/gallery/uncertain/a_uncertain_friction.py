@@ -1,9 +1,9 @@
 """
-Ten thousand throws with uncertain friction
-===========================================
+Ten thousand motions with uncertain friction
+============================================
 
-The coefficient of friction is known to some per cent only.  How long does the roller
-slide?  Draw friction and speed at random and roll each case.
+The coefficient of friction has a standard deviation of ten per cent.  How long does the roller
+slide?  Friction and initial speed are drawn at random, and each motion is integrated.
 """
 
 import matplotlib.pyplot as plt
@@ -21,11 +21,11 @@ e = rollers.ensemble(draw["V0"], 0.0, [0.1, 10.0], rtol=1e-6, fields="V")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
 left.hist(e.onset_time, bins=60, color="0.6")
-left.set(xlabel="sliding ends at, s", ylabel="throws")
+left.set(xlabel="time of the onset of stick, s", ylabel="motions")
 right.plot(draw["mu"][:2000], e.V[:2000, -1], ".", markersize=2)
 right.set(xlabel="coefficient of friction", ylabel="speed after 10 s, m/s")
 print(np.quantile(e.onset_time, [0.05, 0.5, 0.95]))
 
 # %%
-# Friction decides how long the roller slides, but not how fast it is afterwards: sliding
-# leaves V + j omega as it was.
+# Friction determines the duration of sliding, but not the speed afterwards: V + j omega does not
+# change while sliding.

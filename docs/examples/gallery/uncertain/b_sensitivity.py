@@ -1,8 +1,8 @@
 """
-Which uncertain input matters?
-==============================
+Sensitivity to uncertain inputs
+===============================
 
-Sobol indices share out the variance of a result over the uncertain inputs.  A run file,
+Sobol indices divide the variance of a result among the uncertain inputs.  A run file,
 :doc:`like this one </sensitivity>`, names the inputs and their distributions.
 """
 

@@ -2,9 +2,8 @@
 The law in C, Octave and on grids
 =================================
 
-Offline the law of a material is written once: here as a header of C, and as a file that
-Octave reads.  Both have the digits of the package.  A grid, for programs that can only look
-up, has not.
+The law of a material is written once, offline: here as a C header, and as a file for Octave.  Both
+have the accuracy of the package.  A grid, for programs that can only interpolate, is less accurate.
 """
 
 import shutil
@@ -61,7 +60,7 @@ if shutil.which("octave-cli"):
     print(done.stdout)
 
 # %%
-# A grid for look-up blocks, and what linear look-up in it is worth.
+# A grid for look-up blocks, and the error of linear interpolation in it.
 V = vr.tables.spread(1e-2, 1e4, 60, "log")
 grid = vr.tables.build(scene, V, delta=np.linspace(-0.03, 0.03, 61))
 speeds = np.geomspace(1e-2, 1e4, 400)
@@ -72,9 +71,9 @@ figure, (top, bottom) = plt.subplots(
     2, 1, figsize=(6.4, 5.0), sharex=True, layout="constrained"
 )
 top.semilogx(speeds, truth, label="law")
-top.semilogx(speeds, looked_up, "--", label="linear in the grid")
+top.semilogx(speeds, looked_up, "--", label="linear interpolation in the grid")
 bottom.loglog(speeds, np.abs(looked_up - truth), color="0.3")
-top.set(ylabel="Q, over load")
+top.set(ylabel="$Q/P$")
 top.legend(frameon=False)
-bottom.set(xlabel="V, in R/T_ref", ylabel="error of Q")
+bottom.set(xlabel=r"$V\,T_\mathrm{ref}/R$", ylabel="error of $Q/P$")
 shutil.rmtree(folder)

@@ -57,7 +57,7 @@ def fit(given: Namespace) -> None:
     the data say of it and what they do not, and with -o writes it as a section [material] of a TOML file, or as netCDF.
 
     example:
-      viscoroll material fit docs/examples/dma.csv --nu 0.49 -o rubber.toml
+      viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
     """
     from ...materials.file import as_toml
 

@@ -56,6 +56,6 @@ def _of_toml(path: str) -> Any:
     if not read(path).keys() & set(SCENES):
         return read_materials(path)["material"].plot()
     body = read_body(path)
-    found = body.humps()
+    found = body.resistance_extrema()
     low, high = (found.V[0], found.V[-1]) if found.V.size else (body.scale["V"],) * 2
     return body.contact(np.geomspace(_BEYOND[0] * low, _BEYOND[1] * high, 301), delta=0.0).plot()

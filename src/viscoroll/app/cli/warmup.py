@@ -47,7 +47,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     series = vr.Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     each = series.replace(material=vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
     # a map of its own: that of an ensemble might be found on disk
-    yield "motions and flow maps", lambda: flow.build((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
+    yield "motions and flow maps", lambda: flow.build_map((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
     yield "contact by root solves", lambda: vr.contact(scene, 0.5, delta=0.01, method="direct")
     yield "contact of an alpha each", lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
     yield "contact of a series each", lambda: vr.contact(each, 0.5, delta=0.01)

@@ -1,1 +1,1 @@
-"""Steady rolling under load: all equilibria, and the rolling resistance over speed that they lie on."""
+"""Steady rolling under load: all equilibria, and the rolling resistance over speed that determines them."""

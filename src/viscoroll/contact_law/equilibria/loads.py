@@ -1,4 +1,4 @@
-"""What acts in steady rolling, checked and flattened: :class:`Loads`."""
+"""Loads of steady rolling, checked and flattened: :class:`Loads`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FASTEST = 1e100
 
 
 class Gains(NamedTuple):
-    """Of force and torque on V and omega."""
+    """Gains of force and torque on V and omega, dimensionless."""
 
     force_V: float = 0.0
     force_omega: float = 0.0
@@ -29,20 +29,22 @@ class Gains(NamedTuple):
 
     @property
     def V(self) -> float:
-        """Of both on V: that of force + torque."""
+        """Gain of force + torque on V."""
         return self.force_V + self.torque_V
 
     @property
     def omega(self) -> bool:
-        """Whether there is any on omega."""
+        """Whether any gain acts on omega."""
         return self.force_omega != 0.0 or self.torque_omega != 0.0
 
 
 class Loads(NamedTuple):
-    """Loads of one material as vectors of one length.
+    """Loads of one material as vectors of one length, dimensionless.
 
-    shape : that of the call.  force, torque : at rest, 0 where it is to be found; ``given`` names the one that is
-    given where V is, else None.  kappa : in use, that of a slope.  V : given speeds, or None.
+    shape : shape of the call.  gains : feedback.  given : where V is given, the name of the load that is given with
+    it ("force" or "torque"), else None.  force, torque : values at V = omega = 0; 0 for the load that is to be
+    found.
+    kappa : value on the slope.  mu, j : parameters.  V : given speeds, or None.
     """
 
     shape: tuple[int, ...]
@@ -63,13 +65,17 @@ def loads_of(
     slope: ArrayLike | None,
     V: ArrayLike | None,
 ) -> Loads:
-    """The loads of a call of ``steady`` on the scene of a slope; errors as there."""
+    """Check and broadcast the loads of a call of :func:`.steady.steady`.
+
+    scene : parameters, on the slope.  force, torque : numbers, arrays or :class:`Feedback`.  slope : angle, rad.
+    V : given speeds, or None.  Raises ParameterError as ``steady`` does.
+    """
     if type(scene.alpha) is not float:
         refuse_arrays(scene, ("alpha",))
-    given = None if V is None else _given(slope, force=force, torque=torque)
+    given = None if V is None else _given_load(slope, force=force, torque=torque)
     tangent = slope_factor(slope)[0]
-    push, *of_force = _parts("force", force)
-    turn, *of_torque = _parts("torque", torque)
+    push, *of_force = _split_feedback("force", force)
+    turn, *of_torque = _split_feedback("torque", torque)
     arrays = {"force": push, "torque": turn, "kappa": scene.kappa, "mu": scene.mu, "j": scene.j, "slope": tangent}
     if V is not None:
         arrays["V"] = checked("V", V)
@@ -82,8 +88,10 @@ def loads_of(
     return Loads(shape, Gains(*of_force, *of_torque), given, *rows.reshape(len(arrays), math.prod(shape)))
 
 
-def _parts(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
-    """(What acts at rest, its gains on V and omega)."""
+def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
+    """(value at V = omega = 0, gain on V, gain on omega) of the load ``name``, whose ``value`` is a number, an array
+    or a Feedback.
+    """
     if not isinstance(value, Feedback):
         return checked(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):
@@ -93,8 +101,10 @@ def _parts(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, f
     return value.value, value.V, value.omega
 
 
-def _given(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -> str:
-    """Which of force and torque is given beside V."""
+def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -> str:
+    """Name of the load that is given beside V: "force" or "torque"; ``slope`` alone counts as the force.  Raises
+    ParameterError.
+    """
     names = [name for name, value in loads.items() if value is not None]
     for name in names:
         if isinstance(loads[name], Feedback):

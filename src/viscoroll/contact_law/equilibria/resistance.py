@@ -1,7 +1,7 @@
-"""Rolling resistance over speed: the humps of M(V), and between them the branches on which it can be inverted.
+"""Rolling resistance over speed: extrema of M(V), and the branches between them on which M(V) is inverted.
 
-kappa M is one function of u = kappa V for a material.  A gain G on the speed turns M(V) = load into M(V) - G V = load,
-which is the same with another curve.
+kappa M is a function of u = kappa V alone for a material.  A gain G on the speed turns M(V) = load into M(V) - G V =
+load, the same problem with another curve.
 """
 
 from __future__ import annotations
@@ -15,78 +15,102 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.errors import ParameterError
+from ...core.renamed import warn_renamed
 from ...core.typed import Booleans, Floats, Integers
 from ...materials.law_table import LawTable
 from ..contact_table import rolling
 from ..parameters import Rolls, framed, refuse_arrays
 
-#: octaves of u beyond the rates of a material that are looked at, and closely: farther out the curve has one simple
-#: extremum at most
-_MARGIN, _WIDE = 15, 446
-#: nodes an octave, close and far; an extremum keeps others away by this part of u
-_CLOSE, _FAR, _APART = 16, 2, 1e-6
-#: kappa times a load, and a gain over the longest time, that the nodes reach
-LEAST_LOAD, MOST_LOAD = 1e-120, 1e80
-_GAINS = (1e-40, 1e8)
-#: until a bracket is at rounding
-_HALVINGS = 62
-#: where a function comes near 0 and turns back, it is looked at this often with so many points
-_ZOOMS, _ZOOMED = 4, 33
+#: octaves of u on either side of the rates of a material with closely spaced nodes
+_CLOSE_OCTAVES = 15
+#: octaves of u beyond these with wide spacing: the curve has at most one simple extremum there
+_FAR_OCTAVES = 446
+#: nodes in an octave, closely spaced
+_CLOSE_NODES = 16
+#: nodes in an octave, widely spaced
+_FAR_NODES = 2
+#: relative distance in u within which an extremum replaces other nodes
+_SEPARATION = 1e-6
+#: least size of kappa times a load, other than 0, for which the nodes have a crossing
+LEAST_LOAD = 1e-120
+#: largest size of kappa times a load
+MOST_LOAD = 1e80
+#: range of a gain divided by the longest retardation time
+_GAIN_RANGE = (1e-40, 1e8)
+#: bisections after which a bracket has the width of rounding
+_BISECTIONS = 62
+#: refinements of an interval in which a function approaches 0 and turns back
+_REFINEMENTS = 4
+#: points of such a refinement
+_REFINED_NODES = 33
 
 Function = Callable[[Floats], Floats]
 
 
-class Humps(NamedTuple):
-    """Every local maximum and minimum of M(V), V > 0, by rising V: a maximum comes first and last.
+class ResistanceExtrema(NamedTuple):
+    """Every local maximum and minimum of M(V) for V > 0, by rising V; the first and the last are maxima.
 
-    V : speeds.  M : moments there.  top : whether it is a maximum.
+    V : speeds.  M : moments there.  is_maximum : whether it is a maximum.
     """
 
     V: Floats
     M: Floats
-    top: Booleans
+    is_maximum: Booleans
+
+    @property
+    def top(self) -> Booleans:
+        """Old name of ``is_maximum``."""
+        warn_renamed("top", "is_maximum")
+        return self.is_maximum
 
 
 @dataclass(frozen=True)
 class Branches:
-    """kappa (M - G V) over the speed: nodes by rising speed, and those between which it is monotone."""
+    """Nodes of kappa (M - G V) over kappa V, and the branches on which it is monotone.
+
+    u : nodes of kappa V, ascending.  resistance : values there.  extremum : whether a node is an extremum.
+    gain : G, dimensionless.  first, last : indices of the ends of each branch.
+    """
 
     u: Floats
-    rise: Floats
-    flat: Booleans
+    resistance: Floats
+    extremum: Booleans
     gain: float
     first: Integers
     last: Integers
 
     @cached_property
     def curve(self) -> Any:
-        """The nodes as kernels take them."""
+        """The nodes as the record that kernels take."""
         from ...kernels.rows.steady import Curve
 
-        return Curve(self.u, self.rise, self.flat, self.gain)
+        return Curve(self.u, self.resistance, self.extremum, self.gain)
 
     @cached_property
-    def top(self) -> tuple[float, float]:
-        """The largest value, and kappa V there."""
-        n = int(np.argmax(self.rise))
-        return float(self.rise[n]), float(self.u[n])
+    def maximum(self) -> tuple[float, float]:
+        """(largest value, kappa V there)."""
+        n = int(np.argmax(self.resistance))
+        return float(self.resistance[n]), float(self.u[n])
 
-    def met(self, load: Floats) -> tuple[Integers, Integers]:
-        """(Which loads meet a branch, the node behind which they do).
+    def locate_loads(self, load: Floats) -> tuple[Integers, Integers]:
+        """Locate the branches on which the curve takes given values.
 
-        An extremum, and loads next to it, belong to the branch that ends in it.
+        load : values of kappa (M - G V), (n,).
+
+        Returns (index of the load, node below the crossing), one entry for each crossing.  An extremum, and loads
+        within rounding of it, belong to the branch that ends there.
         """
         from ...kernels.rows.steady import SNAP
 
         which, nodes, near = [], [], SNAP * np.abs(load)
         for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
-            rise = self.rise[first : last + 1]
+            rise = self.resistance[first : last + 1]
             rises = rise[-1] > rise[0]
             low, high = (rise[0], rise[-1]) if rises else (rise[-1], rise[0])
             inside = (load > low) & (load < high)
-            if self.flat[first]:
+            if self.extremum[first]:
                 inside &= np.abs(load - rise[0]) > near
-            if self.flat[last]:
+            if self.extremum[last]:
                 inside |= np.abs(load - rise[-1]) <= near
             which.append(of := inside.nonzero()[0])
             at = rise.searchsorted(load[of], "right") if rises else (-rise).searchsorted(-load[of])
@@ -94,59 +118,67 @@ class Branches:
         return np.concatenate(which), np.concatenate(nodes)
 
 
-def humps(roller: Rolls) -> Humps:
+def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
     """Every local maximum and minimum of the rolling resistance M over the speed.
 
-    A rubber of widely spread relaxation times has several, one of one relaxation time a single maximum.
+    A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
 
-    Parameters
-    ----------
-    roller : a :class:`Scene`, of which alpha or material, and kappa are used, or a :class:`Cylinder`; numbers.
+    Parameters ----------
+    roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; numbers, no
+    arrays.
 
     Returns
     -------
-    Humps
-        ``V``, ``M`` and ``top`` as arrays of one length, of a Cylinder in m/s and N m/m; empty for an elastic
+    ResistanceExtrema
+        ``V``, ``M`` and ``is_maximum`` as arrays of one length, of a Cylinder in m/s and N m/m; empty for an elastic
         material.
 
     Raises
     ------
     ParameterError
-        Arrays in what rolls.
+        Arrays in the parameters of the roller.
 
     Notes
     -----
-    M is good to 1e-14, V to 1e-11 (``tests/test_steady.py``).
+    M is accurate to 1e-14, V to 1e-11 (``tests/test_steady.py``).
+
+    Examples
+    --------
+    >>> top = vr.resistance_extrema(vr.presets.RUBBER_CYLINDER)
+    >>> top.is_maximum[0]
+    np.True_
     """
-    _, scene, scale = framed(roller, "humps")
+    _, scene, scale = framed(roller, "resistance_extrema")
     refuse_arrays(scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None
     if law.alpha == 1.0:
-        return Humps(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
+        return ResistanceExtrema(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
     found = branches(law, 0.0)
-    V, M = found.u[found.flat] / scene.kappa, found.rise[found.flat] / scene.kappa
-    return Humps(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
+    V, M = found.u[found.extremum] / scene.kappa, found.resistance[found.extremum] / scene.kappa
+    return ResistanceExtrema(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
 
 
 @lru_cache(maxsize=16)
 def branches(law: LawTable, gain: float) -> Branches:
     """The curve of a material and a gain.
 
+    law : rows of the material.  gain : G, dimensionless.
+
     Raises
     ------
     ParameterError
-        A gain that the nodes do not reach.
+        A gain outside the range of the nodes.
     """
     longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
-    if gain and not _GAINS[0] <= abs(gain) / longest <= _GAINS[1]:
-        low, high = (bound * longest for bound in _GAINS)
+    if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
+        low, high = (bound * longest for bound in _GAIN_RANGE)
         raise ParameterError("gain on V", f"{gain:g}", f"0, or of a size in [{low:g}, {high:g}]")
-    nodes = grid(law)
-    flat = np.exp2(zeros(lambda x: _curve(law, gain, np.exp2(x))[1], nodes))
+    nodes = speed_nodes(law)
+    flat = np.exp2(find_zeros(lambda x: _curve(law, gain, np.exp2(x))[1], nodes))
     u = np.exp2(nodes)
     for at in flat:
-        u = u[np.abs(u - at) > _APART * at]
+        u = u[np.abs(u - at) > _SEPARATION * at]
     whole = np.concatenate([u, flat])
     order = np.argsort(whole)
     is_flat, u = order >= u.size, whole[order]
@@ -154,47 +186,58 @@ def branches(law: LawTable, gain: float) -> Branches:
     return Branches(u, _curve(law, gain, u)[0], is_flat, gain, ends[:-1].copy(), ends[1:].copy())
 
 
-def grid(law: LawTable) -> Floats:
-    """Nodes of log2(u), ascending: close where the material relaxes."""
+def speed_nodes(law: LawTable) -> Floats:
+    """Nodes of log2(u), ascending, closely spaced where the material of the rows ``law`` relaxes."""
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
-    low, high = math.floor(-math.log2(times.max())) - _MARGIN, math.ceil(-math.log2(times.min())) + _MARGIN
-    parts = (low - _WIDE, low, _FAR), (low, high, _CLOSE), (high, high + _WIDE, _FAR)
+    low, high = (
+        math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES,
+        math.ceil(-math.log2(times.min())) + _CLOSE_OCTAVES,
+    )
+    parts = (low - _FAR_OCTAVES, low, _FAR_NODES), (low, high, _CLOSE_NODES), (high, high + _FAR_OCTAVES, _FAR_NODES)
     steps = [np.linspace(start, stop, (stop - start) * per, endpoint=False) for start, stop, per in parts]
-    return np.concatenate([*steps, [high + _WIDE]])
+    return np.concatenate([*steps, [high + _FAR_OCTAVES]])
 
 
 def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
-    """kappa (M - gain V) and its slope over kappa V."""
+    """kappa (M - gain V) and its slope in kappa V, at u = kappa V; two rows."""
     return rolling(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
 
 
-def zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
-    """Zeros of a vectorised ``function`` between ascending ``nodes``, pairs closer than the nodes among them.
+def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
+    """Find the zeros of a function between nodes, including pairs of zeros between neighbouring nodes.
 
-    A pair is found where |function| has a minimum at a node.  Nodes where it is not above ``noise`` have no sign.
-    Zeros are bisected to rounding of the nodes.
+    function : vectorised function of one variable.  nodes : ascending, (n,).  noise : rounding error of the function
+    at the nodes; nodes with smaller values have no sign.
+
+    Returns the zeros, ascending, bisected to the rounding of the nodes.  A pair of zeros is found where |function|
+    has a minimum at a node.
     """
     values = function(nodes)
     known = np.abs(values) > noise
     nodes, values = nodes[known], values[known]
-    parts = [(nodes, values), *_zoomed(function, nodes, values)]
-    brackets = [_changes(*part) for part in parts]
+    parts = [(nodes, values), *_refine_near_double_roots(function, nodes, values)]
+    brackets = [_sign_changes(*part) for part in parts]
     low, high, rising = (np.concatenate(each) for each in zip(*brackets, strict=True))
-    for _ in range(_HALVINGS if low.size else 0):
+    for _ in range(_BISECTIONS if low.size else 0):
         middle = 0.5 * (low + high)
         before = (function(middle) > 0.0) != rising
         low, high = np.where(before, middle, low), np.where(before, high, middle)
     return np.sort(0.5 * (low + high))
 
 
-def _changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
-    """(low, high, whether it rises) of the intervals in which the sign changes."""
+def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
+    """(lower ends, upper ends, whether the function rises) of the intervals in which y changes its sign."""
     at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)
     return x[at], x[at + 1], y[at + 1] > 0.0
 
 
-def _zoomed(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
-    """Points and values around two zeros between two neighbours of a node."""
+def _refine_near_double_roots(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
+    """Points and values that separate two zeros between the neighbours of a node.
+
+    function : vectorised function.  x, y : nodes and values.
+
+    Returns a list of (points, values), one for each pair of zeros.
+    """
     size, sign = np.abs(y), np.sign(y)
     near = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:]) & (sign[1:-1] == sign[:-2]) & (sign[1:-1] == sign[2:])
     # a parabola through three nodes reaches 0 between them where it is bent by more than that; rounding is not
@@ -202,10 +245,10 @@ def _zoomed(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floa
     found = []
     for n in np.flatnonzero(near) + 1:
         low, high = x[n - 1], x[n + 1]
-        for _ in range(_ZOOMS):
-            points = np.linspace(low, high, _ZOOMED)
+        for _ in range(_REFINEMENTS):
+            points = np.linspace(low, high, _REFINED_NODES)
             values = function(points)
-            least = int(np.clip(np.argmin(values * sign[n]), 1, _ZOOMED - 2))
+            least = int(np.clip(np.argmin(values * sign[n]), 1, _REFINED_NODES - 2))
             if values[least] * sign[n] < 0.0:
                 found.append((points, values))
                 break

@@ -1,4 +1,4 @@
-"""Equilibria as they are given back: :class:`Steady`, from the :class:`.states.States` that were found, or why not."""
+"""Results of steady rolling: :class:`Steady`, with the reason where a load has no equilibrium."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from ...core.labels import Labels
 from ...core.results import Row, Values, short, unit_of
 from ...core.scale import DIMENSIONS, Scale
 from ...core.typed import Floats, Integers
-from . import row
 from .loads import Loads
-from .states import States
+from .states import Field, States
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,16 +27,18 @@ _LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "effic
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """Where the power goes, over P R/T_ref (W per m of length where the call was in SI units).
+    """Power balance, over P R/T_ref (W per m of length for a Cylinder).
 
-    Attributes
-    ----------
-    slip : in the contact, (omega - V) Q.
-    half_space, cylinder : in rolling, V M_half_space and omega M_cylinder; their sum with ``slip`` is what force and
-        torque put in.
-    coefficient : of rolling resistance, all of that over P |V|: M and what slip adds; at V = 0 the limit of V -> 0.
-    efficiency : power taken out over power put in, -force V/(torque omega) of a driving roller, its inverse of
-        a towed one that drives; 0 where nothing is taken out, NaN at rest.
+    Attributes ----------
+    slip : power lost in slip, (omega - V) Q.
+    half_space, cylinder : power lost in rolling, V M_half_space and omega M_cylinder; their sum with ``slip`` is the
+    power of
+        force and torque.
+    coefficient : coefficient of rolling resistance, all losses divided by P |V|: M and the slip loss; at V = 0 the
+    limit V -> 0.
+    efficiency : output power divided by input power, -force V/(torque omega) of a driving roller, the inverse of a
+    towed
+        one that drives; 0 without output, NaN at rest.
     """
 
     slip: Floats
@@ -47,26 +48,31 @@ class Loss:
     efficiency: Floats
 
 
-class Reasons(NamedTuple):
-    """What is needed to say why.
+class Diagnosis(NamedTuple):
+    """Data for the explanation why a load has no equilibrium.
 
-    states : load, V and Q of all that were found, friction sufficing or not.  number : equilibria of each load.
-    top : largest kappa M, and its kappa V; NaN with feedback.  elastic : whether nothing resists.
+    loads : the loads.  states : load, V and Q of all states, whether or not the friction suffices.  number :
+    equilibria of each
+    load.  maximum : largest kappa M and its kappa V; NaN with feedback.  elastic : whether the bodies are elastic,
+    without a gain.
     """
 
     loads: Loads
     states: tuple[NDArray, NDArray, NDArray]
     number: Integers
-    top: tuple[float, float]
+    maximum: tuple[float, float]
     elastic: bool
 
     def text(self, scale: Scale) -> Any:
-        """One string, or an array of them; empty where there is an equilibrium."""
+        """Reason for each load, one string or an array of strings; empty where an equilibrium exists.  ``scale`` :
+        units of the roller.
+        """
         shape = self.loads.shape
         found = [self._of(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)]
         return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
     def _of(self, n: int, scale: Scale) -> str:
+        """Reason why the load ``n`` has no equilibrium, in the units of ``scale``."""
         name, moment, of_load, of_speed = "force + torque", "rolling moment", "", ""
         if scale.si:
             name, moment, of_load, of_speed = "force + torque/R", "rolling moment over R", " N/m", " m/s"
@@ -85,7 +91,7 @@ class Reasons(NamedTuple):
             if at_rest == 0.0:
                 return "a continuum: elastic bodies roll without resistance, so that any V is steady"
             return f"{name} = {total:.6g}{of_load} is not 0, and elastic bodies roll without resistance"
-        M, V = (value / kappa for value in self.top)
+        M, V = (value / kappa for value in self.maximum)
         if np.isnan(M):
             return f"{name} with its feedback, {total:.6g}{of_load} at rest, meets the rolling moment at no speed"
         return (
@@ -95,24 +101,24 @@ class Reasons(NamedTuple):
 
 
 class Steady(Values):
-    """Equilibria of rolling under load; what :func:`viscoroll.steady` gives back.
+    """Equilibria of rolling under load, the result of :func:`viscoroll.steady`.
 
-    The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); where they are fewer, it is
-    padded with NaN (``stable``: False).
+    The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); shorter lists are padded
+    with NaN (``stable``: False).
 
     Attributes
     ----------
-    V, omega, delta : speeds and creep ratio (omega - V)/V, infinite where the cylinder spins on the spot.
-    Q, M : traction and rolling moment, over P and P R; M_half_space, M_cylinder : the parts of M.
-    beta : stick zone over contact length.  grip : 1 - |Q|/mu, 0 in full slip.
-    stable : whether (V, omega) returns after any small disturbance; False too where an eigenvalue is 0.
-    eigenvalues : two more entries, complex, fast and slow: rates over gamma t of small disturbances.
-    force, torque : what acts, with slope and feedback; found where V was given.
+    V, omega, delta : speeds and creepage (omega - V)/V, infinite for a cylinder that spins at V = 0.
+    Q, M : creep force and rolling resistance moment, over P and P R; M_half_space, M_cylinder : the parts of M.
+    beta : stick zone divided by contact length.  grip : friction reserve 1 - |Q|/mu, 0 in full slip.
+    stable : whether (V, omega) returns after any small disturbance; False if an eigenvalue is 0.
+    eigenvalues : last axis of two, complex, fast and slow: rates over gamma t of small disturbances.
+    force, torque : loads, with slope and feedback; the one to be found where V was given.
     loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
-    count : number of equilibria, of each load.
+    count : number of equilibria of each load.
     """
 
-    def __init__(self, values: dict[str, Any], reasons: Reasons, scale: Scale, labels: Labels | None) -> None:
+    def __init__(self, values: dict[str, Any], reasons: Diagnosis, scale: Scale, labels: Labels | None) -> None:
         super().__init__(values, title="Steady rolling", si=scale.si)
         self.reasons, self.scale, self._labels = reasons, scale, labels
 
@@ -125,7 +131,7 @@ class Steady(Values):
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
         )
-        R, P = (behind(self.scale[name]) for name in ("R", "P"))
+        R, P = (append_axis(self.scale[name]) for name in ("R", "P"))
         moving = V != 0.0
         slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
         half_space, cylinder = V * M_half_space / R, omega * M_cylinder
@@ -190,13 +196,18 @@ class Steady(Values):
         return xr.Dataset(data, apart, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
 
 
-def behind(unit: Any) -> Any:
-    """A unit of each load, as of all its equilibria."""
+def append_axis(unit: Any) -> Any:
+    """A unit of each load with an axis for its equilibria."""
     return unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
 
 
-def packed(loads: Loads, states: States, reasons: Reasons, scale: Scale, labels: Labels | None) -> Steady:
-    """States in order as arrays over loads and equilibria, in these units."""
+def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None) -> Steady:
+    """Pack sorted states into arrays over loads and equilibria.
+
+    loads : the loads.  states : existing states, sorted.  reasons : data of missing equilibria.  scale : units of
+    the
+    result.  labels : of the arguments, or None.
+    """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows
     force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
@@ -207,7 +218,7 @@ def packed(loads: Loads, states: States, reasons: Reasons, scale: Scale, labels:
         torque = M_cylinder + Q
     grip = 1.0 - np.abs(Q) / loads.mu[number]
     more = np.array([M_half_space + M_cylinder, grip, force, torque, fast, slow, imaginary])
-    rows = np.concatenate([states.rows[: row.FAST], more])
+    rows = np.concatenate([states.rows[: Field.FAST], more])
     most = int(count.max(initial=0))
     if most * count.size > number.size:  # some have fewer
         place = np.arange(number.size) - (np.cumsum(count) - count)[number]
@@ -217,8 +228,8 @@ def packed(loads: Loads, states: States, reasons: Reasons, scale: Scale, labels:
     rows = rows.reshape(len(rows), *loads.shape, most)
     found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
     if scale.si:
-        found |= {name: found[name] * behind(scale[name]) for name in found if name in DIMENSIONS}
-    fast, slow, imaginary = rows[-3:] * behind(scale["rate_fast"])
+        found |= {name: found[name] * append_axis(scale[name]) for name in found if name in DIMENSIONS}
+    fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
     eigenvalues.real[..., 0], eigenvalues.real[..., 1] = fast, slow
     eigenvalues.imag[..., 0], eigenvalues.imag[..., 1] = -imaginary, imaginary

@@ -1,12 +1,12 @@
-"""Steady rolling where force or torque follow omega: a scan over V.
+"""Steady rolling with feedback on omega: a scan over V.
 
 With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two equations, M(V) - (fV + qV) V -
-(fw + qw) omega = f0 + q0, gives omega for every V, and the other is one equation in V:
+(fw + qw) omega = f0 + q0, determines omega for every V.  The other equation has one unknown, V:
 
-    R = Q(V, omega) - M_half_space + f = 0          Q = +-mu where the contact slips fully
+    R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
 
-Between the speeds where omega - V is 0 or the limit of stick, which are found first, R is smooth.  Where fw + qw = 0
-the sum fixes V, and R is an equation in omega.  All here is in a frame where V > 0.
+R is smooth between the speeds at which omega - V is 0 or at the limit of stick, which are found first.  If fw + qw =
+0, the sum determines V, and R = 0 is an equation for omega.  All states here are in a frame where V > 0.
 """
 
 from __future__ import annotations
@@ -19,77 +19,95 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...materials.law_table import LawTable
-from . import row
 from .loads import Loads
-from .resistance import grid, zeros
-from .states import States, contact_at, crossings, rows_at
+from .resistance import find_zeros, speed_nodes
+from .states import Field, States, contact_fields_at, find_crossings, state_rows
 
-#: nodes that an interval of V within the stick limit is cut into, and those of a slip between its limits
-_FINE, _SLIPS = 16, 129
-#: steps of Newton's iteration in V and slip; what is left of an equation over mu that is no state; states of the same V
-#: and slip, relative, are one
-_POLISH, _LEFT, _SAME = 4, 1e-6, 1e-10
-#: of R over the sum of its terms: as V -> 0 it may vanish altogether
+#: nodes into which an interval of V with partial slip is divided
+_STICK_NODES = 16
+#: nodes of the slip between its limits
+_SLIP_NODES = 129
+#: Newton steps in V and slip
+_NEWTON_STEPS = 4
+#: residual of an equation divided by its terms above which a zero is no state
+_RESIDUAL = 1e-6
+#: relative difference of V and of delta below which two states are one
+_SAME_STATE = 1e-10
+#: rounding error of R divided by the sum of its terms; nodes with a smaller R have no sign
 _ROUNDING = 2e-15
 
 
-class _Case(NamedTuple):
-    """One load along the motion; ``acts``: rows of force and torque, at rest and for each unit of V and omega."""
+class _ScanProblem(NamedTuple):
+    """One load in the frame of the motion.
+
+    law : rows of the material.  load_rows : force and torque as rows of (value at rest, gain on V, gain on omega).
+    kappa, mu : parameters.
+    """
 
     law: LawTable
-    acts: NDArray
+    load_rows: NDArray
     kappa: float
     mu: float
 
-    def at(self, x: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        """(V, M, M_half_space, slip at the limit of stick) at x = log2(kappa V)."""
+    def free_rolling(self, x: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+        """(V, M, M_half_space, omega - V at the limit of stick) at x = log2(kappa V)."""
         V = np.exp2(x) / self.kappa
-        M, M_half_space, star = contact_at(self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star")
+        M, M_half_space, star = contact_fields_at(
+            self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star"
+        )
         return V, M, M_half_space, star * V
 
-    def acting(self, V: Any, omega: Any) -> NDArray:
-        """Force and torque at these speeds."""
-        return self.acts @ np.array([np.ones_like(V), V, omega])
+    def loads_at(self, V: Any, omega: Any) -> NDArray:
+        """Force and torque at the speeds V and omega."""
+        return self.load_rows @ np.array([np.ones_like(V), V, omega])
 
     def slip(self, V: NDArray, M: NDArray) -> NDArray:
-        """omega - V by the sum of the equations."""
-        return (M - self.acting(V, V).sum(axis=0)) / self.acts[:, 2].sum()
+        """omega - V from the sum of the equations, at V and M."""
+        return (M - self.loads_at(V, V).sum(axis=0)) / self.load_rows[:, 2].sum()
 
-    def excess(self, x: NDArray, slip: NDArray) -> NDArray:
-        """R at x and omega - V."""
+    def residual(self, x: NDArray, slip: NDArray) -> NDArray:
+        """R at x = log2(kappa V) and slip = omega - V."""
         V = np.exp2(x) / self.kappa
-        Q, M_half_space = contact_at(self.law, self.kappa, self.mu, V, slip / V, "Q", "M_half_space")
-        return Q - M_half_space + self.acting(V, V + slip)[0]
+        Q, M_half_space = contact_fields_at(self.law, self.kappa, self.mu, V, slip / V, "Q", "M_half_space")
+        return Q - M_half_space + self.loads_at(V, V + slip)[0]
 
     def rows(self, V: NDArray, slip: NDArray) -> tuple[NDArray, NDArray]:
-        """(Rows of :mod:`row` where omega - V is given, full slip included; what is left of the sum of the equations,
-        and of that along V)."""
-        rows = rows_at(self.law, self.kappa, self.mu, V, slip / V)
-        force, torque = self.acting(V, V + slip)
-        M_half_space = rows[row.M_HALF_SPACE]
-        sums = M_half_space + rows[row.M_CYLINDER] - force - torque
-        return rows, np.array([sums, rows[row.Q] - M_half_space + force])
+        """(rows of :class:`Field` with slopes at V and slip = omega - V, full slip included; residuals of the sum of
+        the equations and of the equation of V).
+        """
+        rows = state_rows(self.law, self.kappa, self.mu, V, slip / V)
+        force, torque = self.loads_at(V, V + slip)
+        M_half_space = rows[Field.M_HALF_SPACE]
+        sums = M_half_space + rows[Field.M_CYLINDER] - force - torque
+        return rows, np.array([sums, rows[Field.Q] - M_half_space + force])
 
 
-def scanned(law: LawTable, loads: Loads) -> States:
-    """All states of rolling but rest."""
+def scan_states(law: LawTable, loads: Loads) -> States:
+    """All states of rolling, without rest.
+
+    law : rows of the material.  loads : the loads, with gains on omega.
+    """
     gains = loads.gains
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
     parts = [States.none()]
     for n in range(loads.mu.size):
         at_rest = np.array([[loads.force[n]], [loads.torque[n]]])
         for sign in (1.0, -1.0):
-            case = _Case(law, np.hstack([sign * at_rest, gained]), loads.kappa[n], loads.mu[n])
-            x, slip = _over_V(case) if case.acts[:, 2].sum() else _over_slip(case)
-            rows = _polished(case, np.exp2(x) / case.kappa, slip)
+            problem = _ScanProblem(law, np.hstack([sign * at_rest, gained]), loads.kappa[n], loads.mu[n])
+            x, slip = _scan_speed(problem) if problem.load_rows[:, 2].sum() else _scan_slip(problem)
+            rows = _polish(problem, np.exp2(x) / problem.kappa, slip)
             count = rows.shape[1]
             parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows))
-        parts += _on_the_spot(law, loads, n)
+        parts += _spinning_at_rest(law, loads, n)
     return States.joined(*parts)
 
 
-def _on_the_spot(law: LawTable, loads: Loads, n: int) -> list[States]:
-    """V = 0 and omega not, where friction and force balance to the bit."""
+def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
+    """The state of the n-th load with V = 0 and omega other than 0, where friction and force balance to the bit; or
+    no state.
+
+    law : rows of the material.  loads : the loads.  n : index of the load.
+    """
     gains, total = loads.gains, loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
     if not (gain and total):
@@ -98,78 +116,94 @@ def _on_the_spot(law: LawTable, loads: Loads, n: int) -> list[States]:
     side = math.copysign(1.0, omega)
     if side * loads.mu[n] + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
-    slowest = np.exp2(grid(law)[:1]) / loads.kappa[n]
-    rows = rows_at(law, loads.kappa[n], loads.mu[n], slowest, 1.0 / slowest)
+    slowest = np.exp2(speed_nodes(law)[:1]) / loads.kappa[n]
+    rows = state_rows(law, loads.kappa[n], loads.mu[n], slowest, 1.0 / slowest)
     spinning = States.of(loads, np.array([n]), np.array([side]), rows)
-    spinning.rows[[row.V, row.DELTA, row.M_HALF_SPACE, row.M_CYLINDER, row.OMEGA], 0] = 0.0, math.inf, 0.0, 0.0, omega
+    spinning.rows[[Field.V, Field.DELTA, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.OMEGA], 0] = (
+        0.0,
+        math.inf,
+        0.0,
+        0.0,
+        omega,
+    )
     return [spinning]
 
 
-def _over_V(case: _Case) -> tuple[NDArray, NDArray]:
-    """x and slip of every state, where omega follows from V."""
+def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
+    """x = log2(kappa V) and slip of every state of ``problem``, where omega follows from V."""
 
     def beyond(x: NDArray, part: float) -> NDArray:
-        V, M, _, limit = case.at(x)
-        return case.slip(V, M) - part * limit
+        V, M, _, limit = problem.free_rolling(x)
+        return problem.slip(V, M) - part * limit
 
-    nodes = grid(case.law)
-    nodes = np.unique(np.concatenate([nodes, *(zeros(partial(beyond, part=part), nodes) for part in (-1.0, 0.0, 1.0))]))
-    V, M, _, limit = case.at(nodes)
-    stuck = np.abs(case.slip(V, M)) <= limit * (1.0 + 1e-9)
+    nodes = speed_nodes(problem.law)
+    nodes = np.unique(
+        np.concatenate([nodes, *(find_zeros(partial(beyond, part=part), nodes) for part in (-1.0, 0.0, 1.0))])
+    )
+    V, M, _, limit = problem.free_rolling(nodes)
+    stuck = np.abs(problem.slip(V, M)) <= limit * (1.0 + 1e-9)
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
-    fine = nodes[within, None] + np.linspace(0.0, 1.0, _FINE)[1:-1] * np.diff(nodes)[within, None]
+    fine = nodes[within, None] + np.linspace(0.0, 1.0, _STICK_NODES)[1:-1] * np.diff(nodes)[within, None]
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
-    V, M, M_half_space, _ = case.at(nodes)
-    terms = case.mu + M_half_space + np.abs(case.acts[0]) @ np.abs([np.ones_like(V), V, V + case.slip(V, M)])
-    found = zeros(lambda x: case.excess(x, case.slip(*case.at(x)[:2])), nodes, _ROUNDING * terms)
-    return found, case.slip(*case.at(found)[:2])
+    V, M, M_half_space, _ = problem.free_rolling(nodes)
+    terms = (
+        problem.mu + M_half_space + np.abs(problem.load_rows[0]) @ np.abs([np.ones_like(V), V, V + problem.slip(V, M)])
+    )
+    found = find_zeros(
+        lambda x: problem.residual(x, problem.slip(*problem.free_rolling(x)[:2])), nodes, _ROUNDING * terms
+    )
+    return found, problem.slip(*problem.free_rolling(found)[:2])
 
 
-def _over_slip(case: _Case) -> tuple[NDArray, NDArray]:
-    """x and slip of every state, where the sum of the equations fixes V."""
-    at_rest, of_V, _ = case.acts.sum(axis=0)
-    _, sign, u = crossings(case.law, of_V, np.array([case.kappa * at_rest]))
-    places, slips = [np.empty(0)], [np.empty(0)]
+def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
+    """x = log2(kappa V) and slip of every state of ``problem``, where the sum of the equations determines V."""
+    at_rest, of_V, _ = problem.load_rows.sum(axis=0)
+    _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
+    positions, slips = [np.empty(0)], [np.empty(0)]
     for x in np.log2(u[sign > 0.0]):
-        V, _, M_half_space, (limit,) = case.at(np.array([x]))
-        rest = M_half_space - case.acting(V, V)[0]  # Q + gain slip
+        V, _, M_half_space, (limit,) = problem.free_rolling(np.array([x]))
+        rest = M_half_space - problem.loads_at(V, V)[0]  # Q + gain slip
 
-        def excess(part: NDArray, x: float = x, limit: float = limit) -> NDArray:
-            return case.excess(np.full(part.size, x), limit * part)
+        def residual(part: NDArray, x: float = x, limit: float = limit) -> NDArray:
+            return problem.residual(np.full(part.size, x), limit * part)
 
         sides = np.array([1.0, -1.0])
-        free = (rest - sides * case.mu) / case.acts[0, 2]
-        slips += [limit * zeros(excess, np.linspace(-1.0, 1.0, _SLIPS)), free[sides * free > limit]]
-        places += [np.full(each.size, x) for each in slips[-2:]]
-    return np.concatenate(places), np.concatenate(slips)
+        free = (rest - sides * problem.mu) / problem.load_rows[0, 2]
+        slips += [limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES)), free[sides * free > limit]]
+        positions += [np.full(each.size, x) for each in slips[-2:]]
+    return np.concatenate(positions), np.concatenate(slips)
 
 
-def _polished(case: _Case, V: NDArray, slip: NDArray) -> NDArray:
-    """Rows of the states after some steps of Newton's iteration in V and slip; one that does not help is left out.
+def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
+    """Rows of the states after some Newton steps in V and slip.
 
-    Where the contact passes from slip to slip within rounding of V, two zeros are one state, or none.
+    problem : the load.  V, slip : approximate states, (n,).
+
+    A step that does not reduce the residuals is rejected.  Where the contact passes from full slip to full slip
+    within the rounding of V, two zeros are one state, or none.
     """
-    rows, off = case.rows(V, slip)
-    gains = case.acts[:, 1:]
+    rows, residuals = problem.rows(V, slip)
+    gains = problem.load_rows[:, 1:]
     (of_V, of_omega), (force_V, force_omega) = gains.sum(axis=0), gains[0]
-    for _ in range(_POLISH if V.size else 0):
-        a, b, one, other = rows[row.DQ_DV :]
+    for _ in range(_NEWTON_STEPS if V.size else 0):
+        a, b, one, other = rows[Field.DQ_DV :]
         sum_V, sum_slip = one + other - of_V - of_omega, -of_omega
         rest_V, rest_slip = a + b - one + force_V + force_omega, b + force_omega
         det = sum_V * rest_slip - sum_slip * rest_V
         with np.errstate(divide="ignore", invalid="ignore"):
-            dV = (off[0] * rest_slip - off[1] * sum_slip) / det
-            dslip = (off[1] * sum_V - off[0] * rest_V) / det
+            dV = (residuals[0] * rest_slip - residuals[1] * sum_slip) / det
+            dslip = (residuals[1] * sum_V - residuals[0] * rest_V) / det
         good = np.isfinite(dslip) & (np.abs(dV) < 1e-3 * V)
         new = np.where(good, [V - dV, slip - dslip], [V, slip])
-        new_rows, new_off = case.rows(*new)
-        better = good & (np.abs(new_off).sum(axis=0) < np.abs(off).sum(axis=0))
+        new_rows, new_residuals = problem.rows(*new)
+        better = good & (np.abs(new_residuals).sum(axis=0) < np.abs(residuals).sum(axis=0))
         V, slip = np.where(better, new, [V, slip])
-        rows, off = np.where(better, new_rows, rows), np.where(better, new_off, off)
-    V, delta = rows[row.V], rows[row.DELTA]
-    left = np.abs(off).max(axis=0) <= _LEFT * (case.mu + np.abs(rows[row.M_HALF_SPACE]) + np.abs(rows[row.M_CYLINDER]))
+        rows, residuals = np.where(better, new_rows, rows), np.where(better, new_residuals, residuals)
+    V, delta = rows[Field.V], rows[Field.DELTA]
+    size = problem.mu + np.abs(rows[Field.M_HALF_SPACE]) + np.abs(rows[Field.M_CYLINDER])
+    left = np.abs(residuals).max(axis=0) <= _RESIDUAL * size
     order = np.flatnonzero(left)
     order = order[np.lexsort((delta[order], V[order]))]
     V, delta = V[order], delta[order]
-    new = (np.abs(np.diff(V)) > _SAME * V[1:]) | (np.abs(np.diff(delta)) > _SAME * np.abs(delta[1:]))
+    new = (np.abs(np.diff(V)) > _SAME_STATE * V[1:]) | (np.abs(np.diff(delta)) > _SAME_STATE * np.abs(delta[1:]))
     return rows[:, order[np.concatenate([[True], new]).astype(bool)[: order.size]]]

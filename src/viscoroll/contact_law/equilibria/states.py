@@ -1,11 +1,13 @@
-"""Steady states that were found, one after another (:class:`States`), and how: from the rows of the law, on threads.
+"""Steady states (:class:`States`), and their computation from the rows of the law, on threads.
 
-At V and Q the creep follows without a root: by Eq. (15) H(eta) = (1 - |Q|/mu) H(zeta), which is Eq. (6) at the speed
-V/root, root^2 = 1 - |Q|/mu, so that delta = delta_star(V) - root delta_star(V/root), beta = root lam(V/root)/lam(V).
+For given V and Q the creepage follows without a root: by Eq. (15) H(eta) = (1 - |Q|/mu) H(zeta), which is Eq. (6) at
+the speed V/root with root^2 = 1 - |Q|/mu.  So delta = delta_star(V) - root delta_star(V/root) and beta = root
+lam(V/root)/lam(V).
 """
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,22 +17,46 @@ from ...core.blocks import run_blocks
 from ...core.typed import Floats, Integers
 from ...materials.law_table import LawTable
 from ..contact_table import states_of
-from . import row
 from .loads import Gains, Loads
 from .resistance import branches
 
+#: loads of one block of work: some milliseconds
 _BLOCK = 1 << 12
-#: |Q|/mu up to which delta is first taken from its slope at 0, and up to which a step of Newton's iteration makes it
-#: exact: the difference cancels
-_SLIGHT, _CANCELS = 1e-8, 0.2
-#: what :mod:`row` has of the contact
+#: |Q|/mu below which delta is computed from its slope at Q = 0
+_SMALL_TRACTION = 1e-8
+#: |Q|/mu below which a Newton step corrects delta, which is a difference there
+_CORRECTED_TRACTION = 0.2
+#: fields of ``contact`` that make the rows of :class:`Field` from Q on
 _ROWS = "Q", "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_half_space_dV", "dM_cylinder_dV"
 
 
-class States(NamedTuple):
-    """Steady states one after another: which load each belongs to, and the rows of :mod:`row`; speeds in R/T_ref.
+class Field(IntEnum):
+    """Row of a quantity in an array of states, in a frame where V > 0.
 
-    Where friction does not suffice, delta and omega are NaN.
+    From row 6 on the array has the slopes of the law while states are computed, then omega and the eigenvalues.
+    """
+
+    V = 0
+    DELTA = 1
+    Q = 2
+    M_HALF_SPACE = 3
+    M_CYLINDER = 4
+    BETA = 5
+    DQ_DV = 6
+    DQ_DOMEGA = 7
+    DM_HALF_SPACE = 8
+    DM_CYLINDER = 9
+    OMEGA = 6
+    FAST = 7
+    SLOW = 8
+    IMAGINARY = 9
+
+
+class States(NamedTuple):
+    """Steady states one after another; speeds in R/T_ref.
+
+    load : index of the load of each state, (n,).  rows : quantities of :class:`Field`, (10, n).  delta and omega are
+    NaN where the friction does not suffice.
     """
 
     load: Integers
@@ -38,54 +64,63 @@ class States(NamedTuple):
 
     @classmethod
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
-        """From rows with answers."""
+        """States from rows with slopes.
+
+        loads : the loads.  load : index of the load of each state.  sign : sign of V.  answers : rows of
+        :class:`Field` with slopes, in a frame where V > 0.
+        """
         rows = answers.copy()
-        rows[[row.V, row.Q, row.M_HALF_SPACE, row.M_CYLINDER]] *= sign
-        rows[row.OMEGA] = rows[row.V] * (1.0 + rows[row.DELTA])
-        rows[row.FAST :] = _eigenvalues(answers[row.DQ_DV :], loads.gains, loads.j[load])
+        rows[[Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] *= sign
+        rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
+        rows[Field.FAST :] = _eigenvalues(answers[Field.DQ_DV :], loads.gains, loads.j[load])
         return cls(load, rows)
 
     @classmethod
     def at_rest(cls, loads: Loads, load: NDArray, T_mean: float) -> States:
-        """V = omega = 0, the limit of slow rolling: Carter's contact, and V' = -rate V with omega in step with it."""
+        """States of V = omega = 0, the limit of slow rolling: Carter's contact, and V' = -rate V with omega in step.
+
+        loads : the loads.  load : index of the load of each state.  T_mean : mean retardation time of the material.
+        """
         Q, kappa, mu, j = (values[load] for values in (loads.torque, loads.kappa, loads.mu, loads.j))
         if loads.given == "force":
             Q = -loads.force[load]
-        part, rows = np.abs(Q) / mu, np.zeros((row.IMAGINARY + 1, load.size))
-        rows[row.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
+        part, rows = np.abs(Q) / mu, np.zeros((Field.IMAGINARY + 1, load.size))
+        rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
         delta = 0.5 * mu / kappa * part / (1.0 + beta)
-        rows[row.OMEGA], rows[row.DELTA], rows[row.Q] = 0.0 * beta, np.sign(Q) * delta, Q
-        rows[row.FAST] = rows[row.SLOW] = -np.inf
+        rows[Field.OMEGA], rows[Field.DELTA], rows[Field.Q] = 0.0 * beta, np.sign(Q) * delta, Q
+        rows[Field.FAST] = rows[Field.SLOW] = -np.inf
         gains = loads.gains
         for creep in (delta, -delta):  # to either side omega = V (1 + delta) or V (1 - delta)
             rate = T_mean - gains.V - (gains.force_omega + gains.torque_omega) * (1.0 + creep)
-            rows[row.SLOW] = np.maximum(rows[row.SLOW], -rate / (1.0 + j * (1.0 + creep)))
+            rows[Field.SLOW] = np.maximum(rows[Field.SLOW], -rate / (1.0 + j * (1.0 + creep)))
         return cls(load, rows)
 
     @classmethod
     def none(cls) -> States:
         """No state."""
-        return cls(np.empty(0, np.int64), np.empty((row.IMAGINARY + 1, 0)))
+        return cls(np.empty(0, np.int64), np.empty((Field.IMAGINARY + 1, 0)))
 
     @classmethod
     def joined(cls, *parts: States) -> States:
-        """All of them, one after another."""
+        """States of all parts, one after another."""
         return cls(np.concatenate([each.load for each in parts]), np.concatenate([each.rows for each in parts], axis=1))
 
-    def held(self) -> States:
-        """Those that friction holds, by load and rising |V|."""
-        held = np.isfinite(self.rows[row.OMEGA]).nonzero()[0]
-        held = held[np.lexsort((np.abs(self.rows[row.V, held]), self.load[held]))]
-        return States(self.load[held], self.rows[:, held])
+    def existing(self) -> States:
+        """States for which the friction suffices, sorted by load and rising |V|."""
+        chosen = np.isfinite(self.rows[Field.OMEGA]).nonzero()[0]
+        chosen = chosen[np.lexsort((np.abs(self.rows[Field.V, chosen]), self.load[chosen]))]
+        return States(self.load[chosen], self.rows[:, chosen])
 
 
 def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
-    """Of (V, omega) over gamma t: real parts of the faster and of the other, and the imaginary part of the other.
+    """Eigenvalues of small disturbances of (V, omega) over gamma t.
 
-    slopes : a, b of Q over V and omega, then those of both moments over V.
+    slopes : dQ/dV, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n).  gains : feedback.  j : moments of inertia,
+    (n,).
 
-    The determinant is put together so that a and b, which are large, do not cancel: b (M'(V) - gain)/j without a gain
-    on omega.
+    Returns rows: real part of the faster and of the slower eigenvalue, imaginary part of the slower.  The
+    determinant is b (M'(V) - gain)/j without a gain on omega; it is computed without the cancellation of the large
+    slopes of Q.
     """
     a, b, d_half_space, d_cylinder = slopes
     with np.errstate(invalid="ignore"):
@@ -104,40 +139,52 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
         ])  # fmt: skip
 
 
-def contact_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
-    """Fields of the contact, a row each."""
+def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
+    """Fields of the contact at V > 0 and delta, one row for each of ``names``.
+
+    law : rows of the material.  kappa, mu : parameters.  V : speeds, (n,).  delta : creepage.
+    """
     return states_of(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
 
-def rows_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
-    """The rows of :mod:`row` at V > 0 and a creep."""
+def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
+    """Rows of :class:`Field` with slopes at V > 0 and a creepage."""
     rows = np.empty((2 + len(_ROWS), V.size))
-    rows[row.V], rows[row.DELTA], rows[2:] = V, delta, contact_at(law, kappa, mu, V, delta, *_ROWS)
-    rows[row.DQ_DV] -= rows[row.DQ_DOMEGA] * (1.0 + delta)
+    rows[Field.V], rows[Field.DELTA], rows[2:] = V, delta, contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
+    rows[Field.DQ_DV] -= rows[Field.DQ_DOMEGA] * (1.0 + delta)
     return rows
 
 
-def crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
-    """(load, sign of V, kappa |V|) wherever kappa (M - gain V) meets a total."""
+def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
+    """Speeds at which kappa (M - gain V) equals a total.
+
+    law : rows of the material.  gain : G.  total : kappa (force + torque), (n,).
+
+    Returns (index of the load, sign of V, kappa |V|), one entry for each crossing.
+    """
     from ...kernels.rows.steady import crossing_loop
 
     found = branches(law, gain)
     signed = np.concatenate([total, -total])
-    which, node = found.met(signed)
-    met, curve, u = signed[which], found.curve, np.empty(which.size)
+    which, node = found.locate_loads(signed)
+    totals, curve, u = signed[which], found.curve, np.empty(which.size)
 
     def work(start: int, stop: int) -> None:
-        crossing_loop(law.record, curve, met, node, u, start, stop)
+        crossing_loop(law.record, curve, totals, node, u, start, stop)
 
     run_blocks(work, which.size, _BLOCK)
     return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 
 
 def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
-    """Steady states at V > 0, in the frame of ``sign``, friction sufficing or not."""
+    """Steady states at given V > 0, whether or not the friction suffices.
+
+    law : rows of the material.  loads : the loads.  load : index of the load of each state, (n,).  sign : sign of
+    the motion, in whose frame V > 0.  V : speeds, (n,).
+    """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V
-    free = contact_at(law, kappa, mu, V, 0.0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
+    free = contact_fields_at(law, kappa, mu, V, 0.0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
     M = free[0] + free[1]
     share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
     if loads.given is None:
@@ -146,16 +193,18 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     else:
         Q = torque - (1.0 - share) * M if loads.given == "torque" else share * M - force
     part = np.abs(Q) / mu
-    held = part < 1.0
-    root, (star, lam, rise) = np.sqrt(np.where(held, 1.0 - part, 1.0)), free[2:]
-    less_star, less_lam = contact_at(law, kappa, mu, V / root, 0.0, "delta_star", "lam")
-    size = np.where(part > _SLIGHT, star - root * less_star, mu * part / rise)
-    rows = rows_at(law, kappa, mu, V, np.copysign(size, Q))
+    exists = part < 1.0
+    root, (star, lam, rise) = np.sqrt(np.where(exists, 1.0 - part, 1.0)), free[2:]
+    less_star, less_lam = contact_fields_at(law, kappa, mu, V / root, 0.0, "delta_star", "lam")
+    size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
+    rows = state_rows(law, kappa, mu, V, np.copysign(size, Q))
     # the answers do not see this
-    rows[row.DELTA] -= np.divide(rows[row.Q] - Q, V * rows[row.DQ_DOMEGA], out=0.0 * V, where=part < _CANCELS)
-    rows[row.Q], rows[row.M_HALF_SPACE], rows[row.M_CYLINDER] = Q, share * M, (1.0 - share) * M
-    rows[row.BETA] = root * less_lam / lam
-    if not held.all():
-        rows[[row.BETA, row.DQ_DV, row.DQ_DOMEGA]] *= held
-        rows[row.DELTA, ~held] = np.nan
+    rows[Field.DELTA] -= np.divide(
+        rows[Field.Q] - Q, V * rows[Field.DQ_DOMEGA], out=0.0 * V, where=part < _CORRECTED_TRACTION
+    )
+    rows[Field.Q], rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = Q, share * M, (1.0 - share) * M
+    rows[Field.BETA] = root * less_lam / lam
+    if not exists.all():
+        rows[[Field.BETA, Field.DQ_DV, Field.DQ_DOMEGA]] *= exists
+        rows[Field.DELTA, ~exists] = np.nan
     return States.of(loads, load, sign, rows)

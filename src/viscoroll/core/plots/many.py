@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 _DRAWN, _LEVELS = ("V", "omega", "x", "angle"), (0.05, 0.25, 0.5, 0.75, 0.95)
 #: bars of a run; a histogram of motions needs some of these
 _BARS, _FEWEST = 80, 8
+#: fraction of the motions in one bar above which a histogram has a logarithmic axis of counts
+_ONE_BAR = 0.9
 #: what a plot can tell apart, and how far it reaches
 _FINEST, _FARTHEST = 1e-280, 1e300
 #: of Sobol indices: width of a bar; which, in words, its grey and its side; symbols of starts
@@ -38,7 +40,7 @@ def distributions(data: xr.Dataset) -> Figure:
     columns = 2 if each or any(f"{name}_histogram" in data for name in names) else 1
     count, rows = data.sizes["motion"] if each else about["motions"], max(len(names), 1)
     size = 3.2 + 3.2 * columns, 2.8 * rows
-    figure, boxes = new_figure(f"{count} motions{drawn_by}", rows, columns, size, squeeze=False)
+    figure, boxes = new_figure(f"{count:,} motions{drawn_by}", rows, columns, size, squeeze=False)
     for name, (left, *right) in zip(names, boxes, strict=False):
         found = data[name if each else f"{name}_quantiles"]
         text, over_t = labelled(name, found.attrs["units"], found.attrs.get("symbol", "")), "t" in found.dims
@@ -49,7 +51,7 @@ def distributions(data: xr.Dataset) -> Figure:
             left.set(xlabel=axis(data["t"]), ylabel=text, xlim=(t[0], t[-1]))
         else:
             left.plot(values.ravel(), levels, "o-", color="black")
-            left.set(xlabel=text, ylabel="share of motions below", ylim=(0.0, 1.0))
+            left.set(xlabel=text, ylabel="fraction of motions below", ylim=(0.0, 1.0))
         for box in right:
             box.set_xlabel(f"{text} at the end" if over_t else text)
             if each:
@@ -57,8 +59,8 @@ def distributions(data: xr.Dataset) -> Figure:
             else:
                 _bars(box, data, name)
         for box in (left, *right):
-            box.locator_params(nbins=6)
-            box.ticklabel_format(style="sci", scilimits=(-2, 5))
+            box.locator_params(nbins=6, axis="x" if box.get_yscale() == "log" else "both")
+            box.ticklabel_format(style="sci", scilimits=(-2, 5), axis="x" if box.get_yscale() == "log" else "both")
     return figure
 
 
@@ -74,7 +76,9 @@ def _bars_of_each(box: Any, values: NDArray) -> None:
     found = values[np.isfinite(values)]
     box.set_ylabel(f"motions, of {values.size}")
     if found.size >= _FEWEST and np.ptp(found) > 1e-12 * np.abs(found).max():
-        box.hist(found, bins=40, color="0.6")
+        counts, _, _ = box.hist(found, bins=40, color="0.6")
+        if counts.max() > _ONE_BAR * found.size:  # most motions are at rest: the others would not be visible
+            box.set_yscale("log")
     else:
         box.plot(found, np.arange(1, found.size + 1), "o", color="black")
 
@@ -133,7 +137,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
         box.axhline(0.0, **THIN)
         box.set_xticks(np.arange(order.size), inputs)
         box.set_title(text, fontsize="small")
-    boxes[0].set_ylabel("share of the variance")
+    boxes[0].set_ylabel("Sobol index")
     boxes[0].legend(frameon=False, fontsize="small")
     return figure
 

@@ -1,1 +1,1 @@
-"""The flow map of one scene: how it is filled and how it is read."""
+"""The flow map of one scene: tables of its motions, and kernels that look motions up in them."""

@@ -1,4 +1,4 @@
-"""Many motions of one scene from its flow map."""
+"""Look up many motions of one scene in its flow map."""
 
 from __future__ import annotations
 
@@ -7,208 +7,254 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.records import DONE, FULL, PARTIAL, REST, RESTED
 from ..rows.states import element
-from .inside import earlier_entry
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
-from .read import (
+from .lookup import (
     HIGHEST,
     LOSS,
     PATH,
     SPEEDS,
-    entry_of,
-    lambda_at_rest,
+    asymptote_on_manifold,
+    full_slip_integrals,
     layer_state,
-    manifold_at,
-    manifold_entry,
-    manifold_loss,
+    manifold_at_speed,
     manifold_path,
     manifold_speeds,
-    onset_of,
-    slide_path,
-    slide_to,
-    speed_after,
+    read_asymptote,
+    read_onset,
+    remaining_slip_loss,
+    slide_distance,
+    slow_log_at_rest,
+    speed_at_slide_time,
 )
-from .records import Output, Request, Slide, Stick
+from .onset_search import find_onset
+from .records import FullSlipStart, Output, Request, StickOnset
 
-NOT_SERVED = -1
-#: a start this many times faster than the onset of stick is left to the integrator: V there is a small difference, with
-#: an error of 2e-14 of the start
-_MOST_LOST = 4096.0
-#: rows of the outputs
-_V, _OMEGA, _X, _ANGLE, _DELTA, _REGIME, SLIP_LOSS, ROLLING_LOSS, ROWS = range(9)
+#: status of a motion that the map does not contain
+NOT_COVERED = -1
+#: largest ratio of initial speed to speed at onset: V at onset is a difference whose error is 2e-14 of the initial one
+_MAX_SPEED_RATIO = 4096.0
+#: rows of the array of outputs
+_V, _OMEGA, _X, _ANGLE, _DELTA, _REGIME, SLIP_LOSS, ROLLING_LOSS = range(8)
+#: number of these rows
+ROWS = 8
 
 
 @kernel(inline=True)
-def _write(out, column, state):
+def _write_output(out, column, state):
+    """Write one output state into a column of ``out`` (ROWS, times)."""
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
     out[_ANGLE, column], out[_DELTA, column], out[_REGIME, column] = state.angle, state.delta, state.regime
     out[SLIP_LOSS, column] = state.loss
 
 
 @kernel(inline=True)
-def _rest(at, x, angle, loss, out):
-    """Outputs at rest from column ``at`` on."""
+def _write_rest(at, x, angle, loss, out):
+    """Write outputs at rest, at distance x and angle with this slip loss, from column ``at`` of ``out`` on."""
     for column in range(at, out.shape[1]):
-        _write(out, column, Output(0.0, 0.0, x, angle, 0.0, REST, loss))
+        _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, REST, loss))
 
 
 @kernel(inline=True)
-def _sliding(frame, V, omega, start, need, flow):
-    """(Its record, its entry into partial slip, whether served) of a motion that slides from V, omega on.
+def _start_in_full_slip(frame, V, omega, start, level, flow):
+    """Locate the onset of partial slip of a motion that starts in full slip.
 
-    ``start``: T and X there.
+    frame : +1, or -1 where the motion is mirrored.  V, omega : initial speeds in the mirrored frame, omega > V.
+    start : (T, X) of the table of full slip at V.  level : SPEEDS, PATH or LOSS.  flow : the map.
+
+    Returns (:class:`FullSlipStart`, :class:`StickOnset`, whether the map covers the motion).
     """
     mu, (T, X) = flow.mu, start
     w = V - flow.j * omega
-    V_on, T_on, X_on = onset_of(w - 2.0 * mu * T, need, flow)
+    V_on, T_on, X_on = read_onset(w - 2.0 * mu * T, level, flow)
     v = flow.kappa * abs(V_on)
-    served = 2.0**flow.first <= v < 2.0 ** (flow.first + OCTAVES)
-    served = served and flow.kappa * max(abs(V), abs(omega)) <= _MOST_LOST * v
+    covered = 2.0**flow.first <= v < 2.0 ** (flow.first + OCTAVES)
+    covered = covered and flow.kappa * max(abs(V), abs(omega)) <= _MAX_SPEED_RATIO * v
     tau, x = max(T_on - T, 0.0), X_on - X
     angle = (x - tau * (w + mu * tau)) / flow.j
     family, frame_on = (PLUS, frame) if V_on > 0.0 else (MINUS, -frame)
-    stick = Stick(frame_on, family, v, tau, frame * x, frame * angle, mu * (angle - x))
-    return Slide(frame, w, T, X), stick, served
+    stick = StickOnset(frame_on, family, v, tau, frame * x, frame * angle, mu * (angle - x))
+    return FullSlipStart(frame, w, T, X), stick, covered
 
 
 @kernel
-def _inside(V0, omega0, edge, need, flow):
-    """(Earlier entry into partial slip, what the map holds of it, whether served) of a start inside the stick zone."""
+def _start_in_partial_slip(V0, omega0, edge, level, flow):
+    """Locate the earlier onset of partial slip of a motion that starts inside the stick zone.
+
+    V0, omega0 : initial speeds.  edge : delta_star at V0.  level : SPEEDS, PATH or LOSS.  flow : the map.
+
+    Returns (:class:`StickOnset` at a time <= 0, its :class:`Asymptote`, whether the map covers the motion).
+    """
     frame = 1.0 if V0 > 0.0 else -1.0
-    family, v, E, served = earlier_entry(abs(V0), (omega0 - V0) / V0, edge, flow)
-    if E > LAYER_END or not served:
-        entry = manifold_entry(manifold_at(v, flow.table)[0] if served else 0.0)
-        return Stick(frame, family, v, -LAYER_END / entry.rate, 0.0, 0.0, 0.0), entry, served
-    entry = entry_of(family, v, need, flow)
-    stick = Stick(frame, family, v, -E / entry.rate, 0.0, 0.0, 0.0)
-    if E == 0.0 or need < PATH:
-        return stick, entry, served
-    _, _, x, angle, loss = layer_state(stick, entry, -stick.tau, need, flow)
-    return Stick(frame, family, v, stick.tau, -frame * x, -frame * angle, -loss), entry, True
+    family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
+    if E > LAYER_END or not covered:
+        asymptote = asymptote_on_manifold(manifold_at_speed(v, flow.table)[0] if covered else 0.0)
+        return StickOnset(frame, family, v, -LAYER_END / asymptote.rate, 0.0, 0.0, 0.0), asymptote, covered
+    asymptote = read_asymptote(family, v, level, flow)
+    stick = StickOnset(frame, family, v, -E / asymptote.rate, 0.0, 0.0, 0.0)
+    if E == 0.0 or level < PATH:
+        return stick, asymptote, covered
+    _, _, x, angle, loss = layer_state(stick, asymptote, -stick.tau, level, flow)
+    return StickOnset(frame, family, v, stick.tau, -frame * x, -frame * angle, -loss), asymptote, True
 
 
 @kernel(inline=True)
-def _slide_outputs(at, tau_out, until, slide, need, flow, out):
-    """Outputs before stick onset; returns the next column."""
+def _write_full_slip(at, tau_out, until, slide, level, flow, out):
+    """Write the outputs before the onset of partial slip, and return the next column.
+
+    at : first column to write.  tau_out : output times, gamma t, ascending.  until : time of the onset.
+    slide : the :class:`FullSlipStart`.  level : SPEEDS, PATH or LOSS.  flow : the map.  out : outputs (ROWS, times).
+    """
     mu, per_j = flow.mu, 1.0 / flow.j
     frame, w, T0, X0 = slide
     while at < tau_out.size and tau_out[at] < until:
         tau = tau_out[at]
-        V = speed_after(T0 + tau, flow)
+        V = speed_at_slide_time(T0 + tau, flow)
         omega = (V - (w + 2.0 * mu * tau)) * per_j
         x = angle = 0.0
-        if need >= PATH:
-            x = slide_path((T0, X0), tau, flow)
+        if level >= PATH:
+            x = slide_distance((T0, X0), tau, flow)
             angle = (x - tau * (w + mu * tau)) * per_j
         delta = (omega - V) / V if V != 0.0 else np.inf
-        _write(out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x)))
+        _write_output(
+            out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x))
+        )
         at += 1
     return at
 
 
 @kernel(inline=True)
-def _stick_outputs(at, tau_out, until, stick, entry, need, flow, out):
-    """Outputs in partial slip up to ``until``; returns the next column."""
+def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
+    """Write the outputs in partial slip up to a time, and return the next column.
+
+    at : first column to write.  tau_out : output times, gamma t, ascending.  until : last time.
+    stick : the :class:`StickOnset`.  asymptote : its :class:`Asymptote`.  level : SPEEDS, PATH or LOSS.  flow : the
+    map.
+    out : outputs (ROWS, times).
+    """
     frame = stick.frame
-    to_lose = manifold_loss(entry.lam, flow.table) + entry.loss if need >= LOSS else 0.0
-    layer_end = stick.tau + LAYER_END / entry.rate
+    total_loss = remaining_slip_loss(asymptote.slow_log, flow.table) + asymptote.loss if level >= LOSS else 0.0
+    layer_end = stick.tau + LAYER_END / asymptote.rate
     while at < tau_out.size and tau_out[at] <= until:
         elapsed = tau_out[at] - stick.tau
         x = angle = loss = 0.0
         if tau_out[at] < layer_end:
-            V, delta, x, angle, loss = layer_state(stick, entry, elapsed, need, flow)
+            V, delta, x, angle, loss = layer_state(stick, asymptote, elapsed, level, flow)
         else:
             span = flow.slow_rate * elapsed
-            now = entry.lam - span
+            now = asymptote.slow_log - span
             V, delta = manifold_speeds(now, flow.table)
-            if need >= PATH:
-                x, angle = manifold_path(entry.lam, span, flow.slow_rate, flow.table)
-                x, angle = x + entry.x, angle + entry.angle
-            if need >= LOSS:
-                loss = to_lose - manifold_loss(now, flow.table)
+            if level >= PATH:
+                x, angle = manifold_path(asymptote.slow_log, span, flow.slow_rate, flow.table)
+                x, angle = x + asymptote.x, angle + asymptote.angle
+            if level >= LOSS:
+                loss = total_loss - remaining_slip_loss(now, flow.table)
         x, angle = stick.x + frame * x, stick.angle + frame * angle
-        _write(out, at, Output(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL, stick.loss + loss))
+        _write_output(
+            out, at, Output(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL, stick.loss + loss)
+        )
         at += 1
     return at
 
 
 @kernel(inline=True)
-def _stick(at, tau_out, stick, entry, request, flow, out):
-    """(Status, rest time) of a motion from its entry into partial slip to the end."""
-    layer_end = stick.tau + LAYER_END / entry.rate
-    resting, end = np.inf, tau_out[tau_out.size - 1]
+def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
+    """Write all outputs from the onset of partial slip to the end, or to rest.
+
+    at : first column to write.  tau_out : output times, gamma t, ascending.  stick : the :class:`StickOnset`.
+    asymptote : its :class:`Asymptote`.  request : the :class:`Request`.  flow : the map.  out : outputs (ROWS,
+    times).
+
+    Returns (status, time of rest or NaN), as gamma t.
+    """
+    layer_end = stick.tau + LAYER_END / asymptote.rate
+    rest_time, end = np.inf, tau_out[tau_out.size - 1]
     if request.rest > 0.0:
-        resting = stick.tau + (entry.lam - request.rest_lambda) / flow.slow_rate
-        if resting < max(layer_end, 0.0):
-            return NOT_SERVED, np.nan
-    at = _stick_outputs(at, tau_out, min(resting, end), stick, entry, request.need, flow, out)
-    if end <= resting:
+        rest_time = stick.tau + (asymptote.slow_log - request.rest_slow_log) / flow.slow_rate
+        if rest_time < max(layer_end, 0.0):
+            return NOT_COVERED, np.nan
+    at = _write_partial_slip(at, tau_out, min(rest_time, end), stick, asymptote, request.level, flow, out)
+    if end <= rest_time:
         return DONE, np.nan
-    x, angle = manifold_path(entry.lam, entry.lam - request.rest_lambda, flow.slow_rate, flow.table)
-    loss = entry.loss + manifold_loss(entry.lam, flow.table) - manifold_loss(request.rest_lambda, flow.table)
-    x, angle = stick.x + stick.frame * (x + entry.x), stick.angle + stick.frame * (angle + entry.angle)
-    _rest(at, x, angle, stick.loss + loss, out)
-    return RESTED, resting
+    x, angle = manifold_path(asymptote.slow_log, asymptote.slow_log - request.rest_slow_log, flow.slow_rate, flow.table)
+    loss = (
+        asymptote.loss
+        + remaining_slip_loss(asymptote.slow_log, flow.table)
+        - remaining_slip_loss(request.rest_slow_log, flow.table)
+    )
+    x, angle = stick.x + stick.frame * (x + asymptote.x), stick.angle + stick.frame * (angle + asymptote.angle)
+    _write_rest(at, x, angle, stick.loss + loss, out)
+    return RESTED, rest_time
 
 
 @kernel(inline=True)
-def flow_motion(V0, omega0, tau_out, request, flow, out):
-    """One motion in tau = gamma t: (status, onset, rest time); a time is NaN where there is none."""
-    kappa, need = flow.kappa, request.need
+def look_up_motion(V0, omega0, tau_out, request, flow, out):
+    """Look up one motion.
+
+    V0, omega0 : initial speeds.  tau_out : output times, gamma t, ascending.  request : the :class:`Request`.
+    flow : the map.  out : outputs (ROWS, times), written.
+
+    Returns (status, time of onset, time of rest), times as gamma t, NaN where there is none.
+    """
+    kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
-        _rest(0, 0.0, 0.0, 0.0, out)
+        _write_rest(0, 0.0, 0.0, 0.0, out)
         return RESTED, np.nan, 0.0
     if not kappa * abs(V0) < HIGHEST:
-        return NOT_SERVED, np.nan, np.nan
+        return NOT_COVERED, np.nan, np.nan
     frame = 1.0 if omega0 >= V0 else -1.0
     V, omega = frame * V0, frame * omega0
     at, first = 0, FULL
-    T, X, limit = slide_to(V, need, flow)
-    slides_first = omega - V >= limit
-    if slides_first:
-        slide, stick, served = _sliding(frame, V, omega, (T, X), need, flow)
+    T, X, limit = full_slip_integrals(V, level, flow)
+    starts_in_full_slip = omega - V >= limit
+    if starts_in_full_slip:
+        slide, stick, covered = _start_in_full_slip(frame, V, omega, (T, X), level, flow)
     else:
-        stick, entry, served = _inside(V0, omega0, limit / abs(V), need, flow)
+        stick, asymptote, covered = _start_in_partial_slip(V0, omega0, limit / abs(V), level, flow)
         first = PARTIAL
-    if not served or stick.v < 2.0 * kappa * request.rest:
-        return NOT_SERVED, np.nan, np.nan
+    if not covered or stick.v < 2.0 * kappa * request.rest:
+        return NOT_COVERED, np.nan, np.nan
     while at < tau_out.size and tau_out[at] == 0.0:
-        _write(out, at, Output(V0, omega0, 0.0, 0.0, (omega0 - V0) / V0 if V0 != 0.0 else np.inf, first, 0.0))
+        _write_output(out, at, Output(V0, omega0, 0.0, 0.0, (omega0 - V0) / V0 if V0 != 0.0 else np.inf, first, 0.0))
         at += 1
     onset = np.nan
-    if slides_first:
-        at = _slide_outputs(at, tau_out, stick.tau, slide, need, flow, out)
+    if starts_in_full_slip:
+        at = _write_full_slip(at, tau_out, stick.tau, slide, level, flow, out)
         if tau_out[tau_out.size - 1] < stick.tau:
             return DONE, np.nan, np.nan
         onset = stick.tau
-        entry = entry_of(stick.family, stick.v, need, flow)
-    status, resting = _stick(at, tau_out, stick, entry, request, flow, out)
-    return status, onset, resting
+        asymptote = read_asymptote(stick.family, stick.v, level, flow)
+    status, rest_time = _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out)
+    return status, onset, rest_time
 
 
 @kernel(allocates=True)
-def flow_loop(flow, gamma, rest, V0, omega0, t, rows, answer, start, stop):
-    """Motions start..stop into ``answer``; those that are not served get the status NOT_SERVED and no output.
+def look_up_motions(flow, gamma, rest, V0, omega0, t, rows, result, start, stop):
+    """Look up the motions start..stop and write them into ``result``; a motion outside the map has the status
+    NOT_COVERED.
 
-    ``rows`` picks the output quantities; distance and angle, and the
-    energy lost, are found only if they are among them.
+    flow : the map.  gamma : dimensionless time scale.  rest : rest threshold, 0 for none.
+    V0, omega0 : initial speeds, vectors of one or n numbers.  t : output times.
+    rows : output quantities, indices of rows of an output; distance, angle and slip loss are computed only if they
+    are
+    among them.  result : arrays (:class:`viscoroll.motion.flow.FlowResult`).  start, stop : range of motions.
     """
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j
-    need = SPEEDS
+    level = SPEEDS
     for n in range(rows.size):
-        need = max(need, PATH if rows[n] == _X or rows[n] == _ANGLE else LOSS if rows[n] >= SLIP_LOSS else SPEEDS)
-    request = Request(need, rest, lambda_at_rest(rest, flow) if rest > 0.0 else 0.0)
+        level = max(level, PATH if rows[n] == _X or rows[n] == _ANGLE else LOSS if rows[n] >= SLIP_LOSS else SPEEDS)
+    request = Request(level, rest, slow_log_at_rest(rest, flow) if rest > 0.0 else 0.0)
     for i in range(start, stop):
         V, omega = element(V0, i), element(omega0, i)
-        answer.status[i], onset, resting = flow_motion(V, omega, tau, request, flow, one)
-        if need >= LOSS:
+        result.status[i], onset, rest_time = look_up_motion(V, omega, tau, request, flow, one)
+        if level >= LOSS:
             for m in range(t.size):
                 V_now, omega_now = one[_V, m], one[_OMEGA, m]
                 lost = 0.5 * ((V - V_now) * (V + V_now) + j * (omega - omega_now) * (omega + omega_now))
                 one[ROLLING_LOSS, m] = lost - one[SLIP_LOSS, m]
-        answer.onset[i], answer.rest[i] = onset / gamma, resting / gamma
-        answer.switches[i] = 1 if onset >= 0.0 else 0
+        result.onset[i], result.rest[i] = onset / gamma, rest_time / gamma
+        result.switches[i] = 1 if onset >= 0.0 else 0
         for n in range(rows.size):
             row = rows[n]
             scale = 1.0 / gamma if row == _X or row == _ANGLE else 1.0
             for m in range(t.size):
-                answer.out[n, i, m] = one[row, m] * scale
+                result.out[n, i, m] = one[row, m] * scale

@@ -1,4 +1,4 @@
-"""What the kernels of a flow map hand to one another."""
+"""Records of the flow map's kernels."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from typing import Any, NamedTuple
 
 
 class Flow(NamedTuple):
-    """The flow map of a scene: all of :mod:`layout` as one vector, stick onsets from kappa V = 2**first on.
+    """The flow map of a scene.
 
-    slow_rate : at which lambda falls along the slow manifold.
+    table : all tables of :mod:`layout` in one vector.  first : onsets are tabulated from kappa V = 2**first on.
+    kappa, mu, j : parameters of the scene.  slow_rate : rate at which the slow logarithm falls along the slow
+    manifold.
     """
 
     table: Any
@@ -20,15 +22,22 @@ class Flow(NamedTuple):
 
 
 class Request(NamedTuple):
-    """What is asked of a motion: need (SPEEDS, PATH or LOSS), rest threshold, lambda of the slow manifold there."""
+    """Requested outputs of a motion.
 
-    need: Any
+    level : SPEEDS, PATH or LOSS.  rest : rest threshold, 0 for none.  rest_slow_log : slow logarithm at that
+    threshold.
+    """
+
+    level: Any
     rest: Any
-    rest_lambda: Any
+    rest_slow_log: Any
 
 
-class Slide(NamedTuple):
-    """Full slip, in the frame mirrored so that omega > V: V - j omega, and T and X of the slide table, at the start."""
+class FullSlipStart(NamedTuple):
+    """Start of a motion in full slip, mirrored so that omega > V.
+
+    frame : +1, or -1 if mirrored.  w : V - j omega.  T, X : integrals of the table of full slip at V.
+    """
 
     frame: Any
     w: Any
@@ -36,10 +45,12 @@ class Slide(NamedTuple):
     X: Any
 
 
-class Stick(NamedTuple):
-    """Entry into partial slip, in the frame mirrored so that V > 0: family of motions, kappa V, time, path and loss.
+class StickOnset(NamedTuple):
+    """Onset of partial slip, mirrored so that V > 0.
 
-    That of a start inside the stick zone lies before it: ``tau``, distance, angle and loss are from the start on.
+    frame : +1, or -1 if mirrored.  family : PLUS or MINUS.  v : kappa V.  tau : time, gamma t.
+    x, angle, loss : distance, angle and slip loss there.  The onset of a start inside the stick zone lies before the
+    start: tau, x, angle and loss count from the start and are negative.
     """
 
     frame: Any
@@ -51,10 +62,14 @@ class Stick(NamedTuple):
     loss: Any
 
 
-class Entry(NamedTuple):
-    """What the map holds of an entry: lambda, k0, split; distance, angle, slip loss gained on the slow manifold."""
+class Asymptote(NamedTuple):
+    """The motion on the slow manifold that a motion in partial slip approaches.
 
-    lam: Any
+    slow_log : its slow logarithm at the onset.  rate : relaxation rate k0 of omega - V at onset.  split : see
+    :class:`.layout.FlowTables`.  x, angle, loss : excess of distance, angle and slip loss over that motion.
+    """
+
+    slow_log: Any
     rate: Any
     split: Any
     x: Any
@@ -63,7 +78,7 @@ class Entry(NamedTuple):
 
 
 class Output(NamedTuple):
-    """One column of outputs, in the frame of the caller, times gamma where it is a length."""
+    """One output state in the frame of the caller; lengths are multiplied by gamma."""
 
     V: Any
     omega: Any

@@ -1,4 +1,4 @@
-"""The law at the states that a flow map is made from."""
+"""Contact states from which a flow map is made."""
 
 from __future__ import annotations
 
@@ -7,13 +7,23 @@ import numpy as np
 from ..compile.jit import kernel
 from ..rows.law import place, press, speed
 
-#: rows of what is found: delta_star, M, Q, dQ/d delta
-DELTA_STAR, MOMENT, TRACTION, STIFFNESS = range(4)
+#: row of delta_star in the array of states
+DELTA_STAR = 0
+#: row of M
+MOMENT = 1
+#: row of Q
+TRACTION = 2
+#: row of dQ/d delta
+STIFFNESS = 3
 
 
 @kernel
 def states(V, delta, kappa, mu, law, out):
-    """Fill ``out`` at every V > 0 and delta within the stick zone."""
+    """Evaluate the law at states inside the stick zone.
+
+    V : speeds, > 0, (n,).  delta : creepage, |delta| < delta_star, (n,).  kappa, mu : parameters of the scene.
+    law : record of the law's rows.  out : (4, n), written: delta_star, M, Q, dQ/d delta.
+    """
     for i in range(V.size):
         u = kappa * V[i]
         found = speed(place(u, law), u, law)

@@ -1,7 +1,7 @@
 """Steady rolling under force, torque or slope: :func:`steady`, all equilibria with their stability.
 
-Sum and difference of V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0 (over gamma t) give
-M(V) = force + torque, from which V, and Q = torque - M_cylinder, from which the creep.
+The equations are V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0 (over gamma t).
+Their sum M(V) = force + torque determines V; Q = torque - M_cylinder then determines the creepage.
 """
 
 from __future__ import annotations
@@ -16,12 +16,11 @@ from ...core.labels import unlabelled
 from ...core.typed import Integers, Numbers
 from ...materials.law_table import LawTable
 from ..parameters import Rolls, framed
-from . import row
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
-from .result import Reasons, Steady, packed
-from .scan import scanned
-from .states import States, crossings, states_at
+from .result import Diagnosis, Steady, pack_result
+from .scan import scan_states
+from .states import Field, States, find_crossings, states_at
 
 
 def steady(
@@ -89,33 +88,39 @@ def steady(
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
     elif loads.gains.omega:
-        rolling = scanned(law, loads)
+        rolling = scan_states(law, loads)
     else:
-        rolling = _under_load(law, loads)
+        rolling = _states_under_load(law, loads)
     neutral = elastic and loads.given is None and not gained
-    resting = _resting(loads, neutral)
+    resting = _loads_at_rest(loads, neutral)
     if resting.size:
         rolling = States.joined(rolling, States.at_rest(loads, resting, law.T_mean))
-    held = rolling.held()
-    count = np.bincount(held.load, minlength=loads.mu.size)
-    top = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).top
-    states = rolling.load, rolling.rows[row.V], rolling.rows[row.Q]
-    reasons = Reasons(loads, states, count, top, neutral)
-    found = packed(loads, held, reasons, scale, labels)
+    existing = rolling.existing()
+    count = np.bincount(existing.load, minlength=loads.mu.size)
+    maximum = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).maximum
+    states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
+    reasons = Diagnosis(loads, states, count, maximum, neutral)
+    found = pack_result(loads, existing, reasons, scale, labels)
     roller.look(found.V)
     return found
 
 
-def _resting(loads: Loads, neutral: bool) -> Integers:
-    """Loads that leave the cylinder at rest, if friction does; where ``neutral`` it need not be at rest under them."""
+def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
+    """Indices of the loads under which the cylinder can be at rest.
+
+    loads : the loads.  neutral : whether any speed is steady without a load (elastic bodies).
+    """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
     rests = loads.force + loads.torque == 0.0
     return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
-def _under_load(law: LawTable, loads: Loads) -> States:
-    """All states of rolling under loads without a gain on omega."""
+def _states_under_load(law: LawTable, loads: Loads) -> States:
+    """All states of rolling under loads without a gain on omega.
+
+    law : rows of the material.  loads : the loads.  Raises ParameterError for loads outside the range of the nodes.
+    """
     gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
@@ -124,5 +129,5 @@ def _under_load(law: LawTable, loads: Loads) -> States:
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()
-    load, sign, u = crossings(law, gain, total)
+    load, sign, u = find_crossings(law, gain, total)
     return states_at(law, loads, load, sign, u / loads.kappa[load])

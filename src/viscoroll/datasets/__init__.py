@@ -1,0 +1,37 @@
+"""Sample measurements that are installed with the package: files for the examples of the documentation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..core.errors import ParameterError
+
+_FOLDER = Path(__file__).parent
+
+
+def path(name: str) -> Path:
+    """Path of a sample file.
+
+    Parameters
+    ----------
+    name : ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5 % noise.
+
+    Returns
+    -------
+    pathlib.Path
+        The file, in the folder of the installed package.
+
+    Raises
+    ------
+    ParameterError
+        An unknown name.
+
+    Examples
+    --------
+    >>> vr.datasets.path("dma.csv").name
+    'dma.csv'
+    """
+    names = sorted(file.name for file in _FOLDER.glob("*.csv"))
+    if name not in names:
+        raise ParameterError("name", repr(name), f"one of {', '.join(names)}")
+    return _FOLDER / name

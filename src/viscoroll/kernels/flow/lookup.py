@@ -1,0 +1,315 @@
+"""Values from a flow map: polynomials instead of integration.
+
+In full slip, mirrored so that omega > V, I = V - j omega - 2 mu T(V) is constant and determines the onset of partial
+slip.  Behind the onset the boundary layer is a table over (V at onset, E); then the motion follows the slow
+manifold, a function of the slow logarithm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.fma import fma
+from ..compile.jit import kernel
+from ..numerics.four import LANES, fused, loads, parts, spread
+from ..numerics.nodes import gauss
+from ..rows import lanes
+from ..rows.law import octave
+from . import layout
+from .layout import LAYER_TERMS, SHAPES, STARTS
+from .records import Asymptote
+
+#: output level: V and omega alone
+SPEEDS = 0
+#: output level: distance and angle too
+PATH = 1
+#: output level: slip loss too
+LOSS = 2
+#: lowest kappa V of the tables
+LOWEST = 2.0**layout.LOW
+#: highest kappa V of a start, two octaves below the end of the tables, so that quantities that grow with it stay inside
+HIGHEST = 2.0 ** (layout.HIGH - 2)
+#: ratio of the sliding time to T below which the difference of X cancels and V is integrated instead
+_SHORT = 0.02
+#: stiff rate of a motion on the slow manifold: its layer has length 0
+_NO_LAYER = 1e30
+_LOWEST_U = 2.0**layout.LAYER_LOW
+_LOWEST_SLOW_LOG = -layout.SLOW_BINS * layout.SLOW_WIDTH
+#: numbers of a row of the table of full slip
+_SLIDE = SHAPES.slide[2]
+#: numbers of a row of the table of onsets
+_ONSET = SHAPES.onset[2]
+#: numbers of a row of the table of speeds over sliding time
+_AFTER = SHAPES.after[2]
+#: numbers of a row of the slow manifold over its slow logarithm
+_SLOW = SHAPES.slow[1]
+#: numbers of a row of the slow manifold over kappa V
+_MANIFOLD = SHAPES.manifold[1]
+#: numbers of a row of the asymptotes
+_ASYMPTOTE_SIZE = SHAPES.asymptote[2]
+#: octaves of the tables over kappa V
+_SPEED_OCTAVES = layout.HIGH - layout.LOW
+#: octaves of kappa V at onset
+_ONSET_OCTAVES = layout.OCTAVES
+#: octaves of the layer coordinate u
+_LAYER_OCTAVES = SHAPES.layer[2]
+#: numbers of the polynomials of one octave of u
+_LAYER = SHAPES.layer[3] * SHAPES.layer[4]
+#: loads the twelve coefficients of the powers of t, that belong to one power of s, as three vectors of four
+_powers = loads(LAYER_TERMS // LANES)
+#: nodes and weights of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
+_GAUSS_X, _GAUSS_W = gauss(5)
+
+
+@kernel(inline=True)
+def full_slip_integrals(V, level, flow):
+    """Time and distance of sliding from rest to V in the mirrored frame.
+
+    V : speed of the axis.  level : SPEEDS, PATH or LOSS; X is computed from PATH on.  flow : the map.
+
+    Returns (T with the sign of V, X, delta_star |V|).
+    """
+    speed = abs(V)
+    row, t, _ = octave(flow.kappa * speed, layout.LOW)
+    if row == 0:
+        return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
+    at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * _SLIDE
+    T, limit = lanes.pair(flow.table, at, t)[:2]
+    X = lanes.one(flow.table, at + layout.SLIDE_X, t)[0] if level >= PATH else 0.0
+    return T if V > 0.0 else -T, X, limit
+
+
+@kernel(inline=True)
+def speed_at_slide_time(T, flow):
+    """V in full slip at the time T since (or before) rest, in the mirrored frame."""
+    row, t, _ = octave(flow.kappa * flow.mu * abs(T), layout.LOW)
+    if row == 0:
+        return flow.mu * T
+    V = lanes.one(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t)[0]
+    return V if T > 0.0 else -V
+
+
+@kernel
+def slide_distance(start, tau, flow):
+    """Distance of sliding for the time tau.
+
+    start : (T, X) at the beginning.  tau : time, > 0.  flow : the map.
+
+    The difference of X, or the integral of V where that difference cancels.
+    """
+    T, X = start
+    if tau > _SHORT * abs(T):
+        return full_slip_integrals(speed_at_slide_time(T + tau, flow), PATH, flow)[1] - X
+    x = 0.0
+    for n in range(_GAUSS_X.size):
+        x += _GAUSS_W[n] * speed_at_slide_time(T + tau * _GAUSS_X[n], flow)
+    return x * tau
+
+
+@kernel(inline=True)
+def read_onset(I, level, flow):
+    """State at the onset of partial slip of a sliding motion, in the mirrored frame.
+
+    I : V - j omega - 2 mu T, constant while sliding.  level : SPEEDS, PATH or LOSS; X from PATH on.  flow : the map.
+
+    Returns (V, T, X); V = 0 outside the tables.
+    """
+    x = flow.kappa * abs(I) / (1.0 + flow.j)
+    if not LOWEST <= x < HIGHEST:
+        return 0.0, 0.0, 0.0
+    row, t, _ = octave(x, layout.LOW)
+    at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
+    V, T = lanes.pair(flow.table, at, t)[:2]
+    X = lanes.one(flow.table, at + layout.ONSET_X, t)[0] if level >= PATH else 0.0
+    return (V, T, X) if I < 0.0 else (-V, -T, X)
+
+
+@kernel(inline=True)
+def _locate_on_manifold(slow_log):
+    """Locate a slow logarithm in the table of the slow manifold.
+
+    slow_log : slow logarithm of V.
+
+    Returns (position of the row, t in [-1, 1), factor): below the table all values fall as exp(slow_log), by the
+    factor.
+    """
+    if slow_log >= 0.0:
+        row, t, _ = octave(1.0 + slow_log, 0)
+        return STARTS.slow + (layout.SLOW_BINS + row - 1) * _SLOW, t, 1.0
+    share = 1.0
+    if slow_log < _LOWEST_SLOW_LOG:
+        share, slow_log = np.exp(slow_log - _LOWEST_SLOW_LOG), _LOWEST_SLOW_LOG
+    place = (slow_log - _LOWEST_SLOW_LOG) * (1.0 / layout.SLOW_WIDTH)
+    row = min(np.int64(place), layout.SLOW_BINS - 1)
+    return STARTS.slow + row * _SLOW, 2.0 * (place - row) - 1.0, share
+
+
+@kernel(inline=True)
+def manifold_speeds(slow_log, table):
+    """(V, delta) on the slow manifold at a slow logarithm."""
+    at, t, share = _locate_on_manifold(slow_log)
+    V, delta = lanes.pair(table, at, t)[:2]
+    return share * V, share * delta
+
+
+@kernel(inline=True)
+def _remaining_path(slow_log, table):
+    """(distance, angle) that remain to rest on the slow manifold."""
+    at, t, share = _locate_on_manifold(slow_log)
+    x, angle = lanes.pair(table, at + layout.SLOW_PATH, t)[:2]
+    return share * x, share * angle
+
+
+@kernel
+def manifold_path(start, span, rate, table):
+    """Distance and angle along the slow manifold while the slow logarithm falls by ``span``.
+
+    start : slow logarithm at the beginning.  span : its decrease.  rate : its decrease in unit time.  table : the
+    map's vector.
+
+    Returns (distance, angle): the difference of the remaining path, or the integral of V where that difference
+    cancels.
+    """
+    end = start - span
+    if span > 0.25 * max(1.0 + end, 1.0):
+        x, angle = _remaining_path(start, table)
+        x_left, angle_left = _remaining_path(end, table)
+        return x - x_left, angle - angle_left
+    x = angle = 0.0
+    for n in range(_GAUSS_X.size):
+        V, delta = manifold_speeds(end + span * _GAUSS_X[n], table)
+        x += _GAUSS_W[n] * V
+        angle += _GAUSS_W[n] * V * (1.0 + delta)
+    return x * span / rate, angle * span / rate
+
+
+@kernel
+def remaining_slip_loss(slow_log, table):
+    """Slip loss that remains to rest at a slow logarithm on the slow manifold; it falls as V^3 as V -> 0."""
+    at, t, share = _locate_on_manifold(slow_log)
+    return share**3 * lanes.one(table, at + layout.SLOW_LOSS, t)[0]
+
+
+@kernel
+def manifold_at_speed(v, table):
+    """(slow logarithm, delta) on the slow manifold at v = kappa V >= LOWEST."""
+    row, t, _ = octave(v, layout.LOW)
+    return lanes.pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
+
+
+@kernel
+def asymptote_on_manifold(slow_log):
+    """The asymptote of a motion that is on the slow manifold already."""
+    return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
+
+
+@kernel(inline=True)
+def read_asymptote(family, v, level, flow):
+    """The asymptote of the motion that enters partial slip at v = kappa V.
+
+    family : PLUS or MINUS.  v : kappa V at onset.  level : SPEEDS, PATH or LOSS.  flow : the map.
+
+    Returns an :class:`Asymptote`; quantities beyond ``level`` are 0.
+    """
+    table = flow.table
+    row, t, _ = octave(v, flow.first)
+    at = STARTS.asymptote + (row - 1 + family * _ONSET_OCTAVES) * _ASYMPTOTE_SIZE
+    slow_log, rate = lanes.pair(table, at, t)[:2]
+    x = angle = loss = 0.0
+    if level >= PATH:
+        x, angle = lanes.pair(table, at + layout.ASYMPTOTE_PATH, t)[:2]
+    if level >= LOSS:
+        loss = lanes.one(table, at + layout.ASYMPTOTE_LOSS, t)[0]
+    return Asymptote(slow_log, rate, lanes.one(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
+
+
+@kernel(inline=True)
+def layer_coordinate(E, split):
+    """Layer coordinate u at the stiff time E, where the layer is divided at ``split``."""
+    return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
+
+
+@kernel(inline=True)
+def locate_in_layer(family, v, u, flow):
+    """(position in the table, t, s) in the layer of a family at v = kappa V of the onset and at the layer coordinate
+    u.
+    """
+    row, t, _ = octave(v, flow.first)
+    part, s, _ = octave(u, layout.LAYER_LOW)
+    return STARTS.layer + (((row - 1 + family * _ONSET_OCTAVES) * _LAYER_OCTAVES) + part - 1) * _LAYER, t, s
+
+
+@kernel(inline=True)
+def _evaluate_in_t(p, t):
+    """Value at t of a polynomial whose twelve coefficients are three vectors of four."""
+    square = t * t
+    per = spread(square * square)
+    a, b, c, d = parts(fused(fused(p[2], per, p[1]), per, p[0]))
+    return fma(square, fma(t, d, c), fma(t, b, a))
+
+
+@kernel(inline=True)
+def layer_value_and_slopes(table, column, at, t, s):
+    """Value and slopes of one column of a layer.
+
+    table : the map's vector.  column : LAYER_LN_V to LAYER_LOSS.  at, t, s : position from :func:`locate_in_layer`.
+
+    Returns (value, slope in t (speed at onset), slope in s (layer coordinate)).
+    """
+    at += column * layout.BLOCK
+    per, value = spread(s), _powers(table, at + layout.BLOCK - LAYER_TERMS)
+    rise = value
+    for m in range(LAYER_TERMS - 2, 0, -1):
+        value = fused(value, per, _powers(table, at + m * LAYER_TERMS))
+        rise = fused(rise, per, value)
+    value = fused(value, per, _powers(table, at))
+    powers = (*parts(value[0]), *parts(value[1]), *parts(value[2]))
+    slope = 11.0 * powers[11]
+    for k in range(10, 0, -1):
+        slope = fma(slope, t, k * powers[k])
+    return _evaluate_in_t(value, t), slope, _evaluate_in_t(rise, t)
+
+
+@kernel
+def layer_value(table, column, at, t, s):
+    """Value of one column of a layer, as in :func:`layer_value_and_slopes`."""
+    return layer_value_and_slopes(table, column, at, t, s)[0]
+
+
+@kernel
+def layer_state(stick, asymptote, elapsed, level, flow):
+    """State within the boundary layer.
+
+    stick : the :class:`StickOnset`.  asymptote : its :class:`Asymptote`.  elapsed : time since the onset, gamma t.
+    level : SPEEDS, PATH or LOSS.  flow : the map.
+
+    Returns (V, delta, distance, angle, slip loss); the last three since the onset.
+    """
+    table, E = flow.table, elapsed * asymptote.rate
+    at, t, s = locate_in_layer(stick.family, stick.v, layer_coordinate(E, asymptote.split), flow)
+    V0 = stick.v / flow.kappa
+    x = angle = loss = 0.0
+    if level >= PATH:
+        scale = V0 / asymptote.rate
+        x = scale * (E + layer_value(table, layout.LAYER_X, at, t, s))
+        angle = scale * (E + layer_value(table, layout.LAYER_ANGLE, at, t, s))
+    if level >= LOSS:
+        loss = layer_value(table, layout.LAYER_LOSS, at, t, s) * V0 * V0
+    V = V0 * np.exp(layer_value(table, layout.LAYER_LN_V, at, t, s))
+    return V, layer_value(table, layout.LAYER_CREEP, at, t, s), x, angle, loss
+
+
+@kernel
+def slow_log_at_rest(rest, flow):
+    """Slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold.
+
+    rest : threshold, > 0; beyond the tables their highest speed counts.  flow : the map.
+    """
+    rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
+    for _ in range(4):
+        v = flow.kappa * V
+        V = rest / (1.0 + max(manifold_at_speed(v, flow.table)[1] if v >= LOWEST else 0.0, 0.0))
+    v = flow.kappa * V
+    if v >= LOWEST:
+        return manifold_at_speed(v, flow.table)[0]
+    return manifold_at_speed(LOWEST, flow.table)[0] + np.log(v / LOWEST)

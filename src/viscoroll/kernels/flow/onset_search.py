@@ -1,0 +1,108 @@
+"""Flow map, starts inside the stick zone: the search for the onset of partial slip that the start would have come
+from.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from . import layout
+from .layout import LAYER_CREEP, LAYER_LN_V, MINUS, PLUS
+from .lookup import HIGHEST, LOWEST, SPEEDS, layer_value_and_slopes, locate_in_layer, manifold_at_speed, read_asymptote
+
+#: a creepage closer to that of the slow manifold lies on it; the error of omega/V is as small
+_ON_MANIFOLD = 1e-10
+#: creepage difference below which the polynomials of the layer cannot separate a state from the slow manifold
+_INDISTINGUISHABLE = 1e-9
+#: largest relative residual in V of a solution; motions with a larger one are left to the integrator
+_RESIDUAL = 1e-10
+#: largest number of steps of Newton's iteration
+_MAX_ITERATIONS = 12
+#: step after which the iteration ends: the error that remains is about its square
+_CONVERGED = 1e-7
+#: lower end of the layer coordinate u
+_LOWEST_U = 2.0**layout.LAYER_LOW
+#: upper end of the layer coordinate u, one rounding below the table's edge
+_HIGHEST_U = 2.0**layout.LAYER_HIGH * (1.0 - 2.0**-50)
+
+
+@kernel
+def _initial_u(size, slow, turns):
+    """Initial guess of the layer coordinate u at which |delta| has fallen to a given value, by Carter's elastic law.
+
+    size : |delta|/delta_star of the start, negative beyond delta = 0.
+    slow : the same on the slow manifold at the speed of the start, with the same sign convention.
+    turns : whether motions of this family pass delta = 0 (then the layer has a split there).
+
+    Returns u, dimensionless.  With r = 1 - |delta|/delta_star the traction is 1 - r^2, so that dr/dE = (a^2 - r^2)/2
+    where a^2 is 1 minus the traction on the slow manifold.
+    """
+    traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)
+    a = np.sqrt(1.0 - traction)
+    if size > 0.0:
+        r = 1.0 - size
+        E = np.log((a + r) / max(a - r, 1e-14)) / a
+        split = np.log((a + 1.0) / max(a - 1.0, 1e-14)) / a if turns else 1.0
+        return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
+    r, b = 1.0 + size, max(1.0 + slow, 1e-3)
+    return 1.0 + np.log((1.0 - b) / (1.0 + b) * (r + b) / max(r - b, 1e-14)) / b
+
+
+@kernel(inline=True)
+def _clamp(x, low, high):
+    """The nearest value to x in [low, high]; low if x is NaN."""
+    x = x if x > low else low
+    return x if x < high else high
+
+
+@kernel
+def find_onset(V, delta, edge, flow):
+    """Find the onset of partial slip from which a state inside the stick zone would have come.
+
+    V : speed of the axis, > 0.  delta : creepage.  edge : delta_star at V.  flow : the map (:class:`.records.Flow`).
+
+    Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the
+    slow manifold E is infinite and the speed is that of the state.  Newton's iteration in ln V at onset and in u,
+    applied to the logarithm of the distance from the manifold, which decreases nearly linearly in E.
+    """
+    v = flow.kappa * V
+    lowest, highest = 2.0**flow.first, 2.0 ** (flow.first + layout.OCTAVES)
+    if not LOWEST <= v < min(highest, HIGHEST):
+        return PLUS, v, 0.0, False
+    _, slow = manifold_at_speed(v, flow.table)
+    gap = delta - slow
+    if abs(gap) < _ON_MANIFOLD:
+        return PLUS, v, np.inf, True
+    if not 2.0 * lowest <= v <= 0.5 * highest:
+        return PLUS, v, 0.0, False
+    family, sign = (PLUS, 1.0) if gap > 0.0 else (MINUS, -1.0)
+    turns = read_asymptote(family, v, SPEEDS, flow).split != 1.0
+    u = _initial_u(sign * delta / edge, sign * slow / edge, turns)
+    v0, ln_v0, change = v, 0.0, np.inf
+    for _ in range(_MAX_ITERATIONS):
+        u = _clamp(u, _LOWEST_U, _HIGHEST_U)
+        at, t, s = locate_in_layer(family, v0, u, flow)
+        ln_V, ln_t, ln_s = layer_value_and_slopes(flow.table, LAYER_LN_V, at, t, s)
+        creep, creep_t, creep_s = layer_value_and_slopes(flow.table, LAYER_CREEP, at, t, s)
+        if change < _CONVERGED:
+            break
+        away = (creep - slow) / gap
+        if not away > 0.0:
+            u = 0.5 * (u + _LOWEST_U)
+            continue
+        # slopes in ln v0 and u: s and t are 4 m - 3 with the mantissa m of v0 and of u
+        per_v, per_u, per = t + 3.0, (s + 3.0) / u, 1.0 / (creep - slow)
+        first, second = ln_v0 + ln_V, np.log(away)
+        a, b, c, d = 1.0 + ln_t * per_v, ln_s * per_u, creep_t * per_v * per, creep_s * per_u * per
+        determinant = a * d - b * c
+        shift, step = (first * d - b * second) / determinant, (a * second - c * first) / determinant
+        v0 = _clamp(v * np.exp(ln_v0 - shift), lowest, 0.99 * highest)
+        ln_v0, u = ln_v0 - shift, u - step
+        change = abs(shift) + abs(second) * np.sqrt(abs(gap))
+    split = read_asymptote(family, v0, SPEEDS, flow).split
+    E = (u - _LOWEST_U) / (1.0 - _LOWEST_U) * split if u < 1.0 else u - 1.0 + split
+    found = abs(v0 * np.exp(ln_V) - v) <= _RESIDUAL * v and abs(creep - delta) <= _RESIDUAL
+    if found and E <= layout.LAYER_END:
+        return family, v0, E, True
+    return PLUS, v, np.inf, abs(gap) < _INDISTINGUISHABLE
