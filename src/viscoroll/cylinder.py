@@ -18,6 +18,7 @@ from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
 from .core.scale import Scale
 from .core.symbols import MEASURED
+from .materials.cover import Cover
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
@@ -218,9 +219,16 @@ class Cylinder(Methods):
             if slow.ndim:
                 slow, fast = np.broadcast_arrays(slow, fast)
                 law = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / self.T_ref)[:, np.newaxis], alpha=law)
-        return scene_of(
-            self.R, self.m, self.load, self.E_prime, self.T_ref, self.pair.law if law is None else law, self.mu, self.j
-        )
+        if law is None:
+            law = self.pair.law if self.pair.covered is None else self._cover()
+        return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+
+    def _cover(self) -> Cover:
+        """The layer of finite thickness; raises ParameterError where R or the load are arrays."""
+        if np.ndim(self.l0):
+            allowed = "single numbers where a body has a thickness: each l0 has a law of its own; loop over cylinders"
+            raise ParameterError("R, m, load", "arrays", allowed)
+        return self.pair.cover(float(self.l0))
 
     @cached_property
     def _known(self) -> Known:
