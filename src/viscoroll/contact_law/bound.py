@@ -15,7 +15,7 @@ from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from .contact import contact
 from .contact_table import refuse_overflow
-from .parameters import Rolls, framed, refuse_arrays
+from .parameters import Rolls, framed, refuse_arrays, refuse_cover
 
 #: what the law takes as it is; all else goes through :func:`contact`
 _NUMBERS = frozenset({float, int, np.float64})
@@ -38,6 +38,7 @@ class Law:
             raise ParameterError(
                 "material", repr(scene.material), "one material, as material[i]: a law is of one scene"
             )
+        refuse_cover(scene, "no law is bound; contact takes its place")
         refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
         table = scene.table
         assert table is not None

@@ -187,7 +187,9 @@ def states(
 def _of_cover(names: tuple[str, ...], plain: bool) -> tuple[str, ...]:
     """The fields of a cover: where none were named, delta_0 with them; raises ParameterError where N is."""
     if UNSTEADY in names:
-        raise ParameterError("fields", repr(UNSTEADY), "left out for a cover: N of a layer of finite thickness is not known")
+        raise ParameterError(
+            "fields", repr(UNSTEADY), "left out for a cover: N of a layer of finite thickness is not known"
+        )
     return (*names, FREE) if plain else names
 
 

@@ -26,13 +26,14 @@ from .assumptions import (
     inertia,
     measurement,
     passage,
-    thickness,
 )  # fmt: skip
 from .contact_table import rolling
 from .parameters import Parameters
 
 #: of the compliance, a part below which a body may be as thin and as little known as it likes
 _LEAST_PART = 0.01
+#: log2 of kappa V at which the speeds of a cover are looked at: what lies between is off by less than 1 %
+_OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
 #: said once a process for each
 _told: set[Measured] = set()
 
@@ -73,7 +74,13 @@ class Known:
         if not records or series is None:
             return None
         ends = max(data.low for data in records), min(data.high for data in records)
-        low, high = held_speeds(series, *(rate * self.T_ref for rate in ends))
+        low, high = (rate * self.T_ref for rate in ends)
+        if self.scene.cover is not None:
+            u = np.exp2(_OCTAVES_OF_SPEED)
+            (lam,) = rolling(law_table(self.scene.cover), u, "lam")
+            low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
+        else:
+            low, high = held_speeds(series, low, high)
         return low / self.T_ref, high / self.T_ref
 
     @cached_property
@@ -102,7 +109,6 @@ class Known:
             quasistatic=inertia(*self._slowness(fastest, density)),
             bodies=coupling(*(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like),
             measured=measurement(passage(V, length), self.measured),
-            thick=thickness(length, {name: body.thickness for name, body in self.bodies.items()}),
             plane=Assumption(None, None, long if plane == "strain" else "a thin disc (plane stress)"),
         )
 

@@ -25,10 +25,11 @@ class Cover(Bodies):
 
     Parameters
     ----------
-    series : the layer's :class:`Prony` series, times over T_ref; or its alpha >= 1, with T_epsilon for the unit of time.
+    series : the layer's :class:`Prony` series, times over T_ref; or its alpha >= 1, with T_epsilon for the unit of
+        time.
     nu : Poisson's ratio of the layer, in [0, 0.5], constant in time.
-    thickness : h/l0, dimensionless, > 0: over the contact length at rest that the same bodies would have as half-spaces.
-        So thin that half the contact at rest is longer than six thicknesses it is refused.
+    thickness : h/l0, dimensionless, > 0: over the contact length at rest that the same bodies would have as
+        half-spaces.  So thin that half the contact at rest is longer than six thicknesses it is refused.
     on : "cylinder" (a covered roller; default) or "base" (a belt or lining that a roller runs on).
     part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1 (default): the other
         body is rigid, else it is an elastic half-space.
@@ -57,10 +58,10 @@ class Cover(Bodies):
     without coupling Q/mu is off by at most 0.7, 2.2, 3.5 and 4.5 % at h/l0 = 5, 1, 0.5 and 0.2.
     """
 
-    nu: float
-    thickness: float
-    on: Literal["cylinder", "base"]
-    other_nu: float
+    nu: float = 0.5
+    thickness: float = 1.0
+    on: Literal["cylinder", "base"] = "cylinder"
+    other_nu: float = 0.5
 
     def __init__(
         self,
@@ -73,7 +74,7 @@ class Cover(Bodies):
         other_nu: float = 0.5,
     ) -> None:
         if isinstance(series, Real) and not isinstance(series, bool):
-            series = series_of_alpha(float(checked("alpha", series, low=1.0, high=HIGHEST_ALPHA)))
+            series = series_of_alpha(float(checked("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
         if not isinstance(series, Prony) or series.shape:
             raise ParameterError("series", f"{series!r:.60}", "a Prony series of one material, or an alpha")
         if on not in ("cylinder", "base"):
@@ -81,9 +82,10 @@ class Cover(Bodies):
         for name, value in (("nu", nu), ("other_nu", other_nu)):
             object.__setattr__(self, name, number(name, value, low=0.0, high=0.5))
         part = number("part", part, low=0.0, strict=True, high=1.0)
-        bodies = (series, Prony.elastic(), part) if on == "cylinder" else (Prony.elastic(), series, 1.0 - part)
-        for name, value in zip(("cylinder", "base", "share"), bodies, strict=True):
-            object.__setattr__(self, name, value)
+        other, cylinder = Prony.elastic(), on == "cylinder"
+        object.__setattr__(self, "cylinder", series if cylinder else other)
+        object.__setattr__(self, "base", other if cylinder else series)
+        object.__setattr__(self, "share", part if cylinder else 1.0 - part)
         object.__setattr__(self, "thickness", number("thickness", thickness, low=0.0, strict=True))
         object.__setattr__(self, "on", on)
         super().__post_init__()
@@ -106,8 +108,7 @@ class Cover(Bodies):
     def rows(self) -> CoverRows:
         """The law over speed; 0.1 to 0.3 s."""
         modes = CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
-        base = self.on == "base"
-        return cover_rows(modes, self.thickness, 1.0 if base else -1.0, base)
+        return cover_rows(modes, self.thickness, 1.0 if self.on == "base" else -1.0)
 
     def __getitem__(self, which: Any) -> Bodies:
         raise TypeError("a Cover is one material")

@@ -1,8 +1,8 @@
 """The law of a cover over speed: what :mod:`.cover_solve` finds at nodes of u = kappa |V|, as rows of polynomials.
 
 A scene fixes l0/h, so that theta = lam l0/(2 h) follows from the half length that carries the load; all quantities are
-then smooth functions of u alone.  They are found at twelve nodes an octave, from slow to fast, each from what the last ones
-say of it.  Octaves are interpolated between these; below the first octave a polynomial of u, beyond the last one a
+then smooth functions of u alone.  They are found at twelve nodes an octave, from slow to fast, each from what the last
+ones say of it.  Octaves are interpolated between these; below the first octave a polynomial of u, beyond the last one a
 polynomial of 1/u takes over, both with the limits of elastic layers.
 """
 
@@ -18,7 +18,7 @@ from ..core.errors import ParameterError
 from ..core.typed import Floats
 from ..kernels.numerics.nodes import chebyshev, rounded
 from .cover_solve import MOST_THETA, CoverModes, CoverState, local_strain, solve
-from .law_build import FUNCTIONS, TERMS, Rows
+from .law_build import FUNCTIONS, TERMS, Rows, octaves
 
 #: nodes an octave of u, and nodes on either side of an octave that take part in its polynomial
 PER_OCTAVE, _ASIDE = 12, 18
@@ -47,7 +47,7 @@ class CoverRows(NamedTuple):
     coefficients : (rows, 24 powers, 7 functions) as of a half-space, without N.
     creep : (2, rows, 24 powers) of L = 2 kappa delta_star/mu and of 2 kappa delta_0, over u.
     limits : for u -> infinity, (L, lam, 2 kappa delta_0), and the factors of 1/u that each of the first order has;
-        then epsilon u, M u^2/V and 0.
+        then epsilon u and M u^2/V.
     """
 
     e0: int
@@ -56,15 +56,15 @@ class CoverRows(NamedTuple):
     limits: Floats
 
 
-def cover_rows(modes: CoverModes, thickness: float, side: float, on_base: bool) -> CoverRows:
+def cover_rows(modes: CoverModes, thickness: float, side: float) -> CoverRows:
     """The rows of one cover.
 
     Parameters
     ----------
     modes : of the cover.
     thickness : over l0.
-    side : sign of delta_0 where the surface of the cover is stretched: 1 on the base, -1 on the cylinder.
-    on_base : whether M is the half-space's.
+    side : sign of delta_0 where the surface of the cover is stretched: 1 on the base, which then has all of M, and -1
+        on the cylinder.
 
     Raises
     ------
@@ -72,57 +72,70 @@ def cover_rows(modes: CoverModes, thickness: float, side: float, on_base: bool) 
         A cover so thin that the half length at rest is more than six thicknesses.
     """
     slow_limit = _elastic(modes, thickness, 1.0)
-    if slow_limit[_LAM] * 0.5 / thickness > MOST_THETA:
-        most = f"at least {slow_limit[_LAM] * 0.5 / MOST_THETA:.3g} for half a contact of at most {MOST_THETA:g} thicknesses"
-        raise ParameterError("thickness", f"{thickness:g} (over l0)", most)
+    theta = 0.5 * slow_limit[_LAM] / thickness
+    if theta > MOST_THETA:
+        allowed = f"at least {theta / MOST_THETA * thickness:.2g}: half a contact is at most {MOST_THETA:g} thicknesses"
+        raise ParameterError("thickness", f"{thickness:.3g} (over l0)", allowed)
     if not modes.a.size:
-        return _constant(slow_limit, side)
-    from .law_build import octaves
-
+        return _of_elastic(slow_limit, side)
+    fast_limit = _elastic(modes, thickness, modes.alpha)
     e0 = int(octaves(modes.b[0], modes.a[-1])[0])
     last = math.frexp(modes.a[-1] * max(1.0, thickness))[1] + _FAST_OCTAVES
     first = e0 * PER_OCTAVE - _END_NODES + 1
     u = np.exp2(np.arange(first, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
     values = _march(modes, thickness, u, slow_limit[_LAM])
-    fast_limit = _elastic(modes, thickness, modes.alpha)
-    values[_FREE], slow_limit[_FREE], fast_limit[_FREE] = (side * each[_FREE] for each in (values, slow_limit, fast_limit))
+    values[_FREE] *= side
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
-    found, slopes = (np.empty((5, *rows.x.shape)) for _ in range(2))
-    # the slow row: limits, or 0, and u times a polynomial of u
-    y, near = u[:_END_NODES] / math.ldexp(1.0, e0), values[:, :_END_NODES]
-    slow_limit[_FREE] = _at_end(y, near[_FREE])
-    found[:, 0], slopes[:, 0] = _end(y, (near - slow_limit[:, None]) / y, rows.t[0])
-    found[:, 0] += slow_limit[:, None]
-    # octaves
-    inside = last - e0
-    windows = np.lib.stride_tricks.sliding_window_view(values, PER_OCTAVE + 2 * _ASIDE + 1, axis=1)
-    begin = e0 * PER_OCTAVE - _ASIDE - first + PER_OCTAVE * np.arange(inside)
-    by_value, by_slope = _interpolation()
-    found[:, 1 : inside + 1], slopes[:, 1 : inside + 1] = windows[:, begin] @ by_value, windows[:, begin] @ by_slope
-    # beyond: limits and 1/u, for epsilon u and for M u^2
-    end, ends = np.ldexp(1.0, last), slice(u.size - _END_NODES, u.size)
-    y, x = end / u[ends], rows.x[inside + 1 :]
-    fast_limit[_FREE] = _at_end(y, values[_FREE, ends])
-    fall = (values[:, ends] - fast_limit[:, None]) / y
-    fall[_MOMENT] /= y
-    there, rising = _end(y, fall, (end / x).ravel())
-    there, rising = there.reshape(5, *x.shape), -rising.reshape(5, *x.shape)
-    slope_of_moment = end / x * (rising[_MOMENT] - there[_MOMENT])
-    there[_MOMENT] *= end / x
-    rising[_MOMENT] = slope_of_moment
-    found[:, inside + 1 :], slopes[:, inside + 1 :] = there + fast_limit[:, None, None], rising
+    slow, slow_limit = _slow_row(u[:_END_NODES], values[:, :_END_NODES], slow_limit, rows)
+    inside = _octave_rows(values, e0 * PER_OCTAVE - first, last - e0)
+    fast, limits = _fast_rows(u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, rows.x[last - e0 + 1 :], last)
+    found, slopes = np.concatenate([slow, inside, fast], axis=2)
     powers = rows.fit_slopes(found, slopes)
     powers[:, 0, 0] = slow_limit
-    first_order = _end(y, fall, np.full(1, 1e-6))[0][:, 0] * (1e6 * end)
-    first_order[_MOMENT] *= end
-    limits = [*fast_limit[[_LIMIT, _LAM, _FREE]], *first_order[[_LIMIT, _LAM, _FREE]], *first_order[[_EPSILON, _MOMENT]], 0.0]
-    stick, d_stick = _over_stick(rows, powers, np.array(limits))
+    stick, d_stick = _over_stick(rows, powers, limits)
     share, press = rows.fit_slopes(stick, d_stick)
-    half_space, cylinder = (powers[_MOMENT], 0.0 * press) if on_base else (0.0 * press, powers[_MOMENT])
-    N = np.full_like(press, np.nan)
-    columns = dict(lam=powers[_LAM], epsilon=powers[_EPSILON], m_half_space=half_space, m_cylinder=cylinder, N=N, share=share, press=press)
-    coefficients = np.stack([columns[name] for name in FUNCTIONS], axis=-1)
-    return CoverRows(e0, coefficients, powers[[_LIMIT, _FREE]], np.array(limits))
+    nothing = np.zeros_like(press)
+    bodies = (powers[_MOMENT], nothing) if side > 0.0 else (nothing, powers[_MOMENT])
+    columns = [powers[_LAM], powers[_EPSILON], *bodies, np.full_like(press, np.nan), share, press]
+    return CoverRows(e0, np.stack(columns, axis=-1), powers[[_LIMIT, _FREE]], limits)
+
+
+def _slow_row(u: Floats, values: Floats, limit: Floats, rows: Rows) -> tuple[Floats, Floats]:
+    """((values, slopes over ln u) at the nodes of the row [0, 2^e0), their limits at 0).
+
+    u, values : nodes in that row, and what was found there.  limit : as computed; that of the creep of free rolling is
+    extrapolated, which is less accurate than an elastic layer apart would be, but continuous.
+    """
+    y, limit = u / math.ldexp(1.0, rows.e0), limit.copy()
+    limit[_FREE] = _at_end(y, values[_FREE])
+    found, slopes = _end(y, (values - limit[:, None]) / y, rows.t[0])
+    return np.stack([found + limit[:, None], slopes])[:, :, None], limit
+
+
+def _octave_rows(values: Floats, begin: int, count: int) -> Floats:
+    """(Values, slopes over ln u) at the nodes of octaves; ``begin``: the number of the node where the first begins."""
+    windows = np.lib.stride_tricks.sliding_window_view(values, PER_OCTAVE + 2 * _ASIDE + 1, axis=1)
+    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
+    return np.stack([around @ matrix for matrix in _interpolation()])
+
+
+def _fast_rows(u: Floats, values: Floats, limit: Floats, x: Floats, last: int) -> tuple[Floats, Floats]:
+    """((values, slopes over ln u) at the nodes x of the rows from 2^last on, :attr:`CoverRows.limits`).
+
+    There everything is a polynomial of 1/u: limits and first order of lengths and creep, epsilon u, M u^2/V.
+    """
+    end = math.ldexp(1.0, last)
+    y, limit = end / u, limit.copy()
+    limit[_FREE] = _at_end(y, values[_FREE])
+    fall = (values - limit[:, None]) / y
+    fall[_MOMENT] /= y
+    at = (end / x).ravel()
+    found, rising = _end(y, fall, at)
+    found[_MOMENT], rising[_MOMENT] = found[_MOMENT] * at, (rising[_MOMENT] + found[_MOMENT]) * at
+    first = np.array([_at_end(y, each) for each in fall]) * end
+    first[_MOMENT] *= end
+    limits = [*limit[[_LIMIT, _LAM, _FREE]], *first[[_LIMIT, _LAM, _FREE]], *first[[_EPSILON, _MOMENT]]]
+    return np.stack([found + limit[:, None], -rising]).reshape(2, len(values), *x.shape), np.array(limits)
 
 
 def quantities(state: CoverState, z: float, u: float) -> Floats:
@@ -138,7 +151,13 @@ def at_speed(modes: CoverModes, thickness: float, u: float, *, orders: int | Non
 
 
 def _node(
-    modes: CoverModes, thickness: float, u: float, guess: float, slope: float, orders: int | None = None, factor: float = 1.0
+    modes: CoverModes,
+    thickness: float,
+    u: float,
+    guess: float,
+    slope: float,
+    orders: int | None = None,
+    factor: float = 1.0,
 ) -> tuple[Floats, float, float]:
     """(What is computed at u, ln z, d ln H/d ln z), by secants for ln H = -ln(4 factor u^2) from ln z = guess."""
     y, goal, before = guess, -math.log(4.0 * factor * u * u), None
@@ -167,15 +186,14 @@ def _march(modes: CoverModes, thickness: float, u: Floats, lam: float) -> Floats
         guess = math.log(0.5 * lam / each)
         if n:
             guess = float(sum(signs * [math.comb(known.size, k) for k in range(1, known.size + 1)] * known))
-            # ln z falls nearly like -ln u: the rest is extrapolated
         found[:, n], logs[n], slope = _node(modes, thickness, each, guess, slope)
     return found
 
 
 def _elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
-    """What is computed, of the layer with its long-time stiffness (alpha = 1) or its instantaneous one, with epsilon = 0.
+    """What is computed, of the layer with its long-time stiffness (alpha = 1) or its instantaneous one.
 
-    At long times M/V is T_mean, else 0.
+    epsilon is then 0, and M/V is T_mean at long times and else 0.
     """
     instant = alpha != 1.0
     share = modes.layer_instant * modes.alpha if instant else modes.share
@@ -187,13 +205,13 @@ def _elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
     return found
 
 
-def _constant(limit: Floats, side: float) -> CoverRows:
+def _of_elastic(limit: Floats, side: float) -> CoverRows:
     """The one row of a cover that does not relax."""
     coefficients, creep = np.zeros((1, TERMS, len(FUNCTIONS))), np.zeros((2, 1, TERMS))
-    L, W = limit[_LIMIT], side * limit[_FREE]
-    coefficients[0, 0] = [limit[_LAM], 0.0, 0.0, 0.0, np.nan, limit[_LAM] / L, 1.0 / (L * L)]
-    creep[:, 0, 0] = L, W
-    return CoverRows(0, coefficients, creep, np.array([L, limit[_LAM], W, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    lam, L, free = limit[_LAM], limit[_LIMIT], side * limit[_FREE]
+    coefficients[0, 0] = [lam, 0.0, 0.0, 0.0, np.nan, lam / L, 1.0 / (L * L)]
+    creep[:, 0, 0] = L, free
+    return CoverRows(0, coefficients, creep, np.array([L, lam, free, *np.zeros(5)]))
 
 
 def _end(places: Floats, values: Floats, wanted: Floats) -> tuple[Floats, Floats]:
@@ -206,8 +224,7 @@ def _end(places: Floats, values: Floats, wanted: Floats) -> tuple[Floats, Floats
 
 
 def _at_end(places: Floats, values: Floats) -> float:
-    """The value at 0 of the polynomial nearest to these at places in [0.05, 1]: the strain by the pressure is too
-    inaccurate for its limit to be computed apart."""
+    """The value at 0 of the polynomial nearest to these at places in [0.05, 1]."""
     return float(np.polynomial.chebyshev.Chebyshev.fit(places, values, _END_DEGREE, [0.0, 1.0])(0.0))
 
 

@@ -1,7 +1,7 @@
 """Steady rolling on a bonded viscoelastic layer of finite thickness, solved by Chebyshev polynomials.
 
-Plane strain, a constant Poisson's ratio, one Prony series; the layer is bonded to a rigid core or bed and the other body
-is rigid or an elastic half-space.  The pressure is not changed by shear, as everywhere in this package.
+Plane strain, a constant Poisson's ratio, one Prony series; the layer is bonded to a rigid core or bed and the other
+body is rigid or an elastic half-space.  The pressure is not changed by shear, as everywhere in this package.
 
 Notation.  z is the half length of the contact over V T_ref, theta the half length over the thickness h, u = k h the
 wave number times the thickness, v = u theta.  Slopes and creep are over V T_ref/R.  The pressure over E'/(4 pi) is
@@ -140,7 +140,7 @@ def layer_nodes(nu: float) -> LayerNodes:
 def bessel(v: Floats, order: int) -> Floats:
     """J_0 ... J_order at v >= 0, each with the sign (-1)^(n//2), [order, place], to 1e-15 absolute.
 
-    They are the Chebyshev coefficients of cos(v x) and sin(v x), by a discrete sum long enough for its aliases to vanish.
+    They are the Chebyshev coefficients of cos(v x) and sin(v x), by a discrete sum long enough for aliases to vanish.
     """
     count = (int(v.max() + 0.5 * order) + 24) & ~1
     phi = (np.arange(count // 2) + 0.5) * (math.pi / count)
@@ -228,8 +228,7 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     limit = z + shift + np.sum((source * np.exp(1j * v) * J).real)
     power = (even_part**2 + odd_part**2) / v**2
     strain = -2.0 * theta * np.sum(nodes.du * nodes.C * modes.layer_storage(v / z) * power) / q[0]
-    numbers = map(float, (z * q[0], shift, moment, limit, strain))
-    return CoverState(*numbers, q, X0 - Xi @ (c @ q))
+    return CoverState(float(z * q[0]), float(shift), float(moment), float(limit), float(strain), q, X0 - Xi @ (c @ q))
 
 
 def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:

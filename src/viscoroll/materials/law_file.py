@@ -15,6 +15,7 @@ import numpy as np
 from ..core.checks import checked, number
 from ..core.errors import FileError, ParameterError
 from .bodies import Bodies
+from .cover import Cover
 from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_axis import LawAxis
 from .law_store import AXIS, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
@@ -32,6 +33,8 @@ def table_of(material: Any, base: Any = None) -> LawTable:
     """The law of a Prony, Bodies, alpha, Material (on a ``base``), Pair, or of a law that there is already."""
     if base is not None and not isinstance(material, Material):
         raise ParameterError("base", "given", "left out unless material is a Material")
+    if isinstance(material, Cover) or (isinstance(material, LawTable) and material.cover is not None):
+        raise ParameterError("material", f"{material!r:.60}", "of half-spaces: the law of a cover has no file")
     if isinstance(material, LawTable | Prony | Bodies):
         return law_table(material)
     if isinstance(material, Material):
@@ -140,6 +143,8 @@ def described(given: Any) -> str:
         text = as_toml(given.cylinder)
         text += "" if given.base is None else f"\n{as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
+    if isinstance(given, Cover):
+        raise ParameterError("material", f"{given!r:.60}", "of half-spaces: a cover is not written to files of tables")
     if isinstance(given, Bodies):
         parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
         return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])

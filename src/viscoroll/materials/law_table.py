@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -84,7 +84,10 @@ class LawTable:
         """What kernels take, derived from this table and from nothing else."""
         from ..kernels.rows.record import COUNT, E0, PARTS, WIDTH, Law
 
-        count, front = len(self.given_coefficients), np.append([self.alpha, 1.0 / math.sqrt(self.alpha)], self.fast_limit)
+        count, front = (
+            len(self.given_coefficients),
+            np.append([self.alpha, 1.0 / math.sqrt(self.alpha)], self.fast_limit),
+        )
         lengths = free = None
         if self.cover is not None:
             front, free, lengths = cover_front(self.cover), read_only(cover_numbers(self.cover)), self.cover.creep[0]
@@ -155,13 +158,14 @@ def made(given: float | Prony | Bodies, coefficients: Floats | None = None) -> L
             coefficients = build(lambda z: by_modes(given, z), Rows(e0, count), alpha, sums[1:, 2])
         table = coefficients
     arrays = map(read_only, (sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
-    return LawTable(given, read_only(table), e0, alpha, total.T_mean, unlike, *arrays, cover=cover)
+    found = LawTable(given, read_only(table), e0, alpha, total.T_mean, unlike, *arrays)
+    return found if cover is None else replace(found, cover=cover)
 
 
 def cover_front(cover: CoverRows) -> Floats:
     """The numbers in front of a cover's rows (:mod:`..kernels.rows.record`), by which the fast limit of the half-space
     says that of the cover: L = L_1 (1 + a/u) and M = b V/u^2, without logarithms."""
-    L, _, _, L_slope, _, _, _, moment, _ = cover.limits
+    L, _, _, L_slope, _, _, _, moment = cover.limits
     on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
     parts = (moment, 0.0) if on_base else (0.0, moment)
     return np.array([1.0 / (L * L), L, 0.0, 4.0 * L_slope, 0.0, 8.0 * parts[0], 0.0, 8.0 * parts[1]])
@@ -171,9 +175,10 @@ def cover_numbers(cover: CoverRows) -> Floats:
     """What kernels read of a cover beside its rows (:mod:`..kernels.rows.cover`)."""
     from ..kernels.rows.cover import FRONT
 
-    L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment, _ = cover.limits
-    front = np.zeros(FRONT)
-    front[:8] = lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, 2.0 * (lam_slope * L - lam * L_slope) / L**3
+    L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
+    share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
+    front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
+    assert len(front) == FRONT
     return np.append(front, paired(cover.creep[1], cover.creep[1]))
 
 

@@ -69,6 +69,8 @@ class Material(FromPrograms):
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
                 raise ParameterError("E", self.E, "finite where the material relaxes")
+            if self.thickness is not None:
+                raise ParameterError("thickness", self.thickness, "left out of a rigid body")
         else:
             keep(self, E=0.0)
         object.__setattr__(self, "nu", poisson(self.nu))

@@ -60,6 +60,8 @@ def _dataset(
         attrs["drive_error"] = result.drive_error
     if series is not None:  # by which it counts time
         attrs |= {"relaxation_strengths": series.E, "relaxation_times": series.tau}
+    if (cover := result.scene.cover) is not None:
+        attrs |= {"cover_on": cover.on, "cover_thickness_over_l0": cover.thickness, "cover_nu": cover.nu}
     if result.scale.si:
         attrs |= {name: getattr(roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
     return xr.Dataset(data | more | drives, {"t": ("t", result.t, described("t"))}, attrs)

@@ -105,6 +105,9 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid
     E, nu = given.get("E", typical.E), given.get("nu", typical.nu)
     if not (series.shape or np.ndim(E) or np.ndim(nu)):
         return typical, typical
+    if typical.thickness is not None:
+        allowed = "left out where the material is uncertain: each layer has a law of its own"
+        raise ParameterError(f"{name}: thickness", typical.thickness, allowed)
     E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
     return typical, Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref)
 

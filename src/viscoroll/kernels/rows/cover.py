@@ -104,6 +104,4 @@ def free_kinematics(at, u, kappa, k, spread, free):
 @kernel(inline=True)
 def of_cover(free):
     """Whether the law is that of a cover."""
-    if free is None:
-        return False
-    return True
+    return free is not None
