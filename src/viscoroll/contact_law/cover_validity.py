@@ -16,10 +16,15 @@ from .parameters import Parameters
 #: creeps; beyond, near full slip, the front slips too
 _NU, _MOST_THETA = (0.0, 0.3, 0.45, 0.5), (3.0, 2.0, 1.5, 1.25)
 #: thickness over l0, and by how much of mu Q is off at most beside the exact solution without coupling, of any nu,
-#: material, speed and creep (measured by ``pipeline/evidence/prove/cover.py``)
+#: material, speed and creep (held by ``pipeline/evidence/prove/cover.py``)
 _THICKNESS, _ERROR = (0.2, 0.3, 0.5, 1.0, 2.0, 5.0), (0.05, 0.045, 0.037, 0.023, 0.014, 0.008)
 #: likewise what shear acting back on the pressure does to Q at nu = 1/2 and mu = 1/2, beside the shift by delta_0
 _COUPLED_THICKNESS, _COUPLED = (0.3, 0.5, 1.0, 2.0), (0.13, 0.08, 0.03, 0.006)
+
+
+def stated_error(thickness: float) -> float:
+    """How far Q may be off beside the exact solution without coupling, over mu P, at a thickness over l0."""
+    return float(np.interp(thickness, _THICKNESS, _ERROR))
 
 
 def layer(scene: Parameters, V: Any) -> tuple[Strained, Assumption]:
@@ -41,7 +46,7 @@ def layer(scene: Parameters, V: Any) -> tuple[Strained, Assumption]:
     lam, epsilon = (row.reshape(u.shape)[()] for row in rolling(law_table(cover), u.ravel(), "lam", "epsilon"))
     theta = 0.5 * lam / cover.thickness
     most, thickness = float(np.interp(cover.nu, _NU, _MOST_THETA)), cover.thickness
-    error, coupled = np.interp(thickness, _THICKNESS, _ERROR), np.interp(thickness, _COUPLED_THICKNESS, _COUPLED)
+    error, coupled = stated_error(thickness), np.interp(thickness, _COUPLED_THICKNESS, _COUPLED)
     sentence = (
         f"h/l0 = {thickness:.3g}, half the contact is up to {float(np.max(theta, initial=0.0)):.2g} thicknesses long; "
         f"up to {most:.3g} it sticks in front and slips behind; Q is off by up to {100.0 * error:.1f} % of mu P, and "
