@@ -1,4 +1,4 @@
-"""Covers of finite thickness against boundary elements (:mod:`..truth.cover`), which share only the elements' half-space.
+"""Covers of finite thickness against boundary elements (:mod:`..truth.cover`), which share the elements' half-space.
 
 The law of a cover takes Q from its own contact, as :class:`viscoroll.Cover` says; the elements solve the stick zone
 without that, and without coupling.  How far both lie apart is held against what ``validity`` states.
@@ -24,13 +24,18 @@ def states(random: np.random.Generator, count: int) -> Found:
     """Both materials in turn, the other numbers at random, thickness and speed in their logarithms."""
     for n in range(count):
         thickness, u = (float(np.exp(random.uniform(*np.log(ends)))) for ends in (_THICKNESS, _SPEEDS))
-        nu, share, on = float(random.uniform(0.0, 0.5)), float(random.uniform(*_STICK)), ("base", "cylinder")[n // 2 % 2]
-        p = MATERIALS[n % 2]
-        scene = vr.Scene(material=vr.Cover(p, nu=nu, thickness=thickness, on=on), kappa=_KAPPA, mu=_MU)
+        nu, share, on = (
+            float(random.uniform(0.0, 0.5)),
+            float(random.uniform(*_STICK)),
+            ("base", "cylinder")[n // 2 % 2],
+        )
+        p, part = MATERIALS[n % 2], 1.0 if n % 3 else float(random.uniform(0.2, 1.0))
+        cover = vr.Cover(p, nu=nu, thickness=thickness, on=on, part=part)
+        scene = vr.Scene(material=cover, kappa=_KAPPA, mu=_MU)
         V = u / _KAPPA
         state = vr.contact(scene, V, delta=0.0)
         z = 0.5 * state.lam / u
-        truth = extrapolated(p, nu, z, 0.5 * state.lam / thickness, share * z)
+        truth = extrapolated(p, nu, z, 0.5 * state.lam / thickness, share * z, part)
         delta = state.delta_0 + _MU * V * truth.d
         Q = vr.contact(scene, V, delta=delta, fields="Q").Q
         errors = {
@@ -40,7 +45,7 @@ def states(random: np.random.Generator, count: int) -> Found:
             "delta_star": abs(_MU * V * truth.star / state.delta_star - 1.0),
             "Q": abs(Q / _MU - truth.Q) / stated_error(thickness),
         }
-        yield at(nu=nu, thickness=thickness, kappa_V=u, share=share) + f", {p!r} on the {on}", errors
+        yield at(nu=nu, thickness=thickness, kappa_V=u, share=share, part=part) + f", {p!r} on the {on}", errors
 
 
 def free_creep(random: np.random.Generator, count: int) -> Found:
@@ -58,7 +63,8 @@ def free_creep(random: np.random.Generator, count: int) -> Found:
 _BOUND = 2e-6
 PROOFS = [
     Proof(
-        "covers", "cover_states", "one and three modes, ν 0 to 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
+        "covers", "cover_states",
+        "one and three modes, against rigid and elastic bodies, ν 0 to 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
         {
             "lam": ("λ of a cover against boundary elements, relative", _BOUND),
             "epsilon": ("ε of a cover against boundary elements", _BOUND),

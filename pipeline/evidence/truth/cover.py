@@ -1,5 +1,4 @@
-"""Rolling on a bonded layer by boundary elements: its kernels by elasticity, place by place, and nothing of the spectral
-solve of the package.
+"""Rolling on a bonded layer by boundary elements: its kernels by elasticity, wave by wave, and no spectral solve.
 
 The surface of a layer of thickness h under tractions exp(i k x) is solved as a 4 by 4 system of Airy's function in its
 thickness, f = (A + B y) e^(k (y - h)) + (C + D y) e^(-k y), at every wave number.  What it slopes beyond a half-space
@@ -27,9 +26,12 @@ _ON_ELEMENT = 4
 
 
 class OnLayer(NamedTuple):
-    """What the elements find: H, g, m as of :class:`.boundary.Boundary`; delta_star/(mu V); strain of the surface by the
-    pressure beyond that of a half-space, weighted with the pressure; d = delta/(mu V) and Q/mu of the stick zone without
-    coupling, and the least of the inequalities."""
+    """What the elements find.
+
+    H, g, m : as of :class:`.boundary.Boundary`.  star : delta_star/(mu V).  strain : of the surface by the pressure,
+    beyond that of a half-space, weighted with the pressure.  d, Q : delta/(mu V) and Q/mu of the stick zone, without
+    coupling.  least : of the inequalities, over their scales.
+    """
 
     H: float
     g: float
@@ -64,7 +66,9 @@ def kernels(u: Floats, nu: float) -> Floats:
 
     top, bottom = displacements(1.0), displacements(0.0)
     system = np.moveaxis(np.array([*bottom, at[1.0][0], at[1.0][1]]), -1, 0)
-    pressed, sheared = (np.moveaxis(np.array([nothing, nothing, *sides]), -1, 0) for sides in ((one, nothing), (nothing, one)))
+    pressed, sheared = (
+        np.moveaxis(np.array([nothing, nothing, *sides]), -1, 0) for sides in ((one, nothing), (nothing, one))
+    )
     for sides in (pressed, sheared):
         terms = np.linalg.solve(system, sides[..., None])[..., 0].T
         along, across = (part * terms for part in top)
@@ -89,13 +93,15 @@ class Layer:
     Parameters
     ----------
     p : series.  nu : Poisson's ratio.  h : thickness over V T_ref.  elements : of the contact.
+    part : the layer's of the long-time compliance.
     """
 
-    def __init__(self, p: Prony, nu: float, h: float, elements: Elements) -> None:
+    def __init__(self, p: Prony, nu: float, h: float, elements: Elements, part: float = 1.0) -> None:
         u, self.weights = _panels()
         self.k, self.h = u / h, h
         self.L, self.T, self.C = kernels(u, nu)
-        self.compliance = 1.0 / p.alpha + sum(J / (1.0 - 1j * self.k * T) for J, T in zip(p.J, p.T, strict=True))
+        series = sum(J / (1.0 - 1j * self.k * T) for J, T in zip(p.J, p.T, strict=True))
+        self.compliance = part * (1.0 / p.alpha + series)
         x, w = np.polynomial.legendre.leggauss(_ON_ELEMENT)
         places = elements.nodes[:-1, None] + 0.5 * elements.lengths[:, None] * (1.0 + x)
         waves = np.exp(-1j * self.k[:, None, None] * places) * elements.lengths[:, None]
@@ -117,14 +123,18 @@ class Layer:
         return float(-whole / (math.pi * load))
 
 
-def contact(p: Prony, nu: float, z: float, theta: float, eta: float, count: int) -> OnLayer:
-    """A contact of half length z on a layer of thickness z/theta, with a stick zone of half length eta in front."""
+def contact(p: Prony, nu: float, z: float, theta: float, eta: float, count: int, part: float = 1.0) -> OnLayer:
+    """A contact of half length z on a layer of thickness z/theta, with a stick zone of half length eta in front.
+
+    ``part`` : the layer's of the long-time compliance; the other body is an elastic half-space.
+    """
+    total = Prony.creep(part * p.J, p.T, alpha=1.0 / (part / p.alpha + 1.0 - part))
     edge = z - 2.0 * eta
     behind, middle_behind = graded(-z, edge, count)
     ahead, middle_ahead = graded(edge, z, count)
-    elements = Elements(p, np.concatenate([behind, ahead[1:]]))
+    elements = Elements(total, np.concatenate([behind, ahead[1:]]))
     middle = np.concatenate([middle_behind, middle_ahead])
-    layer, half = Layer(p, nu, z / theta, elements), sum(elements.slopes(middle))
+    layer, half = Layer(p, nu, z / theta, elements, part), sum(elements.slopes(middle))
     slopes = half + layer.slopes(layer.L - 1.0, middle)
     found = np.linalg.solve(np.column_stack([slopes, -np.ones(middle.size)]), middle)
     pressure, g = found[:-1], float(found[-1])
@@ -138,11 +148,15 @@ def contact(p: Prony, nu: float, z: float, theta: float, eta: float, count: int)
     rest, slip = pressure - shear, d - slopes[:count] @ shear
     least = min(min(pressure.min(), rest[count:].min(), shear.min()) / pressure.max(), slip.min() / d)
     strain = layer.strain(pressure, load, (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu))
-    return OnLayer(2.0 * load / math.pi, g, g + moment / load, star, strain, d, elements.moments(shear)[0] / load, least)
+    return OnLayer(
+        2.0 * load / math.pi, g, g + moment / load, star, strain, d, elements.moments(shear)[0] / load, least
+    )
 
 
-def extrapolated(p: Prony, nu: float, z: float, theta: float, eta: float, count: int = 60) -> OnLayer:
+def extrapolated(
+    p: Prony, nu: float, z: float, theta: float, eta: float, part: float = 1.0, count: int = 60
+) -> OnLayer:
     """The same from ``count`` elements in either zone and twice as many: errors fall by 8."""
-    coarse, fine = (contact(p, nu, z, theta, eta, n) for n in (count, 2 * count))
+    coarse, fine = (contact(p, nu, z, theta, eta, n, part) for n in (count, 2 * count))
     both: Any = zip(coarse, fine, strict=True)
     return OnLayer(*(b + (b - a) / 7.0 for a, b in both))._replace(least=min(coarse.least, fine.least))

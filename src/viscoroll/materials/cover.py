@@ -55,7 +55,8 @@ class Cover(Bodies):
 
     Q follows Eq. (15) with the cover's own contact in place of the half-space's: the stick zone of creep limit F' has
     the traction that a full contact with that creep limit would carry at the same l0/h.  Beside the exact solution
-    without coupling Q/mu is off by at most 0.7, 2.2, 3.5 and 4.5 % at h/l0 = 5, 1, 0.5 and 0.2.
+    without coupling Q/mu is off by at most 1, 3, 4.5 and 6.5 % at h/l0 = 5, 1, 0.5 and 0.2, and a third less where
+    nu is near 1/2 (``make prove``; :func:`viscoroll.validity` states it).
     """
 
     nu: float = 0.5

@@ -103,11 +103,13 @@ def cover_rows(modes: CoverModes, thickness: float, side: float) -> CoverRows:
 def _slow_row(u: Floats, values: Floats, limit: Floats, rows: Rows) -> tuple[Floats, Floats]:
     """((values, slopes over ln u) at the nodes of the row [0, 2^e0), their limits at 0).
 
-    u, values : nodes in that row, and what was found there.  limit : as computed; that of the creep of free rolling is
-    extrapolated, which is less accurate than an elastic layer apart would be, but continuous.
+    u, values : nodes in that row, and what was found there.  limit : as computed; those of the creep of free rolling,
+    which is less accurate than an elastic layer apart would be, and of M/V beside a body that deforms too are
+    extrapolated.
     """
     y, limit = u / math.ldexp(1.0, rows.e0), limit.copy()
-    limit[_FREE] = _at_end(y, values[_FREE])
+    for which in (_FREE, _MOMENT) if np.isnan(limit[_MOMENT]) else (_FREE,):
+        limit[which] = _at_end(y, values[which])
     found, slopes = _end(y, (values - limit[:, None]) / y, rows.t[0])
     return np.stack([found + limit[:, None], slopes])[:, :, None], limit
 
@@ -193,7 +195,7 @@ def _march(modes: CoverModes, thickness: float, u: Floats, lam: float) -> Floats
 def _elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
     """What is computed, of the layer with its long-time stiffness (alpha = 1) or its instantaneous one.
 
-    epsilon is then 0, and M/V is T_mean at long times and else 0.
+    epsilon is then 0, and M/V is T_mean at long times, or not known (NaN) beside a body that deforms too, and else 0.
     """
     instant = alpha != 1.0
     share = modes.layer_instant * modes.alpha if instant else modes.share
@@ -201,7 +203,9 @@ def _elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
     z = 0.5 / (1.0 + 0.2 / thickness)
     # slopes and creep of an elastic layer depend on its shape alone
     found = _node(elastic, thickness, 0.5, math.log(z / math.sqrt(alpha)), 2.0, factor=alpha)[0]
-    found[_EPSILON], found[_MOMENT] = 0.0, 0.0 if instant else float(modes.e @ modes.e)
+    found[_EPSILON], found[_MOMENT] = 0.0, 0.0
+    if not instant:
+        found[_MOMENT] = float(modes.e @ modes.e) if modes.share == 1.0 else math.nan
     return found
 
 

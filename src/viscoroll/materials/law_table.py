@@ -33,7 +33,7 @@ class LawTable:
     given_coefficients : as :attr:`coefficients`, with NaN where N was not made yet.
     e0 : the first row holds [0, 2^e0).
     alpha : instantaneous over long-time modulus.
-    T_mean : sum of J_j T_j, over ``T_ref``.
+    T_mean : M/V as V -> 0, which is the sum of J_j T_j but for a cover against a body that deforms; over ``T_ref``.
     unlike : whether the bodies differ.
     fast_limit : (3, 2), W = sum J_j/T_j and C = sum J_j/T_j (ln(2 T_j) - 0.5772...) of all, half-space and cylinder.
     relaxation_strength, relaxation_time, creep_strength, retardation_time : both forms of the series, slowest first.
@@ -159,7 +159,9 @@ def made(given: float | Prony | Bodies, coefficients: Floats | None = None) -> L
         table = coefficients
     arrays = map(read_only, (sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
     found = LawTable(given, read_only(table), e0, alpha, total.T_mean, unlike, *arrays)
-    return found if cover is None else replace(found, cover=cover)
+    if cover is None:
+        return found
+    return replace(found, cover=cover, T_mean=float(cover.coefficients[0, 0, 2:4].sum()))
 
 
 def cover_front(cover: CoverRows) -> Floats:
