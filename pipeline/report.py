@@ -89,7 +89,7 @@ def picture(path: Path, out: Path, caption: str) -> str:
 def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
     """The sections of figures, each with its numbers."""
     drawn = {Path(file).stem: out / file for file in found["figures"]["files"]}
-    numbers = {"Three throws": "runtime", "Random throws": "ensemble"}
+    numbers = {"Free motion from three initial conditions": "runtime", "Random initial conditions": "ensemble"}
     parts = []
     for title, captions in SECTIONS.items():
         parts.append(f"<h2>{escape(title)}</h2>")

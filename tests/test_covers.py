@@ -129,7 +129,7 @@ def test_slopes_and_mirror(cover):
 
 MOTIONS = {
     "free": ((1.0, 1.0), {}), "thrown": ((1.0, -0.5), {}), "back": ((-1.0, -0.7), {}),
-    "driven": ((0.1, 0.1), {"torque": 0.02}), 
+    "driven": ((0.1, 0.1), {"torque": 0.02}),
     "from rest": ((0.0, 0.0), {"torque": vr.Schedule([0.0, 9.0], [0.0, 0.02])}),
     "braked": ((1.0, 1.0), {"brake": 0.05}), "to rest": ((0.02, 0.02), {}),
 }  # fmt: skip

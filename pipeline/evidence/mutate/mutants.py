@@ -48,7 +48,7 @@ LAW = [
     ("bessel/ratios.py", "_EULER_GAMMA = 0.57721566490153286061", "_EULER_GAMMA = 0.57721566547874852", _RATIOS),
     ("bessel/ratios.py", "K_LEAST = 2.0**-30\n", "K_LEAST = 2.0**-20\n", _RATIOS),
     ("rows/modes.py", "four(value, rate * slope,", "four(value, 1.001 * rate * slope,", _STATES),
-    ("compile/fma.py", "fma(t, c[5], c[4])", "fma(t, c[4], c[5])", _RATIOS),
+    ("compile/intrinsics.py", "fma(t, c[5], c[4])", "fma(t, c[4], c[5])", _RATIOS),
 ]  # fmt: skip
 STRESS = [
     ("rows/stress.py", "rear = w < 1.0 and a * w < 1.0", "rear = w < 1.0", _SLOPES),

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.compile.address import doubles, integers
+from viscoroll.kernels.compile.intrinsics import floats_at, integers_at
 from viscoroll.kernels.rows.contact import traction_of
 from viscoroll.kernels.rows.law import place, speed, way_of
 from viscoroll.kernels.rows.record import Law
@@ -45,7 +45,7 @@ def _compiled():
     def rates(_, u, du, p):
         """At the force par[4] and the torque par[5]; addresses and sizes of rows and marks behind."""
         y, found, par = numba.carray(u, 2), numba.carray(du, 2), numba.carray(p, 10)
-        rows, marks = doubles(int(par[6]), int(par[7])), integers(int(par[8]), int(par[9]))
+        rows, marks = floats_at(int(par[6]), int(par[7])), integers_at(int(par[8]), int(par[9]))
         law, state = Law(rows, marks, rows[:0], 0, 0, 0), State(par[0], par[1], y[0], y[1], True)
         u = state.kappa * abs(y[0])
         at = place(u, law)

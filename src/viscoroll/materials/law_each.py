@@ -61,7 +61,7 @@ def _room(count: int) -> tuple[Floats, Integers]:
 
 def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
     """The record of a law by its kernels and what these know: numbers, and arrays by their addresses."""
-    from ..kernels.compile.address import address_of
+    from ..kernels.compile.intrinsics import function_address
     from ..kernels.rows.record import Law
 
     source = np.zeros(1, kind)
@@ -69,7 +69,7 @@ def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
         source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
     # the marks keep alive all that the kernels have the addresses of
     held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
-    addresses = address_of(hold, kind), address_of(make, kind), int(source.ctypes.data)
+    addresses = function_address(hold, kind), function_address(make, kind), int(source.ctypes.data)
     rows, marks, added = map(read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
     return Law(rows, marks, added, *addresses)
 

@@ -12,7 +12,7 @@ from pipeline.evidence.truth import enclosures
 from pipeline.evidence.truth.ratios import table
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r
-from viscoroll.kernels.compile.fma import septic
+from viscoroll.kernels.compile.intrinsics import septic
 
 
 def places() -> np.ndarray:

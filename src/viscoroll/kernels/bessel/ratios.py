@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..compile.fma import fma, septic
+from ..compile.intrinsics import fma, septic
 from ..compile.jit import kernel
 from ..numerics.bins import bin_number, bin_offset
 from ..numerics.nodes import Interpolation, chebyshev, horner, in_many_digits

@@ -17,7 +17,7 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     """Compile ``function`` with numba, lazily, cached on disk.
 
     LLVM is granted no numerical freedom: a result then depends on the source alone, not on what
-    was compiled together (see :mod:`fma`).
+    was compiled together (see :mod:`.intrinsics`).
 
     ``inline`` is for the few short functions at the bottom of every loop: a call of a numba
     function costs as much as a polynomial, and LLVM by itself does not always spare it.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.fma import fma
+from ..compile.intrinsics import fma
 from ..compile.jit import kernel
 from ..numerics.four import LANES, fused, loads, parts, spread
 from ..numerics.nodes import gauss

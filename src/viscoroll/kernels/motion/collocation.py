@@ -10,7 +10,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..compile.fma import fma
+from ..compile.intrinsics import fma
 from ..compile.jit import kernel
 from ..numerics.four import LANES, fused, load, spread, store
 from ..numerics.nodes import Interpolation, radau

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..compile.held import loaded
+from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from .collocation import NODES, WIDE, N, rise_at, rise_terms
 from .load import BRAKE
@@ -130,7 +130,7 @@ def _itself(event, v, frame, case):
         return max(abs(speed), abs(second)) - case.limits.rest
     if event == STOP:
         return frame.spin * (1.0 + creep_at(speed, second, case.scene))
-    return edge(speed, second, frame, loaded(case.scene))
+    return edge(speed, second, frame, by_value(case.scene))
 
 
 @kernel

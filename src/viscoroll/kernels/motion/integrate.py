@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.held import held
+from ..compile.by_reference import by_reference
 from ..compile.jit import kernel
-from .load import brakes, goes_on, piece_end, threshold, undriven, unloaded
+from .load import brakes, goes_on, piece_end, threshold, undriven
 from .nodes import ONSET, PATHS, REST_TIME, TOTALS, TURNS
 from .origin import EITHER, SLIDES, STAYS, STICKS, depart, leaving_time
 from .output import coast, note, put_here, put_still, regime_of
@@ -241,7 +241,7 @@ def follow(moving, fresh, state, frame, clock, case):
 @kernel
 def integrate(V0, omega0, given):
     """Roll one motion from t = 0 to the last of its times: (status, steps, switches, onset time, rest time)."""
-    case = held(given)
+    case = by_reference(given)
     nodes, clock = case.nodes, Clock(0.0, 0, 0, 0, 0, 0.0)
     nodes[ONSET] = nodes[REST_TIME] = np.nan
     state, frame, fresh = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), False

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.held import pointer
+from ..compile.by_reference import data_pointer
 from ..compile.jit import kernel
 from ..numerics.arrays import copy, fill
 from ..rows.record import hold
@@ -76,7 +76,7 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
         V0, omega0 = _own(motions.V0, i), _own(motions.omega0, i)
         case = Case(
             scene, drive, limits, tau, one, paths, acting, switches, ends,
-            pointer(nodes), pointer(matrix), pointer(second_matrix),
+            data_pointer(nodes), data_pointer(matrix), data_pointer(second_matrix),
         )  # fmt: skip
         result = integrate(V0, omega0, case)
         for n in range(rows.size):

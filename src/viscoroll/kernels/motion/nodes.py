@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..compile.held import loaded
+from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from .collocation import INTEGRAL, SHARES, WIDE, N
 from .load import FUNCTIONS, constant, load_of, needed, values_at
@@ -119,7 +119,7 @@ def acting_at(i, frame, case):
 @kernel(inline=True)
 def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
-    nodes, scene, rest = case.nodes, loaded(case.scene), case.limits.rest
+    nodes, scene, rest = case.nodes, by_value(case.scene), case.limits.rest
     for i in range(N + 1):
         speed, second = nodes[V + i], nodes[SECOND + i]
         nodes[EVENT + WIDE * TURN + i] = speed

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.held import loaded
+from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from ..rows.cover import of_cover
 from ..rows.law import creep_at_rest
@@ -42,9 +42,9 @@ def _pull(d, load, scene):
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.per_V * (Q + load.force) + load.V_rate
     omega_rate = load.per_omega * (load.torque - Q) + load.omega_rate
-    L, free = creep_at_rest(scene.kappa, loaded(scene.law))
+    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
     per = 2.0 * scene.kappa / scene.mu / L
-    tilt = d + free * per if of_cover(loaded(scene.law).free) else d
+    tilt = d + free * per if of_cover(by_value(scene.law).free) else d
     slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - tilt * load.per_V * Q_d
     return (omega_rate - V_rate) * per - tilt * V_rate, slope, V_rate
 
@@ -70,7 +70,7 @@ def _burdened(load, scene):
 @kernel(inline=True)
 def _turning(scene):
     """d at which omega is 0 as V -> 0."""
-    law = loaded(scene.law)
+    law = by_value(scene.law)
     if law.free is None:
         return -2.0 * scene.kappa / scene.mu
     L, free = creep_at_rest(scene.kappa, law)
@@ -187,7 +187,7 @@ def depart(tau, piece, case):
 def _slide_off(when, piece, braked, band, case):
     """Full slip out of rest, of the sign that lasts: with omega - V beyond this share of V."""
     scene = case.scene
-    L, free = creep_at_rest(scene.kappa, loaded(scene.law))
+    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
     load = load_at(when, piece, Frame(True, 1.0, 1.0, 0.0, False), case)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu

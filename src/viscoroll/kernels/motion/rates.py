@@ -29,9 +29,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compile.held import loaded
+from ..compile.by_reference import by_value
+from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
-from ..compile.rarely import rarely
 from ..rows.added import added_mass
 from ..rows.cover import free_kinematics
 from ..rows.law import bodies, creep_at_rest, place, press, press_secants, shift, speed
@@ -72,7 +72,7 @@ class Rates(NamedTuple):
 @kernel(inline=True)
 def moments_slopes(u, scene):
     """(L, L', L'', M/V of half-space and cylinder, d(u M/V)/du of these) at u = kappa |V|."""
-    law = loaded(scene.law)
+    law = by_value(scene.law)
     at = place(u, law)
     found = speed(at, u, law)
     m, rise = found.scale * found.m, found.rise
@@ -88,7 +88,7 @@ def last_pulls(case):
     """(Moments of half-space and cylinder, force and torque by gains), over V = omega -> 0."""
     _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, case.scene)
     gains = case.drive.gains
-    free = creep_at_rest(case.scene.kappa, loaded(case.scene.law))[1]
+    free = creep_at_rest(case.scene.kappa, by_value(case.scene.law))[1]
     spin = 1.0 + free
     return half_space, cylinder, gains.force_V + gains.force_omega * spin, gains.torque_V + gains.torque_omega * spin
 
@@ -96,14 +96,14 @@ def last_pulls(case):
 @kernel(inline=True)
 def creep_limit(V, scene):
     """delta_star at V."""
-    u, law = scene.kappa * abs(V), loaded(scene.law)
+    u, law = scene.kappa * abs(V), by_value(scene.law)
     return 0.5 * scene.mu / scene.kappa * speed(place(u, law), u, law).L
 
 
 @kernel(inline=True)
 def creep_at(V, d, scene):
     """delta at V and d, |d| <= 1."""
-    u, law = scene.kappa * abs(V), loaded(scene.law)
+    u, law = scene.kappa * abs(V), by_value(scene.law)
     delta = creep_limit(V, scene) * d
     return delta if law.free is None else delta + 0.5 / scene.kappa * shift(u, law)[0]
 
@@ -111,14 +111,14 @@ def creep_at(V, d, scene):
 @kernel(inline=True)
 def sliding(slip, V, scene):
     """The slip omega - V beyond that of free rolling."""
-    law = loaded(scene.law)
+    law = by_value(scene.law)
     return slip if law.free is None else slip - V * (0.5 / scene.kappa * shift(scene.kappa * abs(V), law)[0])
 
 
 @kernel(inline=True)
 def inertia_at(V, scene):
     """(gamma N, its slope over V, its integral)."""
-    return added_mass(loaded(scene.law), V, scene.kappa, scene.gamma)
+    return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
 
 
 @kernel(inline=True)
@@ -168,7 +168,7 @@ def stick_rates(V, d, load, frame, scene):
         value, slope = press(at, v, law)
         A = value - 0.5 * v * slope
         Q *= 1.0 - w * w * value
-        if rarely(abs(d) < _SLIGHT):  # no digits cancel
+        if unlikely(abs(d) < _SLIGHT):  # no digits cancel
             D = abs(d) * L
             value, _, rise, _ = press_secants(at, place(2.0 * u / L, law), v, D / w, law)
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * rise)
@@ -199,7 +199,7 @@ def stick_rates(V, d, load, frame, scene):
     rate = ((omega_rate - V_rate) / k - tilt * spread * V_rate) / L
     turn_V, turn_d = per_omega * (torque_V - Q_V - cylinder_rise), per_omega * (torque_d - Q_d)
     bend = turn * (((2.0 * dL + u * ddL) * d + free.bend) * V_rate + dL * rate)
-    if rarely(strong(load, frame, scene)):
+    if unlikely(strong(load, frame, scene)):
         p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
     return Rates(
         omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, p_V, p_d, p_rate_V, p_rate_d,
@@ -235,4 +235,4 @@ def rates_at(V, second, load, frame, scene):
 @kernel
 def rates_of(state, load, frame, scene):
     """The same where it is not the innermost loop: compiled once for all."""
-    return rates_at(state.V, state.second, load, frame, loaded(scene))
+    return rates_at(state.V, state.second, load, frame, by_value(scene))

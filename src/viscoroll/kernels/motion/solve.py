@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.held import loaded
+from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from .collocation import SLOPES, TO_START, WIDE, N, invert, product, rise_terms, weighted_slopes
 from .guess import guess
@@ -97,7 +97,7 @@ def scales(panel, frame, case):
 @kernel(inline=True)
 def _put_equations(anew, panel, frame, case):
     """Fill the nodes from their unknowns, the right side of the second, and, ``anew``, what both matrices take."""
-    own, nodes, half = loaded(case), case.nodes, 0.5 * panel.length
+    own, nodes, half = by_value(case), case.nodes, 0.5 * panel.length
     product(SLOPES, SECOND, nodes[SECOND], nodes, SECOND_SLOPE, nodes)
     for i in range(1, WIDE):
         rates = rates_at(nodes[V + i], nodes[SECOND + i], load_there(i, frame, own), frame, own.scene)

@@ -6,7 +6,7 @@ polynomials of the offset t of the mantissa from the centre of the bin.
 
 from __future__ import annotations
 
-from ..compile.bits import bits_of, from_bits
+from ..compile.intrinsics import bits_to_float, float_to_bits
 from ..compile.jit import kernel
 
 _MANTISSA = (1 << 52) - 1
@@ -16,12 +16,12 @@ _ONE = 1023 << 52
 @kernel(inline=True)
 def bin_number(x, bits):
     """Exponent and leading mantissa bits of x > 0: rises by one from bin to bin."""
-    return bits_of(x) >> (52 - bits)
+    return float_to_bits(x) >> (52 - bits)
 
 
 @kernel(inline=True)
 def bin_offset(x, bits):
     """Mantissa of x less that of the centre of its bin."""
-    word, half = bits_of(x), 1 << (51 - bits)
-    centre = from_bits((word & (_MANTISSA - (2 * half - 1))) | (_ONE + half))
-    return from_bits((word & _MANTISSA) | _ONE) - centre
+    word, half = float_to_bits(x), 1 << (51 - bits)
+    centre = bits_to_float((word & (_MANTISSA - (2 * half - 1))) | (_ONE + half))
+    return bits_to_float((word & _MANTISSA) | _ONE) - centre

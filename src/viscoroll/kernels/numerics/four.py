@@ -12,7 +12,7 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import lower_builtin, models, register_model, type_callable
 
-from ..compile.instruction import called, instruction
+from ..compile.intrinsics import call_llvm, make_intrinsic
 
 #: how many
 LANES = 4
@@ -47,7 +47,7 @@ def spread_over(builder: Any, x: Any) -> Any:
 
 def fused_by(builder: Any, *given: Any) -> Any:
     """The instruction of :func:`fused`."""
-    return called(builder, "llvm.fma.v4f64", given)
+    return call_llvm(builder, "llvm.fma.v4f64", given)
 
 
 def pointers(context: Any, builder: Any, kind: Any, array: Any, at: Any, count: int) -> list:
@@ -130,19 +130,22 @@ def _store(context, builder, signature, given):
 
 
 #: four numbers as one
-four = instruction(_four, FOUR, *[types.float64] * LANES)
+four = make_intrinsic(_four, FOUR, *[types.float64] * LANES)
 #: the last of one before the first three of another: a load across two stores would wait for both
-slide = instruction(_slide, FOUR, FOUR, FOUR)
+slide = make_intrinsic(_slide, FOUR, FOUR, FOUR)
 #: a b + c of fours, or of tuples of them and what all of these have in common
-fused = instruction(_fused, _widest, None, None, None)
+fused = make_intrinsic(_fused, _widest, None, None, None)
 #: and back
-parts = instruction(_parts, types.UniTuple(types.float64, LANES), FOUR)
+parts = make_intrinsic(_parts, types.UniTuple(types.float64, LANES), FOUR)
 #: a number, four times
-spread = instruction(_spread, FOUR, types.float64)
+spread = make_intrinsic(_spread, FOUR, types.float64)
 #: (array, at) -> its numbers at, at + 1, ...; (array, at, four) puts them there.  Arrays are contiguous vectors
-load, store = instruction(_load, FOUR, None, types.int64), instruction(_store, types.void, None, types.int64, None)
+load, store = (
+    make_intrinsic(_load, FOUR, None, types.int64),
+    make_intrinsic(_store, types.void, None, types.int64, None),
+)
 
 
 def loads(count: int) -> Any:
     """A :func:`load` of so many fours, as a tuple."""
-    return instruction(_load, types.UniTuple(FOUR, count), None, types.int64)
+    return make_intrinsic(_load, types.UniTuple(FOUR, count), None, types.int64)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
-from ..compile.rarely import rarely
 from . import lanes
 from .law import octave
 from .record import ALPHA, COUNT, E0
@@ -42,7 +42,7 @@ def _added(law, V, kappa, gamma):
 @kernel(inline=True)
 def added_mass(law, V, kappa, gamma):
     """(gamma N, its slope over V, its integral)."""
-    return _added(law, V, kappa, gamma) if rarely(law.added.size > 0) else (0.0, 0.0, 0.0)
+    return _added(law, V, kappa, gamma) if unlikely(law.added.size > 0) else (0.0, 0.0, 0.0)
 
 
 @kernel

@@ -11,8 +11,7 @@ import math
 
 import numpy as np
 
-from ..compile.address import doubles, integers, record_at
-from ..compile.bits import bits_of, from_bits
+from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, integers_at, record_at
 from ..compile.jit import kernel
 from ..numerics.four import LANES, four, load, store
 from .newton import product
@@ -40,12 +39,12 @@ _FAST = math.log(2.0) - float(np.euler_gamma)
 def hold(n, source):
     """:func:`record.hold`."""
     given = record_at(source)
-    alpha, rows = element(doubles(given.alpha, given.count), n), doubles(given.rows, WIDTH)
+    alpha, rows = element(floats_at(given.alpha, given.count), n), floats_at(given.rows, WIDTH)
     if alpha != rows[ALPHA]:
-        word = bits_of(alpha)
+        word = float_to_bits(alpha)
         octave = (word >> 52) - _EXPONENT
-        marks, octaves = integers(given.marks, PARTS), integers(given.octaves, 2 * octave + 2)
-        s = 2.0 * np.log2(from_bits((word & _MANTISSA) | _ONE)) - 1.0
+        marks, octaves = integers_at(given.marks, PARTS), integers_at(given.octaves, 2 * octave + 2)
+        s = 2.0 * np.log2(bits_to_float((word & _MANTISSA) | _ONE)) - 1.0
         rows[_WEIGHTS], rows[_WEIGHTS + 1] = 1.0, s
         for j in range(2, TERMS_OF_ALPHA):
             at = _WEIGHTS + j
@@ -60,10 +59,10 @@ def hold(n, source):
 def make(start, source):
     """A part of a row, but those of bodies, which are alike; at alpha = 1, where a sum would round, its closed form."""
     given = record_at(source)
-    rows, marks = doubles(given.rows, start + 2 * PART), integers(given.marks, start // PART + 1)
+    rows, marks = floats_at(given.rows, start + 2 * PART), integers_at(given.marks, start // PART + 1)
     part, c = start % WIDTH, rows[WHOLE]
     piece = part // PART - (2 if part >= PRESS else 0)
-    axis = doubles(marks[_OCTAVE] + ((start // WIDTH - 1) * PIECES + piece) * _PIECE * 8, 2 * _PIECE)
+    axis = floats_at(marks[_OCTAVE] + ((start // WIDTH - 1) * PIECES + piece) * _PIECE * 8, 2 * _PIECE)
     terms = TERMS_OF_ALPHA if c > 0.0 else 0
     _sum(axis, 0, terms, c if part < PRESS else 1.0, rows, start)
     if part < PRESS:

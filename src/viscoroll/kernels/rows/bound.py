@@ -15,7 +15,7 @@ from numba import carray
 from numba.core import types
 from numpy.typing import NDArray
 
-from ..compile.address import address_of, doubles, integers, record_at
+from ..compile.intrinsics import floats_at, function_address, integers_at, record_at
 from ..compile.jit import kernel
 from .contact import slopes_of_Q, traction_of
 from .law import bodies, place, speed, way_of
@@ -35,7 +35,7 @@ SCENE = np.dtype(
 
 @kernel(inline=True, allocates=True)
 def _law_of(scene):
-    rows, marks = doubles(scene.rows, scene.count * WIDTH), integers(scene.marks, scene.count * PARTS)
+    rows, marks = floats_at(scene.rows, scene.count * WIDTH), integers_at(scene.marks, scene.count * PARTS)
     return Law(rows, marks, rows[:0], 0, 0, 0, None)
 
 
@@ -81,4 +81,4 @@ def bind(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, fl
 
 def function() -> int:
     """Address of the function."""
-    return address_of(_loads, SCENE, types.int32, types.float64, types.float64, types.CPointer(types.float64))
+    return function_address(_loads, SCENE, types.int32, types.float64, types.float64, types.CPointer(types.float64))

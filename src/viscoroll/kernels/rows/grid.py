@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.address import doubles, integers, record_at
+from ..compile.intrinsics import floats_at, integers_at, record_at
 from ..compile.jit import kernel
 from ..numerics.four import LANES, four
 from ..numerics.nodes import chebyshev, rounded
@@ -95,13 +95,13 @@ def numbers_size(nodes: int) -> int:
 def hold(n, source):
     """:func:`record.hold`."""
     given = record_at(source)
-    marks = integers(given.marks, PARTS)
-    row = element(integers(given.of, given.count), n)
+    marks = integers_at(given.marks, PARTS)
+    row = element(integers_at(given.of, given.count), n)
     if marks[HELD] != row:
         marks[HELD] = row
         marks[STAMP] += 1
         marks[_MATERIAL] = given.materials + 8 * given.columns * row
-        rows, numbers = doubles(given.rows, WIDTH), doubles(marks[_MATERIAL], FRONT)
+        rows, numbers = floats_at(given.rows, WIDTH), floats_at(marks[_MATERIAL], FRONT)
         for k in range(LIMITS):
             rows[k] = numbers[k]
         marks[E0], marks[COUNT], marks[_MODES] = numbers[LIMITS], numbers[LIMITS + 1], numbers[LIMITS + 2]
@@ -111,14 +111,14 @@ def hold(n, source):
 def make(start, source):
     """A part of a row."""
     given = record_at(source)
-    marks = integers(given.marks, start // PART + 1)
+    marks = integers_at(given.marks, start // PART + 1)
     e0, nodes = marks[E0], given.nodes
     lowest = PER * (2 - e0) + 2 * POINTS + LANES - nodes  # the next below it that is a multiple of four
-    numbers = doubles(given.numbers, SCRATCH + _FUNCTIONS * nodes)
+    numbers = floats_at(given.numbers, SCRATCH + _FUNCTIONS * nodes)
     grid = Grid(
-        doubles(given.rows, start + 2 * PART), numbers, numbers[SCRATCH:].reshape(nodes, _FUNCTIONS), nodes,
-        integers(given.made, nodes // LANES), doubles(marks[_MATERIAL] + 8 * FRONT, given.columns - FRONT),
-        doubles(given.room, given.working), marks[_MODES], given.unlike != 0 and marks[_MODES] > 0, e0,
+        floats_at(given.rows, start + 2 * PART), numbers, numbers[SCRATCH:].reshape(nodes, _FUNCTIONS), nodes,
+        integers_at(given.made, nodes // LANES), floats_at(marks[_MATERIAL] + 8 * FRONT, given.columns - FRONT),
+        floats_at(given.room, given.working), marks[_MODES], given.unlike != 0 and marks[_MODES] > 0, e0,
         marks[STAMP], lowest - lowest % LANES,
     )  # fmt: skip
     _make(start % WIDTH, start // WIDTH - 1, grid)

@@ -12,8 +12,7 @@ from typing import Any
 from llvmlite import ir
 from numba.core import types
 
-from ..compile.fma import fma
-from ..compile.instruction import instruction
+from ..compile.intrinsics import fma, make_intrinsic
 from ..compile.jit import kernel
 from ..numerics.four import FOUR, LANES, VECTOR, fused_by, parts, pointers, shuffled, spread_over
 
@@ -45,7 +44,7 @@ def _sums(count: int, orders: int) -> Any:
             terms = [builder.fmul(_constant([k] * LANES), term) for k, term in enumerate(terms)][1:]
         return context.make_tuple(builder, signature.return_type, found)
 
-    return instruction(lower, types.UniTuple(FOUR, orders), None, types.int64, types.float64)
+    return make_intrinsic(lower, types.UniTuple(FOUR, orders), None, types.int64, types.float64)
 
 
 def _secants(context, builder, signature, given):
@@ -66,7 +65,7 @@ def _secants(context, builder, signature, given):
 
 
 _pair_sums, _one_sums = _sums(_PAIR, 3), _sums(_ONE, 2)
-_one_secants = instruction(_secants, types.UniTuple(FOUR, 4), None, types.int64, types.float64, types.float64)
+_one_secants = make_intrinsic(_secants, types.UniTuple(FOUR, 4), None, types.int64, types.float64, types.float64)
 
 
 @kernel(inline=True)

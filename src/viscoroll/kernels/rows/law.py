@@ -24,9 +24,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compile.bits import bits_of, from_bits
+from ..compile.intrinsics import bits_to_float, float_to_bits, unlikely
 from ..compile.jit import kernel
-from ..compile.rarely import rarely
 from . import lanes
 from .cover import fast_lengths, fast_moment, fast_share, free_creep
 from .record import (
@@ -63,12 +62,12 @@ class Place(NamedTuple):
 @kernel(inline=True)
 def octave(x, e0):
     """(row, t, dt/dx) of x >= 0."""
-    row = (bits_of(x) >> 52) - _MIDDLE - e0
+    row = (float_to_bits(x) >> 52) - _MIDDLE - e0
     # by arithmetic, not by a branch: that would be mispredicted on scattered speeds
     slow = (row - 1) >> 63
     row &= ~slow
-    per = from_bits((_FOUR - e0 - row + 2 * slow) << 52)
-    return row, x * per - from_bits(_THREE & ~slow), per
+    per = bits_to_float((_FOUR - e0 - row + 2 * slow) << 52)
+    return row, x * per - bits_to_float(_THREE & ~slow), per
 
 
 @kernel(inline=True)
@@ -81,7 +80,7 @@ def place(x, law):
 @kernel(inline=True)
 def beyond(at):
     """Whether a place is in the fast limit."""
-    return rarely(at.row < 0)
+    return unlikely(at.row < 0)
 
 
 # --- over u = kappa |V| ---

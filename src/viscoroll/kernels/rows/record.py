@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.address import call
+from ..compile.intrinsics import call_address, unlikely
 from ..compile.jit import kernel
-from ..compile.rarely import rarely
 from .lanes import TERMS
 
 #: where the functions of a row begin: pairs over u = kappa |V|, then what is over v = 1/F(eta), and how long a row is
@@ -37,7 +36,7 @@ class Law(NamedTuple):
     added : rows of N and of its integral (:func:`...materials.law_build.added`); none of a law of steady rolling
     free : of a cover the numbers of :mod:`cover`, and None of half-spaces, whose kernels are compiled without
     hold, make, source : addresses of the kernels (n, source) and (where a part begins, source), and of what these know
-        (:mod:`..compile.address`); 0 where all rows stand
+        (:mod:`..compile.intrinsics`); 0 where all rows stand
     """
 
     rows: Any
@@ -53,13 +52,13 @@ class Law(NamedTuple):
 def hold(law, n):
     """Have the law be that of state or motion n: nothing where all have one, or n the one that is held."""
     if law.hold != 0:
-        call(law.hold, n, law.source)
+        call_address(law.hold, n, law.source)
 
 
 @kernel(inline=True)
 def ready(part, row, law):
     """Where a part of a row begins, made if it was not."""
     start = (row + 1) * WIDTH + part
-    if rarely(law.marks[np.uint64((row + 1) * PARTS + part // PART)] != law.marks[STAMP]):
-        call(law.make, start, law.source)
+    if unlikely(law.marks[np.uint64((row + 1) * PARTS + part // PART)] != law.marks[STAMP]):
+        call_address(law.make, start, law.source)
     return start

@@ -1,0 +1,136 @@
+"""Instructions of LLVM that kernels call like functions: a fused product and sum, bits of a double, calls by address.
+
+**Fused product and sum.**  LLVM could fuse products and sums by itself (``fastmath={"contract"}``).  Its choice
+depends on the functions that it sees, and so on whether they were compiled in the same process or came from the
+cache: the last bits of a result would follow the history of the cache.  So only polynomials, where most of the time
+is spent, call :func:`fma`.
+
+**Calls by address.**  A kernel that is called by its address is compiled once, by itself, and not again with each
+caller. Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from inspect import Parameter, Signature
+from typing import Any
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import carray
+from numba.core import cgutils, types
+from numba.extending import intrinsic
+
+from .jit import kernel
+
+#: a 64-bit integer of LLVM, which holds an address
+_WORD = ir.IntType(64)
+#: type of a kernel that is called by its address: (number, address of a record) -> nothing
+_FUNCTION = ir.FunctionType(ir.VoidType(), [_WORD, _WORD])
+
+
+def make_intrinsic(lower: Callable, returned: Any, *kinds: Any) -> Any:
+    """A function for kernels that is lowered to instructions of LLVM.
+
+    lower : (context, builder, signature, arguments) -> value of LLVM, as numba calls it.
+    returned : numba's type of the value.
+    kinds : numba's types of the arguments, None for any type.
+    """
+
+    def typed(context: Any, *given: Any) -> Any:
+        return returned(*(kind or own for kind, own in zip(kinds, given, strict=True))), lower
+
+    names = ["context", *(f"given_{n}" for n in range(len(kinds)))]
+    typed.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])  # type: ignore[attr-defined]
+    return intrinsic(typed)
+
+
+def call_llvm(builder: Any, name: str, given: Any) -> Any:
+    """Call the intrinsic ``name`` of LLVM, whose arguments ``given`` and value have one type."""
+    kind = given[0].type
+    function = ir.FunctionType(kind, [kind] * len(given))
+    return builder.call(cgutils.get_or_insert_function(builder.module, function, name), given)
+
+
+def _to_bits(context, builder, signature, given):
+    return builder.bitcast(given[0], _WORD)
+
+
+def _from_bits(context, builder, signature, given):
+    return builder.bitcast(given[0], ir.DoubleType())
+
+
+def _fma(context, builder, signature, given):
+    """An instruction if the processor has one, else a call of the C library."""
+    return builder.fma(*given)
+
+
+def _expect(context, builder, signature, given):
+    return call_llvm(builder, "llvm.expect.i1", [*given, ir.IntType(1)(0)])
+
+
+def _call(context, builder, signature, given):
+    builder.call(builder.inttoptr(given[0], _FUNCTION.as_pointer()), given[1:])
+    return context.get_dummy_value()
+
+
+def _pointer(context, builder, signature, given):
+    return builder.inttoptr(given[0], context.get_value_type(signature.return_type))
+
+
+#: the bits of a double as an integer; numba would compile ``view`` in each kernel, in 0.1 s
+float_to_bits = make_intrinsic(_to_bits, types.int64, types.float64)
+#: the double with these bits
+bits_to_float = make_intrinsic(_from_bits, types.float64, types.int64)
+#: a b + c, rounded once
+fma = make_intrinsic(_fma, *[types.float64] * 4)
+#: ``if unlikely(condition)`` tells LLVM that the branch is rarely taken
+unlikely = make_intrinsic(_expect, types.boolean, types.boolean)
+#: call the kernel at an address: (address, number, address of a record)
+call_address = make_intrinsic(_call, types.void, *[types.int64] * 3)
+#: an address as a pointer to doubles, and to 64-bit integers
+_to_doubles, _to_integers = (
+    make_intrinsic(_pointer, types.CPointer(kind), types.int64) for kind in (types.float64, types.int64)
+)
+
+
+@cache
+def function_address(function: Any, record: np.dtype, returned: Any = types.void, *first: Any) -> int:
+    """Address of the machine code of a kernel.
+
+    function : the kernel.  record : dtype of the record to which its last argument points.
+    returned : numba's type of its value.  first : numba's types of the other arguments; default one integer.
+    """
+    kinds = *(first or (types.int64,)), types.CPointer(numba.from_dtype(record))
+    function.compile(returned(*kinds))
+    compiled = function.overloads[kinds]
+    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name))
+
+
+@kernel(inline=True, allocates=True)
+def floats_at(address, size):
+    """The vector of ``size`` doubles at an address."""
+    return carray(_to_doubles(address), size)
+
+
+@kernel(inline=True, allocates=True)
+def integers_at(address, size):
+    """The vector of ``size`` 64-bit integers at an address."""
+    return carray(_to_integers(address), size)
+
+
+@kernel(inline=True, allocates=True)
+def record_at(pointer):
+    """The record to which a pointer points."""
+    return carray(pointer, 1)[0]
+
+
+@kernel(inline=True)
+def septic(t, c):
+    """c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme, whose parts are independent of one another."""
+    t2 = t * t
+    low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))
+    high = fma(t2, fma(t, c[7], c[6]), fma(t, c[5], c[4]))
+    return fma(t2 * t2, high, low)
