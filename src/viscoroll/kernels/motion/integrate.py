@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compile.by_reference import by_reference
 from ..compile.jit import kernel
-from .load import brakes, goes_on, piece_end, threshold, undriven
+from .load import brakes, goes_on, piece_end, threshold, undriven, unloaded
 from .nodes import ONSET, PATHS, REST_TIME, TOTALS, TURNS
 from .origin import EITHER, SLIDES, STAYS, STICKS, depart, leaving_time
 from .output import coast, note, put_here, put_still, regime_of
