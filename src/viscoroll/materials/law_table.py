@@ -181,7 +181,8 @@ def cover_numbers(cover: CoverRows) -> Floats:
     share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
     front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
     assert len(front) == FRONT
-    return np.append(front, paired(cover.creep[1], cover.creep[1]))
+    own = cover.creep[1]
+    return np.append(front, np.concatenate([own, paired(own, own)], axis=1))
 
 
 def _elastic() -> Floats:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..compile.intrinsics import floats_at, function_address, integers_at, record_at
 from ..compile.jit import kernel
 from .contact import slopes_of_Q, traction_of
-from .law import bodies, place, speed, way_of
+from .law import bodies, place, shift, speed, way_of
 from .record import PARTS, WIDTH, Law
 from .states import State
 
@@ -51,15 +51,15 @@ def _loads(speed_of_axis, spin, to, scenes):
     law, state = _law_of(scene), State(scene.kappa, scene.mu, V, omega, True)
     here = place(u, law)
     found = speed(here, u, law)
-    way = way_of(here, u, found.scale, state)
-    out[0], out[1] = traction_of(u, found.L, state, law), way * found.m
+    way, free = way_of(here, u, found.scale, state), shift(u, law)[0]
+    out[0], out[1] = traction_of(u, found.L, free, state, law), way * found.m
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * found.rise
     if scene.unlike:
         half_space, cylinder, out[6], out[7] = bodies(here, u, law)
         out[2], out[3] = way * half_space, way * cylinder
     if scene.slopes:
-        out[4], _, out[5] = slopes_of_Q(u, found.L, found.dL, state, law)
+        out[4], _, out[5] = slopes_of_Q(u, found.L, found.dL, free, state, law)
         out[4], out[5] = out[4] * scene.Q / scene.V, out[5] * scene.Q / scene.omega
         out[6], out[7] = out[6] * scene.M / scene.V, out[7] * scene.M / scene.V
     out[0] *= scene.Q

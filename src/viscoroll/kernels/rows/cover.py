@@ -1,8 +1,8 @@
 """What the law of a cover of finite thickness has beside its rows: the creep of free rolling, and its own fast limit.
 
 ``free`` is None of half-spaces: then every function here returns what it was given or 0, and nothing of a cover is
-compiled.  Of a cover it holds numbers in front, then a row each of 2 kappa delta_0 over u = kappa |V| (:mod:`lanes`,
-the same function twice, for its second slope).
+compiled.  Of a cover it holds numbers in front, then a row each of 2 kappa delta_0 over u = kappa |V| (:mod:`lanes`):
+by itself, and twice as a pair, which has the second slope.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from . import lanes
 #: over L; eta/F as v -> infinity and its factor of 1/v
 _LAM, _LAM_SLOPE, _FREE, _FREE_SLOPE, _EPSILON, _MOMENT, _SHARE, _SHARE_SLOPE = range(8)
 #: how many these are, and how long a row is
-FRONT, ROW = 8, 2 * lanes.TERMS
+FRONT, ROW = 8, 3 * lanes.TERMS
 
 
 @kernel(inline=True)
@@ -53,7 +53,7 @@ def free_creep(at, u, free):
     if at.row < 0:
         fall = free[_FREE_SLOPE] / u
         return free[_FREE] + fall, -fall / u, 2.0 * fall / (u * u)
-    value, _, slope, _, bend, _ = lanes.pair(free, FRONT + ROW * at.row, at.t)
+    value, _, slope, _, bend, _ = lanes.pair(free, FRONT + ROW * at.row + lanes.TERMS, at.t)
     return value, slope * at.per, bend * at.per * at.per
 
 
@@ -76,6 +76,14 @@ def slope_over_speed(over_V, over_delta, rise, free):
     if free is None:
         return over_V
     return over_V - 0.5 * over_delta * rise
+
+
+@kernel(inline=True)
+def free_value(at, u, free):
+    """2 kappa delta_0 at u, of a cover."""
+    if at.row < 0:
+        return free[_FREE] + free[_FREE_SLOPE] / u
+    return lanes.one(free, FRONT + ROW * at.row, at.t)[0]
 
 
 class FreeCreep(NamedTuple):
@@ -105,3 +113,18 @@ def free_kinematics(at, u, kappa, k, spread, free):
 def of_cover(free):
     """Whether the law is that of a cover."""
     return free is not None
+
+
+@kernel(inline=True)
+def keep_free(room, at, place, u, free):
+    """Put 2 kappa delta_0 at u where ``room`` has its place."""
+    if free is not None:
+        room[3, at] = free_value(place, u, free)
+
+
+@kernel(inline=True)
+def kept_free(room, at, free):
+    """2 kappa delta_0 from there; 0 of half-spaces."""
+    if free is None:
+        return 0.0
+    return room[3, at]
