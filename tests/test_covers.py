@@ -162,6 +162,17 @@ def test_motions_follow_the_contact():
     assert np.array_equal(both.V[0], m.V)
 
 
+def test_a_bound_law_is_the_contact():
+    """To the bit, at any speed."""
+    scene = scene_on(COVERS[1])
+    law = vr.law(scene)
+    for V in (0.0, 1e-9, -0.03, 7.0, 1e13):
+        for omega in (V * 1.001, -V, 0.2):
+            if V or omega:
+                state = vr.contact(scene, V, omega=omega, fields=law(V, omega, slopes=True)._fields)
+                assert tuple(state.as_dict().values()) == law(V, omega, slopes=True)
+
+
 @pytest.mark.parametrize("cover", COVERS)
 def test_equilibria(cover):
     """Forces balance at what is found; at rest they are the limit of slow rolling."""

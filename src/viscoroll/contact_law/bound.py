@@ -15,7 +15,7 @@ from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from .contact import contact
 from .contact_table import refuse_overflow
-from .parameters import Rolls, framed, refuse_arrays, refuse_cover
+from .parameters import Rolls, framed, refuse_arrays
 
 #: what the law takes as it is; all else goes through :func:`contact`
 _NUMBERS = frozenset({float, int, np.float64})
@@ -38,7 +38,6 @@ class Law:
             raise ParameterError(
                 "material", repr(scene.material), "one material, as material[i]: a law is of one scene"
             )
-        refuse_cover(scene, "no law is bound; contact takes its place")
         refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
         table = scene.table
         assert table is not None
@@ -105,7 +104,7 @@ class Law:
 
         It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
         error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
-        there.  All laws share the function.
+        there.  All laws of half-spaces share the function, and all laws of covers another one.
         """
         return self._jitted.function_address, self._jitted.address
 

@@ -80,7 +80,9 @@ def slope_over_speed(over_V, over_delta, rise, free):
 
 @kernel(inline=True)
 def free_value(at, u, free):
-    """2 kappa delta_0 at u, of a cover."""
+    """2 kappa delta_0 at u; 0 of half-spaces."""
+    if free is None:
+        return 0.0
     if at.row < 0:
         return free[_FREE] + free[_FREE_SLOPE] / u
     return lanes.one(free, FRONT + ROW * at.row, at.t)[0]
