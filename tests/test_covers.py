@@ -145,6 +145,23 @@ def test_motions_follow_the_contact():
     assert np.array_equal(both.V[0], m.V)
 
 
+def test_a_thickness_each():
+    """States and motions of many thicknesses are those of each: of a scene, and of cylinders by their load."""
+    cover = vr.Cover(THREE, nu=0.5, thickness=[0.3, 0.55, 1.9, 0.3], on="base")
+    scene, V = scene_on(cover), np.array([0.01, -0.5, 3.0, 0.2])
+    found, motions = vr.contact(scene, V, delta=-2e-3, slopes=True), vr.ensemble(scene, V, 0.1, [1.0, 9.0], rtol=1e-10)
+    for n, each in enumerate(cover):
+        one = scene.replace(material=each)
+        for name, value in vr.contact(one, V[n], delta=-2e-3, slopes=True).as_dict().items():
+            assert close(found[name][n], value, rel=tol.COVER_EACH, what=name)
+        assert close(motions.V[n], vr.roll(one, V[n], 0.1, [1.0, 9.0], rtol=1e-10).V, rel=tol.COVER_EACH_MOTION)
+    thin, load = dataclasses.replace(RUBBER, thickness=0.01), np.array([1e3, 2e3, 3e3])
+    rollers = vr.Cylinder(R=0.1, m=30.0, material=thin, base=vr.Material.rigid(), mu=0.5, load=load)
+    M = [rollers.replace(load=each).contact(1.0, delta=0.0).M for each in load]
+    assert close(rollers.contact(1.0, delta=0.0).M, M, rel=tol.COVER_EACH)
+    assert rollers.validity(1.0).thick.value.shape == (3,)
+
+
 def test_a_bound_law_is_the_contact():
     """To the bit, at any speed."""
     scene = scene_on(COVERS[1])
@@ -191,3 +208,10 @@ def test_a_thickness_in_SI_units():
         assert close(thick.value, 0.5 * found.length / 0.01, rel=tol.CONTACT)
         assert thick.holds
         assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"
+        # on a slope the load, and with it l0, is less: of a scene too
+        tilted = (
+            each.roll(V, V, t, slope=0.5) for each, V, t in ((roller, 0.0, 0.3), (scene, 0.0, 0.3 / roller.T_ref))
+        )
+        assert close(
+            *(each.V[-1] * unit for each, unit in zip(tilted, (1.0, roller.scale["V"]), strict=True)), rel=1e-9
+        )

@@ -18,7 +18,6 @@ from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
 from .core.scale import Scale
 from .core.symbols import MEASURED
-from .materials.cover import Cover
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
@@ -198,7 +197,7 @@ class Cylinder(Methods):
     @property
     def l0(self) -> Any:
         """Contact length at rest, sqrt(32 R P/E'), m."""
-        return _contact_length(self.R, self.load, self.E_prime)
+        return contact_length(self.R, self.load, self.E_prime)
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
@@ -220,15 +219,8 @@ class Cylinder(Methods):
                 slow, fast = np.broadcast_arrays(slow, fast)
                 law = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / self.T_ref)[:, np.newaxis], alpha=law)
         if law is None:
-            law = self.pair.law if self.pair.covered is None else self._cover()
+            law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
         return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
-
-    def _cover(self) -> Cover:
-        """The layer of finite thickness; raises ParameterError where R or the load are arrays."""
-        if np.ndim(self.l0):
-            allowed = "single numbers where a body has a thickness: each l0 has a law of its own; loop over cylinders"
-            raise ParameterError("R, m, load", "arrays", allowed)
-        return self.pair.cover(float(self.l0))
 
     @cached_property
     def _known(self) -> Known:
@@ -264,7 +256,7 @@ class Cylinder(Methods):
         return {} if held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in held]}
 
 
-def _contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
     """l0 of Sect. 3.1, m."""
     return np.sqrt(32.0 * R * load / E_prime)
 
@@ -277,6 +269,6 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
     with np.errstate(all="ignore"):
-        kappa, gamma = R / _contact_length(R, load, E_prime), load * T**2 / (m * R)
+        kappa, gamma = R / contact_length(R, load, E_prime), load * T**2 / (m * R)
     of = "alpha" if isinstance(law, float | np.ndarray) else "material"
     return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{of: law})

@@ -99,10 +99,10 @@ def _thickness(nu: float, length: float) -> float:
 
 
 def springs(p: vr.Prony, z: float, h: float, nu: float) -> NDArray[np.float64]:
-    """(H, g, m) of a foundation of springs K E * w, w = (b^2 - x^2)/2: a thin compressible layer, lengths over V T_ref.
+    """(H, g, m) of a foundation of springs K E * w, w = (b^2 - x^2)/2: a thin compressible layer.
 
-    E * w is the response of the relaxation modes to the deflection from the front edge x = b on; b - 2 z is where it has
-    fallen to 0.
+    E * w is the response of the relaxation modes to the deflection from the front edge x = b on; at b - 2 z it has
+    fallen to 0.  Lengths over V T_ref.
     """
     K, a = 2.0 * (1.0 - nu) ** 2 / (1.0 - 2.0 * nu) / h, 1.0 / p.tau
 
@@ -131,8 +131,9 @@ def compared(nu: float, thickness: float) -> dict[str, Any]:
     half = vr.Scene(material=vr.Bodies(MATERIAL, vr.Prony.elastic(), 1.0), kappa=1.0, mu=1.0)
     cover = half.replace(material=vr.Cover(MATERIAL, nu=nu, thickness=thickness))
     top, own = (vr.resistance_extrema(scene) for scene in (half, cover))
+    rest = vr.contact(cover, 0.0, delta=0.0, fields="lam").lam
     row = {
-        "nu": nu, "thickness": thickness, "length": float(1.0 / vr.contact(cover, 0.0, delta=0.0, fields="lam").lam - 1.0),
+        "nu": nu, "thickness": thickness, "length": float(1.0 / rest - 1.0),
         "M": float(top.M[0] / own.M[0] - 1.0), "speed": float(own.V[0] / top.V[0]), "springs": None,
     }  # fmt: skip
     if nu < 0.5 and thickness <= 1.0:

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..materials.law_table import law_table
 from .assumptions import Assumption
-from .contact_table import rolling
+from .contact import states
 from .free_rolling import Strained
 from .parameters import Parameters
 
@@ -42,15 +41,15 @@ def layer(scene: Parameters, V: Any) -> tuple[Strained, Assumption]:
     """
     cover = scene.cover
     assert cover is not None
-    u = np.asarray(scene.kappa * np.abs(V), np.float64)
-    lam, epsilon = (row.reshape(u.shape)[()] for row in rolling(law_table(cover), u.ravel(), "lam", "epsilon"))
+    found = states(scene, np.abs(V), np.zeros(()), False, ("lam", "epsilon"))
+    lam, epsilon = found["lam"], found["epsilon"]
     theta = 0.5 * lam / cover.thickness
-    most, thickness = float(np.interp(cover.nu, _NU, _MOST_THETA)), cover.thickness
+    most, thickness = float(np.interp(cover.nu, _NU, _MOST_THETA)), float(np.min(cover.thickness))
     error, coupled = stated_error(thickness), np.interp(thickness, _COUPLED_THICKNESS, _COUPLED)
     sentence = (
         f"h/l0 = {thickness:.3g}, half the contact is up to {float(np.max(theta, initial=0.0)):.2g} thicknesses long; "
         f"up to {most:.3g} it sticks in front and slips behind; Q is off by up to {100.0 * error:.1f} % of mu P, and "
         f"where nu is near 1/2 and mu = 0.5 by {100.0 * coupled:.1f} % more by what shear does to the pressure"
     )
-    found = Strained(lam * (1.0 + epsilon) / (2.0 * scene.kappa), epsilon, lam)
-    return found, Assumption(theta <= most, theta, sentence)
+    strained = Strained(lam * (1.0 + epsilon) / (2.0 * scene.kappa), epsilon, lam)
+    return strained, Assumption(theta <= most, theta, sentence)

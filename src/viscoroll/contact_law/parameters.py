@@ -215,8 +215,11 @@ class Parameters(Rolls):
 
     def tilted(self, slope: Any) -> Self:
         cosine = slope_factor(slope)[1]
+        more = {}
+        if self.cover is not None:  # over the l0 of the load that is left
+            more = {"material": self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))}
         return self.replace(
-            kappa=self.kappa / np.sqrt(cosine), gamma=None if self.gamma is None else self.gamma * cosine
+            kappa=self.kappa / np.sqrt(cosine), gamma=None if self.gamma is None else self.gamma * cosine, **more
         )
 
     def freely(self, V: Any) -> Free:
@@ -272,7 +275,7 @@ def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> 
 def refuse_cover(scene: Parameters, why: str) -> None:
     """Raise ParameterError where a body is a layer of finite thickness; ``why``: what is not known of it."""
     if scene.cover is not None:
-        sentence = f"thickness = {scene.cover.thickness:g} (over l0): of a layer of finite thickness {why}"
+        sentence = f"thickness = {short(scene.cover.thickness)} (over l0): of a layer of finite thickness {why}"
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
 
 

@@ -7,8 +7,12 @@ from functools import cached_property
 from numbers import Real
 from typing import Any, Literal
 
-from ..core.checks import checked, number
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.checks import checked, frozen, number
 from ..core.errors import ParameterError
+from ..core.results import short
 from .bodies import Bodies
 from .cover_rows import CoverRows, cover_rows
 from .cover_solve import CoverModes
@@ -29,7 +33,8 @@ class Cover(Bodies):
         time.
     nu : Poisson's ratio of the layer, in [0, 0.5], constant in time.
     thickness : h/l0, dimensionless, > 0: over the contact length at rest that the same bodies would have as
-        half-spaces.  So thin that half the contact at rest is longer than six thicknesses it is refused.
+        half-spaces.  So thin that half the contact at rest is longer than six thicknesses it is refused.  An array (n,)
+        makes n covers, ``cover[i]`` one of them, for an array parameter of a scene or for the motions of an ensemble.
     on : "cylinder" (a covered roller; default) or "base" (a belt or lining that a roller runs on).
     part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1 (default): the other
         body is rigid, else it is an elastic half-space.
@@ -60,7 +65,7 @@ class Cover(Bodies):
     """
 
     nu: float = 0.5
-    thickness: float = 1.0
+    thickness: Any = 1.0
     on: Literal["cylinder", "base"] = "cylinder"
     other_nu: float = 0.5
 
@@ -69,7 +74,7 @@ class Cover(Bodies):
         series: Prony | float,
         *,
         nu: float,
-        thickness: float,
+        thickness: ArrayLike,
         on: Literal["cylinder", "base"] = "cylinder",
         part: float = 1.0,
         other_nu: float = 0.5,
@@ -87,9 +92,13 @@ class Cover(Bodies):
         object.__setattr__(self, "cylinder", series if cylinder else other)
         object.__setattr__(self, "base", other if cylinder else series)
         object.__setattr__(self, "share", part if cylinder else 1.0 - part)
-        object.__setattr__(self, "thickness", number("thickness", thickness, low=0.0, strict=True))
+        given = checked("thickness", thickness, low=0.0, strict=True)
+        if given.ndim > 1:
+            raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
+        object.__setattr__(self, "thickness", frozen(given))
         object.__setattr__(self, "on", on)
         super().__post_init__()
+        object.__setattr__(self, "shape", given.shape)
 
     @property
     def like(self) -> bool:
@@ -106,18 +115,24 @@ class Cover(Bodies):
         """The layer's part of the long-time compliance."""
         return float(self.share if self.on == "cylinder" else 1.0 - self.share)
 
-    def rows(self) -> CoverRows:
-        """The law over speed; 0.1 to 0.3 s."""
+    def rows(self, thickest: float | None = None) -> CoverRows:
+        """The law over speed, of one cover; 0.1 to 0.3 s.  ``thickest`` : as of :func:`.cover_rows.cover_rows`."""
         modes = CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
-        return cover_rows(modes, self.thickness, 1.0 if self.on == "base" else -1.0)
+        return cover_rows(modes, self.thickness, 1.0 if self.on == "base" else -1.0, thickest)
 
-    def __getitem__(self, which: Any) -> Bodies:
-        raise TypeError("a Cover is one material")
+    def of_thickness(self, thickness: ArrayLike) -> Cover:
+        """The same bodies with another thickness over l0."""
+        more: dict[str, Any] = {"on": self.on, "part": self.part, "other_nu": self.other_nu}
+        return Cover(self.layer, nu=self.nu, thickness=thickness, **more)
+
+    def __getitem__(self, which: Any) -> Cover:
+        return self.of_thickness(self.thickness[which])
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
-        return self.layer, self.nu, self.thickness, self.on, self.part, self.other_nu
+        thickness = np.shape(self.thickness), np.asarray(self.thickness).tobytes()
+        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu
 
     def __repr__(self) -> str:
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
-        return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={self.thickness!r}, on={self.on!r}{other})"
+        return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={short(self.thickness)}, on={self.on!r}{other})"

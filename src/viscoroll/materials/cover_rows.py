@@ -56,7 +56,7 @@ class CoverRows(NamedTuple):
     limits: Floats
 
 
-def cover_rows(modes: CoverModes, thickness: float, side: float) -> CoverRows:
+def cover_rows(modes: CoverModes, thickness: float, side: float, thickest: float | None = None) -> CoverRows:
     """The rows of one cover.
 
     Parameters
@@ -65,6 +65,7 @@ def cover_rows(modes: CoverModes, thickness: float, side: float) -> CoverRows:
     thickness : over l0.
     side : sign of delta_0 where the surface of the cover is stretched: 1 on the base, which then has all of M, and -1
         on the cylinder.
+    thickest : of covers that are to have as many rows; default: this one.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def cover_rows(modes: CoverModes, thickness: float, side: float) -> CoverRows:
         return _of_elastic(slow_limit, side)
     fast_limit = _elastic(modes, thickness, modes.alpha)
     e0 = int(octaves(modes.b[0], modes.a[-1])[0])
-    last = math.frexp(modes.a[-1] * max(1.0, thickness))[1] + _FAST_OCTAVES
+    last = math.frexp(modes.a[-1] * max(1.0, thickest or thickness))[1] + _FAST_OCTAVES
     first = e0 * PER_OCTAVE - _END_NODES + 1
     u = np.exp2(np.arange(first, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
     values = _march(modes, thickness, u, slow_limit[_LAM])

@@ -139,17 +139,17 @@ def _made(given: float | Prony | Bodies) -> LawTable:
     return made(given)
 
 
-def made(given: float | Prony | Bodies, coefficients: Floats | None = None) -> LawTable:
-    """A table made anew, or of ``coefficients`` that are known."""
+def made(given: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None) -> LawTable:
+    """A table made anew, or of ``coefficients`` or rows of a cover that are known."""
     total, unlike = one_series(given), isinstance(given, Bodies)
     modes, alpha = total.modes, total.alpha
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
     W, shares = modes.J * modes.b, (1.0, weights, 1.0 - weights)
     terms = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma), modes.J / modes.b
     sums = np.array([[math.fsum(share * row) for row in terms] for share in shares])
-    table, e0, cover = _elastic(), 0, None
+    table, e0 = _elastic(), 0
     if isinstance(given, Cover):
-        cover = given.rows()
+        cover = cover or given.rows()
         table, e0 = cover.coefficients, cover.e0
     elif modes.a.size:
         refuse_far(modes.b[0], modes.a[-1])

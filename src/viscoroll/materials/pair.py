@@ -29,6 +29,7 @@ class Solid(NamedTuple):
     nu: Any
     prony: Prony
     T_ref: float
+    thickness: Any = None
 
 
 @dataclass(frozen=True)
@@ -141,18 +142,26 @@ class Pair:
         one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space))
         return Bodies(one, other, self.share)
 
-    def cover(self, l0: float) -> Cover:
-        """The layer of finite thickness and its counterpart.
+    def cover(self, l0: Any) -> Cover:
+        """The layer of finite thickness and its counterpart; of many its thickness over l0 is an array.
 
         Parameters
         ----------
-        l0 : contact length at rest as of half-spaces, m.
+        l0 : contact length at rest as of half-spaces, m, a number or an array.
+
+        Raises
+        ------
+        ParameterError
+            Many series, Poisson's ratios or parts of the compliance.
         """
         on = self.covered
         assert on is not None
         layer, other = (self.cylinder, self.half_space) if on == "cylinder" else (self.half_space, self.cylinder)
-        part = float(self.share if on == "cylinder" else 1.0 - self.share)
-        series = layer.prony.slower(layer.T_ref / self.T_ref)
+        parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
+        if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
+            allowed = "one series, nu and part of the compliance where a body has a thickness: only l0 and it may vary"
+            raise ParameterError(on, "of many materials", allowed)
+        part, series = float(np.max(parts)), layer.prony.slower(layer.T_ref / self.T_ref)
         other_nu = other.nu if part < 1.0 else 0.5
         return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, other_nu=other_nu)
 
