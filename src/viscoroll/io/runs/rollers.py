@@ -27,8 +27,9 @@ class Rollers(Rolls):
     """Cylinders each of a material of its own, in SI units.
 
     like : their numbers, with one of their materials.
-    law, E_prime, T : what they deform by, or bodies of which one has a thickness; times over T.  Where each has a T of its own times are counted in s: gamma
-        does nothing but scale time (Eq. (22)), so that gamma/T in its place makes it seconds, the same for all.
+    law, E_prime, T : what they deform by, or bodies of which one has a thickness; times over T.  Where each has a T of
+        its own times are counted in s: gamma does nothing but scale time (Eq. (22)), so that gamma/T in its place makes
+        it seconds, the same for all.
     """
 
     like: Cylinder
