@@ -131,7 +131,7 @@ def contact(
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
-    if isinstance(scene.material, Cover):
+    if type(scene.material) is Cover:
         names = _of_cover(names, fields is None)
     creep_name = "omega" if delta is None else "delta"
     given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta})
