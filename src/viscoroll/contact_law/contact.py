@@ -78,10 +78,11 @@ def contact(
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
         for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
         ``M_half_space M_cylinder``, the parts of M in either body, and ``N``, of M(V) + N V' where speed
-        changes slowly, in units of T_ref^2; ``grip``, 1 - |Q|/mu to all its digits;
+        changes slowly, in units of T_ref^2; ``grip``, 1 - |Q|/mu to all its digits; ``delta_0``, the creep of free
+        rolling on a cover by the strain that the pressure makes, 0 of half-spaces;
         ``length`` of the contact, over l0 or in m, and ``C_rr`` = M/(P R), the coefficient of rolling resistance; only
         these are computed.  Default: the first nine; of bodies that differ, and of a Cylinder, the two parts too;
-        of a Cylinder ``length`` and ``C_rr``.
+        of a Cylinder ``length`` and ``C_rr``, and of a cover ``delta_0``.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
