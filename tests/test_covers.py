@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from refusals import refused
 
 import viscoroll as vr
 from pipeline.evidence.prove import layer
@@ -160,6 +161,22 @@ def test_a_thickness_each():
     M = [rollers.replace(load=each).contact(1.0, delta=0.0).M for each in load]
     assert close(rollers.contact(1.0, delta=0.0).M, M, rel=tol.COVER_EACH)
     assert rollers.validity(1.0).thick.value.shape == (3,)
+
+
+def test_a_law_on_disk(tmp_path):
+    """Bit for bit, with its bodies; it is refused where load or radius make another thickness over l0."""
+    thin = dataclasses.replace(RUBBER, thickness=0.01)
+    roller = vr.Cylinder(R=0.1, m=30.0, material=thin, base=vr.Material.elastic(3e9, 0.3), mu=0.5, load=2e3)
+    for given in (COVERS[2], roller):
+        vr.tables.save(vr.tables.law(given), tmp_path / "law.nc")
+        law = vr.load_law(tmp_path / "law.nc")
+        known = scene_on(given) if given is not roller else roller
+        found = known.replace(material=law) if given is not roller else roller.replace(material=law, base=None)
+        V = np.logspace(-6, 6, 13)
+        for name, values in vr.contact(found, V, delta=1e-3).as_dict().items():
+            assert np.array_equal(values, vr.contact(known, V, delta=1e-3)[name])
+    assert law.pair == roller.pair
+    refused(lambda: found.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "layer of 0.5", "0.49")
 
 
 def test_a_bound_law_is_the_contact():

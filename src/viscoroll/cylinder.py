@@ -25,6 +25,8 @@ from .materials.prony import Prony
 from .motion.warned import say
 from .scene import Methods, Scene
 
+#: thicknesses over l0 this near, relative, are one
+_SAME_THICKNESS = 1e-9
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
 UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
@@ -211,6 +213,8 @@ class Cylinder(Methods):
     @cached_property
     def _scene(self) -> Scene:
         law: Any = self.material if isinstance(self.material, LawTable) else None
+        if law is not None and law.cover is not None:
+            self._refuse_other_load(law)
         if self._papers:
             slow, fast = (np.asarray(each, np.float64) for each in (self.T_epsilon, self.T_sigma))
             with np.errstate(all="ignore"):
@@ -221,6 +225,14 @@ class Cylinder(Methods):
         if law is None:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
         return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+
+    def _refuse_other_load(self, law: LawTable) -> None:
+        """Raise ParameterError where the law of a layer is that of another l0."""
+        given: Any = law.material
+        own = self.pair.cover(self.l0)
+        if own.shape or abs(own.thickness / given.thickness - 1.0) > _SAME_THICKNESS:
+            found = f"the law of a layer of {given.thickness:.6g} l0"
+            raise ParameterError("material", found, f"that of {short(own.thickness)} l0, as the load and R have it")
 
     @cached_property
     def _known(self) -> Known:

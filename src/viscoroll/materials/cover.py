@@ -115,10 +115,14 @@ class Cover(Bodies):
         """The layer's part of the long-time compliance."""
         return float(self.share if self.on == "cylinder" else 1.0 - self.share)
 
+    @property
+    def modes(self) -> CoverModes:
+        """What the solve takes of it."""
+        return CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
+
     def rows(self, thickest: float | None = None) -> CoverRows:
         """The law over speed, of one cover; 0.1 to 0.3 s.  ``thickest`` : as of :func:`.cover_rows.cover_rows`."""
-        modes = CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
-        return cover_rows(modes, self.thickness, 1.0 if self.on == "base" else -1.0, thickest)
+        return cover_rows(self.modes, self.thickness, 1.0 if self.on == "base" else -1.0, thickest)
 
     def of_thickness(self, thickness: ArrayLike) -> Cover:
         """The same bodies with another thickness over l0."""
