@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
@@ -79,6 +81,25 @@ def test_a_thin_compressible_cover_is_a_foundation():
         ratios.append(np.array([state.load, state.shift, state.moment]) / layer.springs(ONE, 1.0, 1.0 / theta, 0.0))
     assert close(ratios[1], 1.0, rel=tol.COVER_THIN)
     assert close(2.0 * ratios[1] - ratios[0], 1.0, rel=0.1 * tol.COVER_THIN)
+
+
+@settings(max_examples=12, deadline=None)
+@given(
+    st.floats(0.0, 0.5), st.floats(-0.8, 2.0), st.floats(-1.0, 2.0), st.floats(-4.0, 0.0), st.floats(0.05, 1.0),
+    st.sampled_from(["cylinder", "base"]),
+)  # fmt: skip
+def test_any_cover(nu, thickness, strength, time, part, on):
+    """Shorter than the half-space's contact, which resists; traction within friction, and rising with creep."""
+    p = vr.Prony([10.0**strength, 1.0], [10.0**time, 1.0])
+    scene = scene_on(vr.Cover(p, nu=nu, thickness=10.0**thickness, on=on, part=part))
+    V = np.logspace(-9.0, 9.0, 37)[:, None]
+    limit, free = (vr.contact(scene, V, delta=0.0)[name] for name in ("delta_star", "delta_0"))
+    c = vr.contact(scene, V, delta=free + limit * np.linspace(-1.25, 1.25, 24))
+    assert np.all((c.lam > 0.0) & (c.lam < 1.0) & (c.M > 0.0) & (c.epsilon > 0.0))
+    assert np.all((np.abs(c.Q) <= MU) & (c.beta >= 0.0) & (c.beta <= 1.0))
+    assert np.all(np.diff(c.Q, axis=1) >= 0.0)
+    assert np.array_equal(c.full_slip, np.abs(c.Q) == MU)
+    assert np.all(np.diff(limit, axis=0) <= tol.COVER_THICK)
 
 
 @pytest.mark.parametrize("cover", COVERS)
@@ -167,11 +188,10 @@ def test_a_law_on_disk(tmp_path):
     """Bit for bit, with its bodies; it is refused where load or radius make another thickness over l0."""
     thin = dataclasses.replace(RUBBER, thickness=0.01)
     roller = vr.Cylinder(R=0.1, m=30.0, material=thin, base=vr.Material.elastic(3e9, 0.3), mu=0.5, load=2e3)
-    for given in (COVERS[2], roller):
-        vr.tables.save(vr.tables.law(given), tmp_path / "law.nc")
+    for known in (scene_on(COVERS[2]), roller):
+        vr.tables.save(vr.tables.law(known.material if known is not roller else roller), tmp_path / "law.nc")
         law = vr.load_law(tmp_path / "law.nc")
-        known = scene_on(given) if given is not roller else roller
-        found = known.replace(material=law) if given is not roller else roller.replace(material=law, base=None)
+        found = known.replace(material=law, **({"base": None} if known is roller else {}))
         V = np.logspace(-6, 6, 13)
         for name, values in vr.contact(found, V, delta=1e-3).as_dict().items():
             assert np.array_equal(values, vr.contact(known, V, delta=1e-3)[name])
