@@ -172,6 +172,63 @@ def _orders(theta: float) -> int:
     return math.ceil(_TERMS + _TERMS_PER_THETA * theta)
 
 
+class _Exponentials(NamedTuple):
+    """The relaxation and creep modes on a contact of half length z, as of the half-space.
+
+    ratio : I_n/I_0 of alpha, [order, mode].  root : sqrt(I_1/I_0).  k : K_0/K_1 of beta.
+    x : B^-1 sqrt(r) (e, Q^T), the matching at the front edge, of the half-space and of a source by each creep mode.
+    sigma : what an excess memory of 1 is as such a source.
+    """
+
+    ratio: Floats
+    root: Floats
+    k: Floats
+    x: Floats
+    sigma: Floats
+
+
+def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
+    """Those of N orders."""
+    from scipy.special import ive, k0e, k1e
+
+    alpha, beta = np.minimum(modes.a * z, _LARGE), modes.b * z
+    ratio = ive(np.arange(N + 1)[:, None], alpha) / ive(0, alpha)
+    root, k = np.sqrt(ratio[1]), k0e(beta) / k1e(beta)
+    B = np.eye(root.size) + root[:, None] * ((modes.Q.T * k) @ modes.Q) * root
+    x = np.linalg.solve(B, np.column_stack([root * modes.e, root[:, None] * modes.Q.T]))
+    return _Exponentials(ratio, root, k, x, np.sqrt(modes.J * modes.b) / (beta * k1e(beta)))
+
+
+def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[Floats, Floats]:
+    """What the layer adds to the slope and to the memory.
+
+    Parameters
+    ----------
+    v, A : u theta at the nodes, and the signed Bessel functions there.
+    beta : b_j z.
+    weights : (L - 1)/u times the weights of the rule and the layer's part of the compliance; complex where that is < 1.
+
+    Returns
+    -------
+    S : (N + 1, N), the slope is sum (S q)_n T_n.
+    c : (modes, N), c q is the excess memory of that slope in each creep mode.
+    """
+    N = len(A) - 1
+    n, m = np.arange(N + 1), np.arange(1, N + 1)
+    odd, apart = m % 2 == 1, (n[:, None] + m) % 2 == 1
+    S = 2.0 * (A @ (A[1:] * np.real(weights)).T) * m
+    S[apart] = 0.0
+    if np.iscomplexobj(weights):
+        S[apart] = (2.0 * (A @ (A[1:] * weights.imag).T) * np.where(odd, m, -m))[apart]
+    S[0] *= 0.5
+    # excess memory of exp(i v x): its own less that of its Chebyshev series, which decays
+    D = _decays(beta, N)
+    memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
+    memory -= 2.0 * (D[2::2].T @ A[2::2]) + 2j * (D[1::2].T @ A[1::2])
+    weighted = memory * weights
+    return S, np.where(odd, weighted.imag @ A[1:].T, weighted.real @ A[1:].T) * m
+
+
 def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) -> CoverState:
     """The contact of half length ``z`` (over V T_ref) and ``theta`` (over the thickness); one linear system.
 
@@ -184,49 +241,29 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     Returns
     -------
     CoverState
-        Against boundary elements: 1e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 the half-space's.
+        Against boundary elements: 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 the half-space's.
     """
-    from scipy.special import ive, k0e, k1e
-
     nodes, N = modes.nodes, orders or _orders(theta)
     v = nodes.u * theta
-    A = bessel(v, N)
-    J = modes.compliance(v / z)
+    A, J = bessel(v, N), modes.compliance(v / z)
     part: Any = 1.0 if modes.share == 1.0 else 1.0 - (1.0 - modes.share) / J
-    n, m = np.arange(N + 1), np.arange(1, N + 1)
-    odd = m % 2 == 1
-    alpha, beta = np.minimum(modes.a * z, _LARGE), modes.b * z
-    ratio = ive(n[:, None], alpha) / ive(0, alpha)
-    r, k = ratio[1], k0e(beta) / k1e(beta)
-    root = np.sqrt(r)
-    B = np.eye(r.size) + root[:, None] * ((modes.Q.T * k) @ modes.Q) * root
-    x = np.linalg.solve(B, np.column_stack([root * modes.e, root[:, None] * modes.Q.T]))
-    sigma = np.sqrt(modes.J * modes.b) / (beta * k1e(beta))
+    ratio, root, k, x, sigma = _exponentials(modes, z, N)
     X0, Xi = modes.e / root * x[:, 0], (modes.e / root)[:, None] * x[:, 1:] * sigma
-    # excess memory of exp(i v x): its own less that of its Chebyshev series, which decays
-    D = _decays(beta, N)
-    memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
-    memory -= 2.0 * (D[2::2].T @ A[2::2]) + 2j * (D[1::2].T @ A[1::2])
-    weights = nodes.L * part
-    S = 2.0 * (A @ (A[1:] * np.real(weights)).T) * m
-    apart = (n[:, None] + m) % 2 == 1
-    S[apart] = (2.0 * (A @ (A[1:] * weights.imag).T) * np.where(odd, m, -m))[apart] if modes.share < 1.0 else 0.0
-    S[0] *= 0.5
-    weighted = memory * weights
-    c = np.where(odd, weighted.imag @ A[1:].T, weighted.real @ A[1:].T) * m
+    S, c = _layer_operator(v, A, modes.b * z, nodes.L * part)
     Phi = 2.0 * ratio[1:]
     right = Phi @ X0
     right[0] += z
-    q = np.linalg.solve(np.eye(N) + S[1:] + Phi @ (Xi @ c), right)
+    q: Any = np.linalg.solve(np.eye(N) + S[1:] + Phi @ (Xi @ c), right)
     excess = sigma * (c @ q)
     # T_mean - sum X + s_0 without cancellation
-    shift = modes.t @ (k * (modes.Q @ (root * (x[:, 0] - x[:, 1:] @ excess)))) + modes.t @ excess + S[0] @ q
+    shift: Any = modes.t @ (k * (modes.Q @ (root * (x[:, 0] - x[:, 1:] @ excess)))) + modes.t @ excess + S[0] @ q
     moment = shift + z * q[1] / (2.0 * q[0])
-    mq = m * q
-    even_part, odd_part = mq[~odd] @ A[1:][~odd], mq[odd] @ A[1:][odd]
-    source = (nodes.T - nodes.L) * part * (even_part - 1j * odd_part)
+    # transform of the pressure over pi z, times v: its even and odd terms
+    mq = np.arange(1, N + 1) * q
+    odd, even = mq[::2] @ A[1::2], mq[1::2] @ A[2::2]
+    source = (nodes.T - nodes.L) * part * (even - 1j * odd)
     limit = z + shift + np.sum((source * np.exp(1j * v) * J).real)
-    power = (even_part**2 + odd_part**2) / v**2
+    power = (even**2 + odd**2) / v**2
     strain = -2.0 * theta * np.sum(nodes.du * nodes.C * modes.layer_storage(v / z) * power) / q[0]
     return CoverState(float(z * q[0]), float(shift), float(moment), float(limit), float(strain), q, X0 - Xi @ (c @ q))
 
