@@ -20,6 +20,10 @@ from .prony import Prony, series_of_alpha
 from .prony_forms import HIGHEST_ALPHA
 
 
+#: thickness over l0 beyond which a body is a half-space to rounding at any speed of interest
+_THICKEST = 1e15
+
+
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Cover(Bodies):
     """A viscoelastic layer bonded to a rigid core or bed, rolling against a rigid or elastic body.
@@ -92,7 +96,7 @@ class Cover(Bodies):
         object.__setattr__(self, "cylinder", series if cylinder else other)
         object.__setattr__(self, "base", other if cylinder else series)
         object.__setattr__(self, "share", part if cylinder else 1.0 - part)
-        given = checked("thickness", thickness, low=0.0, strict=True)
+        given = checked("thickness", thickness, low=0.0, strict=True, high=_THICKEST)
         if given.ndim > 1:
             raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
         object.__setattr__(self, "thickness", frozen(given))

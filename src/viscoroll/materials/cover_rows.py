@@ -36,6 +36,8 @@ _END_NODES, _END_DEGREE = 52, 10
 #: both then leaves rounding; and the two lie at least so far apart in ln z, for rounding not to turn the line
 _LOAD_ERRORS, _LEAST_STEP = 1e-14, 1e-8
 _MOST_STEPS = 40
+#: thickness over l0 up to which half the contact is longer than that in any case, and nothing is solved
+_THINNEST = 0.01
 #: last nodes that a node is extrapolated from
 _EXTRAPOLATED = 8
 
@@ -72,10 +74,9 @@ def cover_rows(modes: CoverModes, thickness: float, side: float, thickest: float
     ParameterError
         A cover so thin that the half length at rest is more than six thicknesses.
     """
-    slow_limit = _elastic(modes, thickness, 1.0)
-    theta = 0.5 * slow_limit[_LAM] / thickness
-    if theta > MOST_THETA:
-        allowed = f"at least {theta / MOST_THETA * thickness:.2g}: half a contact is at most {MOST_THETA:g} thicknesses"
+    slow_limit = _elastic(modes, thickness, 1.0) if thickness > _THINNEST else None
+    if slow_limit is None or slow_limit[_LAM] > 2.0 * MOST_THETA * thickness:
+        allowed = f"larger: half the contact at rest may be at most {MOST_THETA:g} thicknesses long"
         raise ParameterError("thickness", f"{thickness:.3g} (over l0)", allowed)
     if not modes.a.size:
         return _of_elastic(slow_limit, side)
