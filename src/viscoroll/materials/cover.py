@@ -19,7 +19,6 @@ from .cover_solve import CoverModes
 from .prony import Prony, series_of_alpha
 from .prony_forms import HIGHEST_ALPHA
 
-
 #: thickness over l0 beyond which a body is a half-space to rounding at any speed of interest
 _THICKEST = 1e15
 
