@@ -442,3 +442,36 @@ DRAWN = 0.35
 PRIOR = 0.15
 #: What two outliers of 20 standard deviations move a robust fit by, of a logarithm, at most, and another at least.
 OUTLIERS = 0.1
+
+# --- covers of finite thickness (test_covers.py) ---
+#: A cover of 1e9 l0 against the half-space: lam, epsilon, delta_star, Q and M; asked 1e-12, of M 1e-11.
+COVER_THICK = 1e-12
+#: Rows against the solve with more terms: lam, delta_star, epsilon and M; asked.  The solve itself loses digits of
+#: epsilon at very low and of M at very high speed.
+COVER_ROWS = 1e-11
+#: delta_0 times 2 kappa where nu < 1/2: the strain is added up along the contact between points.
+COVER_FREE = 1e-5
+#: The load of an elastic layer by pipeline/evidence/prove/layer.py, which is good to seven digits.
+COVER_ELASTIC = 1e-7
+#: delta_0 of an elastic half-space, in closed form: a rule of 512 points.
+COVER_LOCAL = 1e-9
+#: A foundation of springs, which is off by the thickness over the half length times 0.43, at 1/6 of it.
+COVER_THIN = 0.08
+#: M V at 1e9 and 2e9 times the fastest rate.
+COVER_FAST = 1e-6
+#: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as large as that.
+COVER_NU = 1e-5
+#: Differences over a millionth of V: their second order, and rounding over a millionth.
+COVER_SLOPES = 1e-6
+#: Motions whose energy is looked at.
+COVER_RTOL = 1e-9
+#: Differences of V and omega over time: their second order.
+COVER_RATES = 1e-6
+#: Forces at equilibria, over P: roundings of Q near its limit.
+COVER_STEADY = 1e-13
+#: A thickness each, interpolated in its logarithm, against a law of its own; motions at rtol 1e-10.
+COVER_EACH, COVER_EACH_MOTION = 1e-10, 1e-9
+#: delta at rest and at 1e-11 of a relaxation time, by which lengths differ.
+COVER_REST = 1e-9
+#: Steel of 2e11 Pa beside rubber of 2e6 Pa takes 1e-5 of the compliance.
+COVER_ON_STEEL = 1e-3

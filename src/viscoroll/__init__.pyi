@@ -37,6 +37,7 @@ from .io import runs as runs
 from .io import sampling as sampling
 from .io import tables as tables
 from .materials.bodies import Bodies as Bodies
+from .materials.cover import Cover as Cover
 from .materials.law_file import load_law as load_law
 from .materials.material import Material as Material
 from .materials.measured import Measured as Measured

@@ -24,6 +24,8 @@ from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
 from .scene import Methods, Scene
 
+#: thicknesses over l0 this near, relative, are one
+_SAME_THICKNESS = 1e-9
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
 UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
@@ -196,7 +198,7 @@ class Cylinder(Methods):
     @property
     def l0(self) -> Any:
         """Contact length at rest, sqrt(32 R P/E'), m."""
-        return _contact_length(self.R, self.load, self.E_prime)
+        return contact_length(self.R, self.load, self.E_prime)
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
@@ -210,6 +212,8 @@ class Cylinder(Methods):
     @cached_property
     def _scene(self) -> Scene:
         law: Any = self.material if isinstance(self.material, LawTable) else None
+        if law is not None and law.cover is not None:
+            self._refuse_other_load(law)
         if self._papers:
             slow, fast = (np.asarray(each, np.float64) for each in (self.T_epsilon, self.T_sigma))
             with np.errstate(all="ignore"):
@@ -217,9 +221,17 @@ class Cylinder(Methods):
             if slow.ndim:
                 slow, fast = np.broadcast_arrays(slow, fast)
                 law = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / self.T_ref)[:, np.newaxis], alpha=law)
-        return scene_of(
-            self.R, self.m, self.load, self.E_prime, self.T_ref, self.pair.law if law is None else law, self.mu, self.j
-        )
+        if law is None:
+            law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
+        return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+
+    def _refuse_other_load(self, law: LawTable) -> None:
+        """Raise ParameterError where the law of a layer is that of another l0."""
+        given: Any = law.material
+        own = self.pair.cover(self.l0)
+        if own.shape or abs(own.thickness / given.thickness - 1.0) > _SAME_THICKNESS:
+            found = f"the law of a layer of {given.thickness:.6g} l0"
+            raise ParameterError("material", found, f"that of {short(own.thickness)} l0, as the load and R have it")
 
     @cached_property
     def _known(self) -> Known:
@@ -266,7 +278,7 @@ class Cylinder(Methods):
         return {} if held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in held]}
 
 
-def _contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
     """l0 of Sect. 3.1, m."""
     return np.sqrt(32.0 * R * load / E_prime)
 
@@ -279,6 +291,6 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
     with np.errstate(all="ignore"):
-        kappa, gamma = R / _contact_length(R, load, E_prime), load * T**2 / (m * R)
+        kappa, gamma = R / contact_length(R, load, E_prime), load * T**2 / (m * R)
     of = "alpha" if isinstance(law, float | np.ndarray) else "material"
     return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{of: law})

@@ -106,7 +106,7 @@ class Law:
 
         It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
         error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
-        there.  All laws share the function.
+        there.  All laws of half-spaces share the function, and all laws of covers another one.
         """
         return self._jitted.function_address, self._jitted.address
 

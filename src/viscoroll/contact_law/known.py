@@ -23,7 +23,6 @@ from .assumptions import (
     LEAST_KAPPA,
     MISFIT_LIMIT,
     NOT_SMALL,
-    THICK_LIMIT,
     Assumption,
     Validity,
     coupling,
@@ -31,7 +30,6 @@ from .assumptions import (
     inertia,
     measurement,
     passage,
-    thickness,
 )  # fmt: skip
 from .contact_table import rolling
 from .parameters import Parameters
@@ -40,12 +38,10 @@ from .parameters import Parameters
 _LEAST_PART = 0.01
 #: speeds of what no speed makes right
 NOWHERE = math.inf, 0.0
-#: kappa V below which every contact is as long as at rest
-_SLOWEST = 1e-100
-#: accuracy of the speed at which a layer is thick enough
-_NEAR = 1e-9
-#: what was warned of in this process, once for each: data of a material, thickness of a layer
-_told: set[Measured | float] = set()
+#: log2 of kappa V at which the speeds of a cover are evaluated: interpolation between them has an error below 1 %
+_OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
+#: data of materials of which a warning was given in this process
+_told: set[Measured] = set()
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +80,13 @@ class Known:
         if not records or series is None:
             return None
         ends = max(data.low for data in records), min(data.high for data in records)
-        low, high = held_speeds(series, *(rate * self.T_ref for rate in ends))
+        low, high = (rate * self.T_ref for rate in ends)
+        if self.scene.cover is not None:
+            u = np.exp2(_OCTAVES_OF_SPEED)
+            (lam,) = rolling(law_table(self.scene.cover), u, "lam")
+            low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
+        else:
+            low, high = held_speeds(series, low, high)
         return low / self.T_ref, high / self.T_ref
 
     @cached_property
@@ -113,33 +115,8 @@ class Known:
             quasistatic=inertia(*self._slowness(fastest, density)),
             bodies=coupling(*(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like),
             measured=measurement(passage(V, length), self.measured),
-            thick=thickness(length, {name: body.thickness for name, body in self.bodies.items()}),
             plane=Assumption(None, None, long if plane == "strain" else "a thin disc (plane stress)"),
         )
-
-    @cached_property
-    def thick(self) -> tuple[float, float] | None:
-        """|V| between which the contact is short beside the layer, m/s; None where it is so at any speed.
-
-        The contact is longest at rest and the shorter the faster.  Where thicknesses or moduli are many, by the worst.
-        """
-        layers = [body.thickness for body in self.bodies.values() if body.thickness is not None]
-        if not layers or self.scene.table is None:
-            return None
-        l0 = float(np.max(self.l0, initial=0.0))
-        longest = THICK_LIMIT * min(layers) / l0 if l0 else math.inf
-        if longest >= 1.0:
-            return None
-        material, unit = self.scene.in_own_time()
-        table = law_table(material)
-        if table.alpha**-0.5 >= longest:  # lam at the highest speeds
-            return math.inf, math.inf
-        slow, fast = _SLOWEST, 1.0 / _SLOWEST
-        while fast > slow * (1.0 + _NEAR):
-            middle = math.sqrt(slow) * math.sqrt(fast)
-            (lam,) = rolling(table, np.array([middle]), "lam")
-            slow, fast = (middle, fast) if lam[0] > longest else (slow, middle)
-        return fast * l0 / (unit * self.T_ref), math.inf
 
     @cached_property
     def small(self) -> bool:
@@ -149,7 +126,7 @@ class Known:
     @cached_property
     def silent(self) -> tuple[float, float] | None:
         """|V| between which :meth:`look` has nothing to say, m/s; None where it has nothing at any speed."""
-        bands = [band for band in (self.speeds, self.thick, None if self.small else NOWHERE) if band is not None]
+        bands = [band for band in (self.speeds, None if self.small else NOWHERE) if band is not None]
         return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
 
     def look(self, V: Any, extent: tuple[float, float] | None, *, motion: bool = False) -> None:
@@ -169,24 +146,8 @@ class Known:
             return
         if not (self.small or motion):
             say([NOT_SMALL], "contact", "validity(V).small_contact")
-        if self.thick is not None and beyond(ends, self.thick):
-            self._look_at_layer(ends)
         if self.speeds is not None and beyond(ends, self.speeds) and not _told.issuperset(self.measured.values()):
             self._look_at_data(V)
-
-    def _look_at_layer(self, ends: tuple[float, float]) -> None:
-        """Warn of the layer that is thinner than a contact at the slowest speed needs, once for each thickness."""
-        layers = {name: body.thickness for name, body in self.bodies.items()}
-        key = min(given for given in layers.values() if given is not None)
-        if key in _told:
-            return
-        _told.add(key)
-        l0 = float(np.max(self.l0))
-        sentence = thickness(self._lam(slowest_of(ends) / l0) * l0, layers).sentence
-        text = (
-            f"the law is that of a half-space: {sentence}.  Contact length and M are a guess; validity(V).thick tells "
-        )
-        warnings.warn(f"{text}where", ModelWarning, stacklevel=outside())
 
     def _look_at_data(self, V: Any) -> None:
         """Warn of speeds at which a contact asks for what was not measured, once for each material."""

@@ -16,7 +16,7 @@ from ..core.typed import Floats, Numbers
 from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
 from .contact import states
-from .parameters import Parameters, Rolls, framed
+from .parameters import Parameters, Rolls, framed, refuse_cover
 
 _BLOCK = 1 << 15
 
@@ -57,6 +57,7 @@ def stress(
     from ..kernels.rows.stress import Points
 
     _, scene, scale = framed(roller, "stress")
+    refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"

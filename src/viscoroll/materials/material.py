@@ -40,7 +40,8 @@ class Material(FromPrograms):
     T_ref : what the times of ``prony`` are counted in, s.
     name : in words, for tables and figures.
     density : kg/m^3, to compare speeds with those of waves.
-    thickness : of the layer, on something rigid, m; the law is that of a half-space, and ``validity`` compares.
+    thickness : m; then the body is a layer of this thickness, bonded to a rigid core (of a covered roller) or bed (of a
+        belt or lining), and the other body is rigid or elastic.  None (default): a half-space.
     measured : the :class:`Measured` band that it was fitted in; beyond it contacts warn.
     temperature : at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
 
@@ -71,6 +72,8 @@ class Material(FromPrograms):
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
                 raise ParameterError("E", self.E, "finite where the material relaxes")
+            if self.thickness is not None:
+                raise ParameterError("thickness", self.thickness, "left out of a rigid body")
         else:
             keep(self, E=0.0)
         object.__setattr__(self, "nu", poisson(self.nu))

@@ -111,7 +111,7 @@ class Ensemble(Rolled):
         roller = self.roller.some(some, len(self))
         scene, scale = roller.scene(), roller.scale
         found = validity(roller, V, omega=omega)
-        if self.V is None or not some.size:
+        if self.V is None or not some.size or scene.cover is not None:
             return found
         speeds = np.vstack([self.V0[some], self.V[some].T])
         rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[some]) & ~np.isnan(speeds)

@@ -147,7 +147,7 @@ class Motion(Rolled):
         reached = self.regime >= 0
         V = self.V[reached]
         found = validity(self.roller, V, omega=self.omega[reached])
-        if not reached.any():
+        if not reached.any() or self.scene.cover is not None:
             return found
         free, rolls = self.scene.freely(V / self.scale["V"]).scaled(self.scale), self.regime[reached] > 0
         return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.contact import contact
-from ..contact_law.parameters import Parameters, Rolls, framed
+from ..contact_law.parameters import Parameters, Rolls, framed, refuse_cover
 from ..contact_law.steadiness import CAUGHT
 from ..core.blocks import flattened, run_blocks
 from ..core.checks import checked, yes_or_no
@@ -74,7 +74,10 @@ def begin(
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
-    if unsteady is not False and yes_or_no("unsteady", unsteady) and not scene.like_bodies:
+    unsteady = unsteady is not False and yes_or_no("unsteady", unsteady)
+    if unsteady:
+        refuse_cover(scene, "N is not known: leave unsteady=True out")
+    if unsteady and not scene.like_bodies:
         sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     try:
@@ -121,6 +124,7 @@ def _climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepare
     """
     if rested == 0.0:
         return ready, False
+    refuse_cover(scene, "what leaving the imprint of a rest costs is not known: leave rested out")
     V = np.asarray(ready.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     if ready.prescribed or np.any(np.abs(ready.omega0 - V) > limit):

@@ -16,6 +16,7 @@ from ..contact_law.known import say
 from ..contact_law.parameters import PARAMETERS, Parameters
 from ..contact_law.steadiness import STEADY_LIMIT
 from ..materials.bodies import Bodies
+from ..materials.cover import Cover
 from ..materials.prony import Prony
 from .rolling import Begun
 
@@ -64,7 +65,7 @@ def _faults(
             )
     # the speed at the start, or that at which it comes to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
-    if not driven and u > 0.0 and u * u * (1.0 + j) < _PLAIN * gamma * part:
+    if not driven and type(material) is not Cover and u > 0.0 and u * u * (1.0 + j) < _PLAIN * gamma * part:
         places, slow = _slow_starts(material, gamma, j)
         if slow[max(bisect(places, u) - 1, 0)]:
             found.append(

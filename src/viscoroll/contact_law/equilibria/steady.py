@@ -88,6 +88,9 @@ def steady(
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
+    elif loads.gains.omega and law.cover is not None:
+        allowed = "a feedback on V alone: with one on omega equilibria on covers are not searched for"
+        raise ParameterError("omega", "fed back", allowed)
     elif loads.gains.omega:
         rolling = scan_states(law, loads)
     else:
@@ -95,7 +98,7 @@ def steady(
     neutral = elastic and loads.given is None and not gained
     resting = _loads_at_rest(loads, neutral)
     if resting.size:
-        rolling = States.joined(rolling, States.at_rest(loads, resting, law.T_mean))
+        rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
     count = np.bincount(existing.load, minlength=loads.mu.size)
     maximum = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).maximum

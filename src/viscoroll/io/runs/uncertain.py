@@ -26,7 +26,7 @@ _SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive")
 #: keys that a name leaves out, or has in another form
 _WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
 #: of a material, what may be uncertain
-_SOLID = ("E", "nu", "prony", "creep", "temperature")
+_SOLID = ("E", "nu", "prony", "creep", "temperature", "thickness")
 _ONE = {"distribution", "file", "column"}
 
 

@@ -7,7 +7,7 @@ from ..compile.jit import kernel
 from .collocation import NODES, WIDE, N, rise_at, rise_terms
 from .load import BRAKE
 from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, extremes, may_end
-from .rates import creep_limit, edge
+from .rates import creep_at, edge
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 from .records import SPEED as PRESCRIBED_V
 
@@ -131,7 +131,7 @@ def _itself(event, v, frame, case):
     if event == SLOW:
         return max(abs(speed), abs(second)) - case.limits.rest
     if event == STOP:
-        return frame.spin * (1.0 + creep_limit(speed, case.scene) * second)
+        return frame.spin * (1.0 + creep_at(speed, second, case.scene))
     return edge(speed, second, frame, by_value(case.scene))
 
 

@@ -5,6 +5,8 @@ Rolling off in the direction where V' > 0, d is that at which the right side of 
 
     2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
 
+(of a cover with L d + 2 kappa delta_0/mu in place of d on the right).
+
 Its left side less its right one falls with d where mu <= 2 kappa, and for |d| < 1 there is a root or slip is full from
 the start: one way on.  Where mu > 2 kappa it falls from d = -2 kappa/mu on, where omega' = 0, and a force that holds
 nearly what friction can leaves two ways.
@@ -14,7 +16,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.by_reference import by_value
 from ..compile.jit import kernel
+from ..rows.cover import of_cover
+from ..rows.law import creep_at_rest
 from .load import brakes, constant, load_at, piece_end
 from .rates import inertia_at
 from .records import Frame, Load
@@ -37,15 +42,21 @@ def _pull(d, load, scene):
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.per_V * (Q + load.force) + load.V_rate
     omega_rate = load.per_omega * (load.torque - Q) + load.omega_rate
-    per = 2.0 * scene.kappa / scene.mu
-    slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - d * load.per_V * Q_d
-    return (omega_rate - V_rate) * per - d * V_rate, slope, V_rate
+    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
+    per = 2.0 * scene.kappa / scene.mu / L
+    tilt = d + free * per if of_cover(by_value(scene.law).free) else d
+    slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - tilt * load.per_V * Q_d
+    return (omega_rate - V_rate) * per - tilt * V_rate, slope, V_rate
 
 
 @kernel(inline=True)
 def _turning(scene):
     """d at which omega stays 0 as V grows from 0; in partial slip, above -1, only where mu > 2 kappa."""
-    return -2.0 * scene.kappa / scene.mu
+    law = by_value(scene.law)
+    if law.free is None:
+        return -2.0 * scene.kappa / scene.mu
+    L, free = creep_at_rest(scene.kappa, law)
+    return -2.0 * scene.kappa / scene.mu / L * (1.0 + free)
 
 
 @kernel
@@ -94,11 +105,12 @@ def _burdened(load, scene):
 def _crest(load, scene):
     """Where :func:`_pull` has its local maximum over d < 0, of which it is a polynomial of degree 3.
 
-    With Q = mu (2 d + d^2) and k = mu/(2 kappa) the terms with d are
+    With Q = mu (2 d + d^2), k = mu L/(2 kappa) and W = per_omega + (1 + delta_0) per_V the terms with d are
 
-        -[2 mu (per_omega + per_V)/k + C] d - mu [(per_omega + per_V)/k + 2 per_V] d^2 - mu per_V d^3
+        -[2 mu W/k + C] d - mu [W/k + 2 per_V] d^2 - mu per_V d^3
 
-    where C = per_V f + V_rate, so that of both places with slope 0 the right one is the maximum.
+    where C = per_V f + V_rate, so that of both zeros of the slope the right one is the maximum.  Of a half-space at
+    rest L = 1 and delta_0 = 0.
 
     Parameters
     ----------
@@ -112,7 +124,8 @@ def _crest(load, scene):
     float
         d there; -inf where the polynomial falls for all d.
     """
-    moved = (load.per_omega + load.per_V) * 2.0 * scene.kappa
+    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
+    moved = (load.per_omega + load.per_V * (1.0 + free)) * 2.0 * scene.kappa / L
     first, second = -2.0 * moved - load.per_V * load.force - load.V_rate, -moved - 2.0 * scene.mu * load.per_V
     # the larger root of first + 2 second d - 3 mu per_V d^2, with second < 0
     under = second * second + 3.0 * scene.mu * load.per_V * first
@@ -231,6 +244,7 @@ def depart(tau, piece, case):
 def _slide_off(when, piece, braked, band, case):
     """Full slip out of rest, of the sign that lasts: with omega - V beyond this share of V."""
     scene = case.scene
+    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
     load = load_at(when, piece, Frame(True, 1.0, 1.0, 0.0, False), case)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu
@@ -239,7 +253,7 @@ def _slide_off(when, piece, braked, band, case):
         spin = np.sign(free) if braked and abs(free) > load.brake else 0.0
         locked = braked and spin == 0.0
         omega_rate = 0.0 if locked else load.per_omega * (free - spin * load.brake) + load.omega_rate
-        if sigma * (omega_rate - V_rate) > band * abs(V_rate):
+        if sigma * (omega_rate - V_rate * (1.0 + free)) > band * L * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return SLIDES, Frame(True, direction, direction * sigma, direction * spin, locked), 0.0
     return STAYS, Frame(False, 1.0, 1.0, 0.0, False), 0.0
