@@ -99,6 +99,35 @@ def test_stated_errors_are_those_of_other_points(name, table):
             assert tol.GRID_LESS * stated <= error <= tol.GRID_MORE * stated, (field, way)
 
 
+def test_largest_error_is_where_it_is_stated(name, table):
+    """Both errors occur at the point that the attributes name, which has six digits."""
+    for field in schema.fields_of(table):
+        for way in ("spline", "linear"):
+            stated, at = (table[field].attrs[key] for key in (f"{way}_error", f"{way}_error_at"))
+            points = {axis: float(value) for axis, value in (part.split(" = ") for part in at.split(", "))}
+            assert set(points) == set(table[field].dims)
+            whole = {axis: np.array(points.get(axis, table[axis].values[0])) for axis in schema.axes_of(table)}
+            linear = way == "linear"
+            found = vr.tables.Interpolant(table, linear=linear)(field, **points)[field]
+            assert close(abs(found - exact(name, whole, (field,))[field]), stated, rel=tol.GRID_PLACE), (field, way)
+
+
+def test_splines_keep_the_bounds_of_the_law(name, table):
+    """|Q| <= mu P and 0 <= beta <= 1 beside the kink at delta_star, where a cubic spline alone overshoots."""
+    axes = schema.axes_of(table)
+    fine = {axis: np.linspace(*table[axis].values[[0, -1]], 60) for axis in axes}
+    fine["delta"] = np.linspace(-0.04, 0.04, 801)
+    found = vr.tables.interpolate(
+        table, ("Q", "beta"), **dict(zip(axes, np.meshgrid(*fine.values(), indexing="ij", sparse=True), strict=True))
+    )
+    most = table.attrs["mu"] * table.attrs.get("load", 1.0)
+    assert np.abs(found.Q).max() <= most
+    assert found.beta.min() >= 0.0
+    assert found.beta.max() <= 1.0
+    if name != "law":  # its creeps end below delta_star
+        assert np.abs(found.Q).max() == most
+
+
 def test_interpolation(table):
     axes = schema.axes_of(table)
     points = dict(zip(axes, np.meshgrid(*(table[axis].values for axis in axes), indexing="ij"), strict=True))
@@ -194,4 +223,5 @@ def test_modelica(name, table, tmp_path):
         body = text.partition(f"double {field}({exact.shape[0]},{exact.shape[1]})")[2]
         found = re.sub("#.*", "", body).split()[: exact.size]
         assert np.array_equal(np.array(found, dtype=float).reshape(exact.shape), exact)
-        assert f"# error_{field} = {table[field].attrs['linear_error']:.3g}\n" in text
+        error, at = (table[field].attrs[key] for key in ("linear_error", "linear_error_at"))
+        assert f"# error_{field} = {error:.3g} at {at}\n" in text

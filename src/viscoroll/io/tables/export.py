@@ -96,7 +96,7 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
         "M: CombiTable1Ds, u = V; CombiTimeTable reads the same layout",
         "For V < 0 look up |V| and turn the sign of Q and M.  Do not extrapolate (Extrapolation.NoExtrapolation).",
         "Absolute error with Smoothness.LinearSegments, largest of random points between the nodes:",
-        *(f"error_{name} = {linear_error(table[name]):.3g}" for name in ("Q", "M")),
+        *(f"error_{name} = {linear_error(table[name]):.3g}{_place(table[name])}" for name in ("Q", "M")),
     ]
     return ["#1", *(f"# {line}" for line in lines)]
 
@@ -105,6 +105,12 @@ def linear_error(field: xr.DataArray) -> float:
     """The stated error of linear interpolation, which before 1.2 had another name; NaN of an atlas."""
     spline = field.attrs.get("interpolation_error", np.nan) if "V" in field.dims else np.nan
     return float(field.attrs.get("linear_error", spline))
+
+
+def _place(field: xr.DataArray) -> str:
+    """Where the error of linear interpolation is largest, " at V = ..."; "" of tables that do not state it."""
+    at = field.attrs.get("linear_error_at")
+    return f" at {at}" if at else ""
 
 
 def _matrix(name: str, values: Any) -> str:
@@ -121,9 +127,10 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
     content: dict[str, Any] = arrays | {
         "dimensions": {name: ", ".join(map(str, table[name].squeeze().dims)) for name in names},
         "linear_error": {name: linear_error(table[name]) for name in names},
+        "linear_error_at": {name: table[name].attrs.get("linear_error_at", "") for name in names},
         "about": f"viscoroll {__version__}. {table.attrs['title']}. {PAPER}. Breakpoints and tables for n-D lookup; "
         "dimensions says which breakpoints a table is over. linear_error: absolute, of linear interpolation in all "
-        f"breakpoints. {table.attrs['comment']}",
+        f"breakpoints; linear_error_at: where it is largest. {table.attrs['comment']}",
         "given": {name: table.attrs[name] for name in (*_GIVEN, "material") if name in table.attrs},
     }
     with replacing(path) as temporary:

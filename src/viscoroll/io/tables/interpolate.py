@@ -41,6 +41,9 @@ class Interpolant:
         # files before 1.2 state the errors of linear interpolation in V, delta and alpha
         self._linear = linear or table.attrs[schema.KIND] in ("literal", "material")
         self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
+        # bounds that the law keeps, and a spline near the kink at delta_star does not
+        most = friction_limit(table)
+        self._bounds = {"Q": (-most, most), "Q_over_mu": (-1.0, 1.0), "beta": (0.0, 1.0)}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolated ``fields`` at ``points``; see :func:`interpolate`."""
@@ -52,6 +55,8 @@ class Interpolant:
             dims, values = self._spline(name)
             if dims:
                 values = values(np.stack([places[dim] for dim in dims], axis=-1))
+            if name in self._bounds:
+                values = np.clip(values, *self._bounds[name])
             results[name] = np.broadcast_to(values, shape).copy() if shape else float(values)
         return Values(results, title="Interpolated")
 
@@ -87,6 +92,21 @@ class Interpolant:
             axes = [self._mapped(dim, self._table[dim].values) for dim in dims]
             self._splines[name] = dims, spline(field.values, axes, 1 if self._linear else 3)
         return self._splines[name]
+
+
+def friction_limit(table: xr.Dataset) -> float:
+    """Largest |Q| that the law admits, Eq. (15): mu, in SI units mu times the load; infinite where no mu is stated.
+
+    Parameters
+    ----------
+    table : a grid.
+
+    Returns
+    -------
+    float
+        In the unit of Q: dimensionless, or N/m.
+    """
+    return float(table.attrs.get("mu", np.inf)) * float(table.attrs.get("load", 1.0))
 
 
 def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
@@ -128,8 +148,9 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
 
     Notes
     -----
-    Tensor not-a-knot cubic spline in ln V, delta and ln alpha; the error at random points is stated in
-    ``spline_error`` of each field, which another point may exceed (``tests/tables/test_grids.py``).  Tables over
+    Tensor not-a-knot cubic spline in ln V, delta and ln alpha, clipped to |Q| <= mu P and 0 <= beta <= 1; the error at
+    random points is stated in ``spline_error`` of each field, which another point may exceed
+    (``tests/tables/test_grids.py``), and its place in ``spline_error_at``.  Tables over
     (V, delta) of earlier versions are interpolated linearly, as their files state.  Each call builds the splines anew,
     which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
     (:func:`viscoroll.io.tables.law`, :func:`viscoroll.contact`) has none of these errors.
