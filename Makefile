@@ -5,7 +5,7 @@ RUN := $(BIN)/python
 CONFIG ?= pipeline/config.toml
 SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
 STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
-TABLES := $(addprefix data/tables/,law.nc paper.nc rubber.nc rubber-on-steel.nc)
+TABLES := $(addprefix data/tables/,law.nc paper.nc rubber.nc rubber-on-steel.nc grid.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup demo tables validate corners figures bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
@@ -23,7 +23,7 @@ setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 demo: out/index.html ## tables, motions from them, validation, a benchmark, an ensemble of 10^6, figures and a page over all
 	@echo "Everything on one page: $<"
 
-tables: $(TABLES) ## build data/tables/*.nc: the law of every alpha, of the paper's material, of a rubber, and of that on steel
+tables: $(TABLES) ## build data/tables/*.nc: the law of every alpha, of the paper's material, of a rubber, and of that on steel; a grid of Q, M, beta, lam and epsilon
 $(TABLES) &: pipeline/offline.py $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.offline --config $(CONFIG)
 
