@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from ...core.checks import broadcast_shape, checked
 from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
 from ...core.results import Values
-from ...core.splines import compiled, spline
 from ...core.typed import Floats
+from ...materials.grid_splines import compiled, spline
 from ...materials.law_grid import friction_limit
 from . import schema
 
