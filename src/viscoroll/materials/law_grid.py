@@ -34,8 +34,8 @@ class LawGrid:
 
     Attributes
     ----------
-    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.grid_splines.compiled` writes them; over load and load
-        times radius, or N/m and N.
+    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.grid_splines.compiled` writes them; over
+        load and load times radius, or N/m and N.
     V : slowest and fastest speed; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
     slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond.

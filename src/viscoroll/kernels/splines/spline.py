@@ -1,8 +1,8 @@
 """A tensor spline over V, delta and alpha at one point: its value and its slopes.
 
-A spline is one vector of doubles (``viscoroll.materials.grid_splines`` writes it): a head, its three axes, its coefficients.  An
-axis is a head, the edges of its intervals, and for each interval the basis splines that are not 0 there, as polynomials
-of the distance from its left edge.
+A spline is one vector of doubles: a head, its three axes, its coefficients.  An axis is a head, the edges of its
+intervals, and for each interval the basis splines that are not 0 there, as polynomials of the distance from its left
+edge.  ``viscoroll.materials.grid_splines`` writes it.
 """
 
 from __future__ import annotations
