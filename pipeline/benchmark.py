@@ -2,10 +2,11 @@
 
     python -m pipeline.benchmark [--config FILE] [-o FOLDER]
 
-The paper's motions and random ones, in one compiled integrator (pipeline/rosenbrock.py): from splines in grids of Q and
-M over V and delta, from the rows of the law, and from root solves at every call; beside them ``vr.roll``.  The truth is
-out/direct.nc, root solves of the printed equations in SciPy's integrators, and for random starts ``vr.ensemble`` at a
-tight tolerance.  Size and error of every table stand beside.  Peers of other houses stand in pipeline/evidence/bench.
+The paper's motions and random ones, in one compiled integrator (:mod:`benchmark_integrator`): from splines in grids of
+Q and M over V and delta, from the rows of the law, and from root solves at every call; beside them ``vr.roll``.  The
+truth is out/direct.nc, root solves of the printed equations in SciPy's integrators, and for random starts
+``vr.ensemble`` at a tight tolerance.  Size and error of every table stand beside.  Peers of other houses stand in
+pipeline/evidence/bench.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ import viscoroll as vr
 from viscoroll.core.plots.style import new_figure, save
 from viscoroll.materials.law_store import errors_of
 
-from . import rosenbrock, stage
+from . import benchmark_integrator, stage
 from .runtime import least_seconds
 from .validate import loaded
 
@@ -74,7 +75,7 @@ def laws(scene: vr.Scene, settings: Benchmark) -> Iterator[Law]:
     rows = vr.law(scene.replace(material=vr.load_law(path))).jitted
     worst = max(errors_of(vr.tables.load(path)).values())
     yield Law("rows", rows, settings.rtol, path.stat().st_size / 1e3, worst)
-    yield Law("root solves", rosenbrock.RootSolves(scene), settings.root_solves)
+    yield Law("root solves", benchmark_integrator.RootSolves(scene), settings.root_solves)
 
 
 def ways(
@@ -84,7 +85,7 @@ def ways(
 
     def integrated(law: Law, rtol: float) -> NDArray:
         out = np.empty((2, V0.size, t.size))
-        rosenbrock.motions(law.call, scene.gamma, scene.j, scene.mu / scene.kappa, V0, omega0, t, rtol, out)
+        benchmark_integrator.motions(law.call, scene.gamma, scene.j, scene.mu / scene.kappa, V0, omega0, t, rtol, out)
         return out
 
     def rolled(rtol: float) -> NDArray:

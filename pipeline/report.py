@@ -138,11 +138,11 @@ def page(out: Path, found: dict[str, dict[str, Any]]) -> str:
     return "\n".join(part for part in parts if part) + "\n"
 
 
-def make(out: Path) -> None:
+def work(config: Path, out: Path) -> stage.Outcome:
+    del config  # nothing of it
     write_text(out / "index.html", page(out, records(out)))
-    print(f"Everything on one page: {stage.shown(out / 'index.html')}")
+    return stage.Outcome([out / "index.html"])
 
 
 if __name__ == "__main__":
-    given = stage.parser(__doc__).parse_args()
-    sys.exit(stage.told("report", lambda: make(given.output)))
+    sys.exit(stage.run("report", None, work, __doc__))

@@ -27,8 +27,8 @@ from . import stage
 
 #: (V0, omega0) -> V and omega at the times of a stage
 Way = Callable[[float, float], tuple[NDArray, NDArray]]
-#: A call of so many seconds is timed once: its noise is small.
-ENOUGH = 0.3
+#: A call of so many seconds is timed once: it repeats what it times some hundred times by itself.
+ENOUGH = 0.05
 #: of the contact along a motion
 CONTACT = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 

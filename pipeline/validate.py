@@ -28,7 +28,7 @@ from viscoroll.core.files import write_dataset, write_text
 from viscoroll.io.tables.check import Check
 from viscoroll.io.tables.store import is_law
 
-from . import corners, stage
+from . import stage
 from .runtime import motions
 
 #: what the record says -> of which checks the worst
@@ -108,6 +108,8 @@ def work(settings: Validate, out: Path) -> stage.Outcome:
 
 if __name__ == "__main__":
     if "--corners" in sys.argv:
+        from . import corners  # needs packages of the development environment
+
         sys.argv.remove("--corners")
         sys.exit(stage.run("corners", corners.Corners, corners.work, corners.__doc__))
     sys.exit(stage.run("validate", Validate, work, __doc__))

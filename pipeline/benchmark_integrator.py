@@ -9,12 +9,21 @@ from __future__ import annotations
 
 import numba
 import numpy as np
+from numba import carray
 from numba.core import types
-from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.printed.law import direct_contact_length, direct_delta_star, direct_moment, direct_stick
-from viscoroll.kernels.printed.law import direct_traction as traction_of
+from viscoroll.kernels.compile.deferred import EntryPipeline
+from viscoroll.kernels.compile.intrinsics import function_address, record_at
+from viscoroll.kernels.compile.jit import kernel
+from viscoroll.kernels.printed.law import (
+    direct_contact_length,
+    direct_delta_star,
+    direct_moment,
+    direct_stick,
+    direct_traction,
+)
+from viscoroll.kernels.rows.bound import OUT
 from viscoroll.kernels.rows.jitted import LawType
 
 #: Steps of a motion before it is given up: some hundred times what the paper's motions take at the tightest tolerance.
@@ -23,6 +32,8 @@ MOST_STEPS = 100_000
 _FLOOR = 1e-10
 #: Relative step of the differences that slopes of root solves are: it costs half of the digits.
 _STEP = 1e-8
+#: User data of the root solves: address of their function, and the scene.
+_SCENE = np.dtype([("function", np.int64), ("alpha", np.float64), ("kappa", np.float64), ("mu", np.float64)])
 
 
 @numba.njit(error_model="numpy")
@@ -80,24 +91,26 @@ def motions(law, gamma, j, mu_over_kappa, V0, omega0, t, rtol, out):
             out[0, m, n], out[1, m, n] = (y.real, y.real + y.imag) if done else (np.nan, np.nan)
 
 
-@numba.njit(error_model="numpy")
-def _loads(V, omega, alpha, kappa, mu):
+@kernel
+def _loads(V, omega, scene):
     """(Q, M) by two root solves of the printed equations."""
+    alpha, kappa, mu = scene.alpha, scene.kappa, scene.mu
     speed, delta = abs(V), abs((omega - V) / V)
     lam, zeta, epsilon, _ = direct_contact_length(kappa * speed, alpha)
     Q = mu
     if delta < direct_delta_star(kappa, mu, lam, epsilon):
         beta, _ = direct_stick(delta, kappa, mu, lam, epsilon, zeta, alpha)
-        Q = traction_of(beta, delta, kappa, mu, lam, epsilon, zeta)
+        Q = direct_traction(beta, delta, kappa, mu, lam, epsilon, zeta)
     return np.copysign(Q, omega - V), np.copysign(direct_moment(kappa, lam, epsilon, zeta, alpha), V)
 
 
-@numba.cfunc(types.int32(types.float64, types.float64, types.CPointer(types.float64), types.CPointer(types.float64)))
-def _root_solves(V, omega, out, numbers):
-    alpha, kappa, mu, h = numbers[1], numbers[2], numbers[3], _STEP * abs(V)
-    Q, M = _loads(V, omega, alpha, kappa, mu)
-    Q_V, M_V = _loads(V + h, omega, alpha, kappa, mu)
-    Q_omega, _ = _loads(V, omega + h, alpha, kappa, mu)
+# as a kernel that Python calls, for kernels below it are compiled as parts of it; but not kept on disk
+@numba.njit(pipeline_class=EntryPipeline, error_model="numpy")
+def _root_solves(V, omega, to, scenes):
+    out, scene, h = carray(to, OUT), record_at(scenes), _STEP * abs(V)
+    Q, M = _loads(V, omega, scene)
+    Q_V, M_V = _loads(V + h, omega, scene)
+    Q_omega, _ = _loads(V, omega + h, scene)
     out[0], out[1], out[2], out[3] = Q, M, 0.5 * M, 0.5 * M
     out[4], out[5] = (Q_V - Q) / h, (Q_omega - Q) / h
     out[6] = out[7] = 0.5 * (M_V - M) / h
@@ -110,6 +123,7 @@ class RootSolves:
     _numba_type_ = LawType()
 
     def __init__(self, scene: vr.Scene) -> None:
-        self._numbers: NDArray[np.float64] = np.array([0.0, scene.alpha, scene.kappa, scene.mu])
-        self._numbers[:1].view(np.int64)[0] = _root_solves.address
-        self.address = int(self._numbers.ctypes.data)
+        kinds = types.int32, types.float64, types.float64, types.CPointer(types.float64)
+        address = function_address(_root_solves, _SCENE, *kinds)
+        self._scene = np.array([(address, scene.alpha, scene.kappa, scene.mu)], _SCENE)
+        self.address = int(self._scene.ctypes.data)
