@@ -3,61 +3,54 @@ PYTHON ?= python3
 BIN := .venv/bin
 RUN := $(BIN)/python
 CONFIG ?= pipeline/config.toml
-SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
-STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
-TABLES := $(addprefix data/tables/,law.nc paper.nc rubber.nc rubber-on-steel.nc)
+STAGES := $(RUN) -m pipeline --config $(CONFIG)
+INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate corners figures bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
+.PHONY: help setup demo tables validate corners figures runtime ensemble benchmark bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-14s %s\n", $$1, $$2}'
 
-setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
-.venv/stamp: pyproject.toml constraints.txt
+setup: .venv/dev ## create .venv with everything pinned in constraints.txt
+# What the stages of the demo need, and then what tests and checks need.
+.venv/runs: pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.version_info < (3, 11) and sys.exit("viscoroll needs Python 3.11 or newer, $(PYTHON) is %d.%d: make PYTHON=..." % sys.version_info[:2])'
 	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	$(INSTALL) -e '.[runs]'
+	touch $@
+.venv/dev: .venv/runs
+	$(INSTALL) -e '.[dev]'
 	touch $@
 
-demo: out/index.html ## tables, motions from them, validation, a benchmark, an ensemble of 10^6, figures and a page over all
-	@echo "Everything on one page: $<"
+demo: .venv/runs ## tables, motions from them, validation, a benchmark, an ensemble of 10^6, figures and a page over all
+	$(STAGES)
+	@echo "Everything on one page: out/index.html"
 
-tables: $(TABLES) ## build data/tables/*.nc: the law of every alpha, of the paper's material, of a rubber, and of that on steel
-$(TABLES) &: pipeline/offline.py $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.offline --config $(CONFIG)
+tables: .venv/runs ## build data/tables/*.nc: the law of every alpha, of the paper's material, of a rubber, and of that on steel; a grid of Q, M, beta, lam and epsilon
+	$(STAGES) offline
 
-out/runtime.nc: pipeline/runtime.py $(TABLES) $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.runtime --config $(CONFIG)
+validate: .venv/runs ## tables and motions against direct solves; exit code 1 beyond a stated tolerance
+	$(STAGES) validate
 
-out/ensemble.nc: pipeline/ensemble.py $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.ensemble --config $(CONFIG)
+figures: .venv/runs ## the paper's figures and more, as PNG under out/figures
+	$(STAGES) figures
 
-validate: out/validation.csv ## tables and motions against direct solves; exit code 1 beyond a stated tolerance
-out/validation.csv: pipeline/validate.py $(wildcard pipeline/validation/*.py) out/runtime.nc $(TABLES) $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.validate --config $(CONFIG)
+runtime ensemble benchmark: .venv/runs
+	$(STAGES) $@
 
 corners: setup ## law and motions at the ends of what the package takes: out/corners.csv (a minute or two)
 	$(RUN) -m pipeline.validate --corners --config $(CONFIG)
-
-out/benchmark.csv: pipeline/benchmark.py out/validation.csv $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.benchmark --config $(CONFIG)
-
-figures: out/figures/figure-5.png ## the paper's figures and more, as PNG under out/figures
-out/figures/figure-5.png: pipeline/figures/__main__.py out/ensemble.nc $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.figures --config $(CONFIG)
-
-out/index.html: pipeline/report.py out/validation.csv out/benchmark.csv out/ensemble.nc out/figures/figure-5.png
-	$(RUN) -m pipeline.report --config $(CONFIG)
 
 bench: setup peer-tools ## run time against error beside the peers, which it installs (long)
 	$(RUN) -m pipeline.evidence.bench
 	$(RUN) -m pipeline.evidence.bench.figures
 	$(RUN) -m pipeline.evidence.document
 
-numbers: setup figures ## measure again what README and docs state, and put it there (about half an hour)
+numbers: setup figures benchmark ## measure again what README and docs state, and put it there (about half an hour)
 	$(RUN) -m pipeline.evidence.measure
 	$(RUN) -m pipeline.evidence.measure.ensembles
+	$(RUN) -m pipeline.evidence.measure.grids
 	-$(RUN) -m pipeline.evidence.measure.outside
 	-$(RUN) -m pipeline.evidence.measure.identification
 	$(RUN) -m pipeline.evidence.document
@@ -93,7 +86,7 @@ PEERS := libgsl-dev pkg-config gfortran g++ cmake
 peer-tools: setup debian-lists
 	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends $(PEERS) >/dev/null \
 	  || echo "bench: not installed: $(PEERS)"
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]' \
+	$(INSTALL) -e '.[bench]' \
 	  || echo "bench: not installed: numbalsoda"
 
 DEBIAN := gcc g++ gfortran netcdf-bin libnetcdf-dev libnetcdff-dev octave octave-netcdf r-base-core r-cran-ncdf4 nodejs
@@ -104,15 +97,15 @@ interop: interop-tools ## laws in C, C++, Fortran, Octave, R, Node, FMUs, ncdump
 interop-tools: setup debian-lists
 	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends $(DEBIAN) >/dev/null \
 	  || echo "interop: not installed: $(DEBIAN)"
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[interop]' \
+	$(INSTALL) -e '.[interop]' \
 	  || echo "interop: not installed: compliance-checker, fmpy"
 
 docs: .venv/docs ## the site, every example of it run: docs/_build/html/index.html (a minute or two)
 	rm -rf docs/_build docs/api docs/gallery docs/tutorial
 	$(RUN) -m sphinx -W --keep-going -n -E -q -b html docs docs/_build/html
-.venv/docs: .venv/stamp
+.venv/docs: .venv/dev
 	$(RUN) -c 'import fmpy, sphinx_gallery, pydata_sphinx_theme' 2>/dev/null \
-	  || $(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	  || $(INSTALL) -e '.[docs]'
 	touch $@
 
 test-site: .venv/docs site-tools ## build the site and open every page of it in a browser, which it installs
@@ -130,7 +123,7 @@ fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECOND
 mutate: setup ## plant defects in the kernels and see which the tests notice (half an hour)
 	$(RUN) -m pipeline.evidence.mutate
 
-torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 5 minutes)
+torture: setup tables ## kill, flip, cut and starve files and count what goes unnoticed (about 5 minutes)
 	$(RUN) -m pipeline.evidence.torture
 	$(RUN) -m pipeline.evidence.document
 

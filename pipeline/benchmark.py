@@ -1,115 +1,141 @@
-"""Benchmark: time against error of Eq. (22), by every way from the law to a motion -> out/benchmark.csv, its figure.
+"""Benchmark: time against error of Eq. (22) from tables and from root solves -> out/benchmark.csv, its figure.
 
     python -m pipeline.benchmark [--config FILE] [-o FOLDER]
 
-``vr.roll``; ``vr.law`` in SciPy's Radau; and splines in a grid of Q and M over (V, delta), as look-up blocks have it,
-likewise.  The truth is out/direct.nc, root
-solves of the printed equations.  Peers of other houses stand in pipeline/evidence/bench.
+The paper's motions and random ones, in one compiled integrator (:mod:`benchmark_integrator`): from splines in grids of
+Q and M over V and delta, from the rows of the law, and from root solves at every call; beside them ``vr.roll``.  The
+truth is out/direct.nc, root solves of the printed equations in SciPy's integrators, and for random starts
+``vr.ensemble`` at a tight tolerance.  Size and error of every table stand beside.  Peers of other houses stand in
+pipeline/evidence/bench.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 from viscoroll.core.plots.style import new_figure, save
+from viscoroll.materials.law_store import errors_of
 
-from . import stage
-from .runtime import Way, by_roll, motions
-from .validate import errors, loaded
+from . import benchmark_integrator, stage
+from .runtime import least_seconds
+from .validate import loaded
 
-Rates = Callable[[float, NDArray], Any]
+#: Tolerance of the truth of random starts, far below what is compared.
+TRUTH_RTOL = 1e-11
+#: Every so many of the times of out/direct.nc are compared, the last among them: the integrator stops at each.
+TIMES = 20
 
 
 class Benchmark(msgspec.Struct, forbid_unknown_fields=True):
-    """[benchmark]: the tolerances, those that splines are tried at; ends and nodes of their grid."""
-
-    rtol: list[float]
-    splines: list[float]
-    V: tuple[float, float, int]
-    delta: tuple[float, int]
-
-
-def by_law(scene: vr.Scene) -> Rates:
-    """Rates of (V, omega) by the law of a scene."""
-    law, g, j = vr.law(scene), scene.gamma, scene.j
-
-    def rates(_: float, y: NDArray) -> Any:
-        f = law(*y)
-        return g * (f.Q - f.M_half_space), g / j * (-f.Q - f.M_cylinder)
-
-    return rates
-
-
-def by_radau(rates: Rates, t: NDArray, rtol: float) -> Way:
-    """SciPy's Radau; NaN where it gives up.
-
-    V falls by eight decades: its absolute tolerance lies below its end, else its sign, and M with it, flips for ever.
+    """[benchmark]: the file of rows; sizes of the grids, of n by n nodes, and ends of their V; tolerances of all, and
+    of root solves; random starts, even in [-speed, speed], and their seed.
     """
 
-    def way(V0: float, omega0: float) -> tuple[NDArray, NDArray]:
-        found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, rtol=rtol, atol=1e-6 * rtol)
-        return (found.y[0], found.y[1]) if found.success else (np.full(t.size, np.nan), np.full(t.size, np.nan))
-
-    return way
-
-
-def by_grid(scene: vr.Scene, V: NDArray, delta: NDArray) -> Rates:
-    """Rates by splines in a grid of Q and M; at the edges its last values are held."""
-    look_up, g, j = vr.tables.Interpolant(vr.tables.build(scene, V, delta=delta)), scene.gamma, scene.j
-
-    def rates(_: float, y: NDArray) -> Any:
-        speed, turn = np.clip(abs(y[0]), V[0], V[-1]), np.sign(y[0])
-        creep = np.clip((y[1] - y[0]) / y[0], delta[0], delta[-1])
-        f = look_up(("Q", "M"), V=speed, delta=creep)
-        Q, half = turn * f.Q, 0.5 * turn * f.M
-        return g * (Q - half), g / j * (-Q - half)
-
-    return rates
+    law: str
+    sizes: list[int]
+    V: tuple[float, float]
+    rtol: list[float]
+    root_solves: list[float]
+    motions: int
+    speed: float
+    seed: int
 
 
-def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
-    """(By what, tolerance, way) of all."""
-    scene = vr.presets.PAPER_SECTION_5
-    V, delta = vr.tables.spread(*settings.V, "log"), np.linspace(-settings.delta[0], *settings.delta)
-    law, grid = by_law(scene), by_grid(scene, V, delta)
+class Law(NamedTuple):
+    """A law in compiled code: its name, what is called, the tolerances, size of its file in kB and error of Q there."""
+
+    name: str
+    call: Any
+    rtol: list[float]
+    size: float = np.nan
+    error: float = np.nan
+
+
+def laws(scene: vr.Scene, settings: Benchmark) -> Iterator[Law]:
+    """The laws that are compared."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "grid.nc"
+        for n in settings.sizes:
+            V = vr.tables.spread(*settings.V, n, "log")
+            grid = vr.tables.build(scene, V, delta=vr.tables.creep_nodes(scene, V, n))
+            vr.tables.save(grid, path)
+            splines = vr.law(vr.load_law(path)).jitted
+            yield Law(f"grid, {n} by {n}", splines, settings.rtol, path.stat().st_size / 1e3, grid.Q.spline_error)
+    path = stage.ROOT / settings.law
+    rows = vr.law(scene.replace(material=vr.load_law(path))).jitted
+    worst = max(errors_of(vr.tables.load(path)).values())
+    yield Law("rows", rows, settings.rtol, path.stat().st_size / 1e3, worst)
+    yield Law("root solves", benchmark_integrator.RootSolves(scene), settings.root_solves)
+
+
+def ways(
+    scene: vr.Scene, settings: Benchmark, V0: NDArray, omega0: NDArray, t: NDArray
+) -> Iterator[tuple[Law, float, Callable[[], NDArray]]]:
+    """(Law, tolerance, what gives V and omega of all motions, (2, starts, times))."""
+
+    def integrated(law: Law, rtol: float) -> NDArray:
+        out = np.empty((2, V0.size, t.size))
+        benchmark_integrator.motions(law.call, scene.gamma, scene.j, scene.mu / scene.kappa, V0, omega0, t, rtol, out)
+        return out
+
+    def rolled(rtol: float) -> NDArray:
+        found = [vr.roll(scene, *start, t, rtol=rtol) for start in zip(V0.tolist(), omega0.tolist(), strict=True)]
+        return np.array([[one.V for one in found], [one.omega for one in found]])
+
+    for law in laws(scene, settings):
+        for rtol in law.rtol:
+            yield law, rtol, partial(integrated, law, rtol)
     for rtol in settings.rtol:
-        yield "roll", rtol, by_roll(scene, t, rtol)
-        yield "vr.law, SciPy's Radau", rtol, by_radau(law, t, rtol)
-    for rtol in settings.splines:
-        yield f"splines in {V.size} by {delta.size}, SciPy's Radau", rtol, by_radau(grid, t, rtol)
+        yield Law("roll", None, settings.rtol), rtol, partial(rolled, rtol)
 
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
-    """Time against error."""
-    figure, axes = new_figure("Time against error of the paper's motions")
-    for marker, name in zip("os^", dict.fromkeys(row["law by"] for row in rows), strict=True):
+    """Time against error of motions, and size against error of the tables."""
+    figure, (left, right) = new_figure("Motions and tables of the law", 1, 2, (9.6, 4.6))
+    names = dict.fromkeys(row["law by"] for row in rows)
+    for marker, name in zip("osd^vP*X", names, strict=False):
         own = [row for row in rows if row["law by"] == name]
-        axes.loglog([row["error"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name)
-    axes.set(xlabel="largest error of V and ω over the first speed", ylabel="time of a motion, ms")
-    figure.legend(loc="outside upper center", ncols=2)
+        left.loglog(
+            [row["error, random"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name
+        )
+        right.loglog(own[0]["kB"], own[0]["error of Q"], marker)
+    left.set(xlabel="largest error of V and ω over the first speed", ylabel="time of a motion, ms")
+    right.set(xlabel="size of the file, kB", ylabel="largest error of Q over the load")
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     save(figure, path)
 
 
 def work(settings: Benchmark, out: Path) -> stage.Outcome:
-    truth = loaded(out / "direct.nc")
+    scene, direct = vr.presets.PAPER_SECTION_5, loaded(out / "direct.nc")
+    direct = direct.isel(t=np.arange(direct.t.size - 1, 0, -TIMES)[::-1])
+    starts = np.random.default_rng(settings.seed).uniform(-settings.speed, settings.speed, (2, settings.motions))
+    exact = vr.ensemble(scene, *starts, direct.t.values, rtol=TRUTH_RTOL, method="integrate")
+    truth = np.concatenate([[direct.V, direct.omega], [exact.V, exact.omega]], axis=1)
+    V0, omega0 = np.concatenate([np.transpose([*vr.presets.PAPER_STARTS.values()]), starts], axis=1)
+    first, paper = np.maximum(abs(V0), abs(omega0)), len(vr.presets.PAPER_STARTS)
     rows: list[dict[str, Any]] = []
-    for name, rtol, way in ways(settings, truth.t.values):
-        found = motions(way, truth.t.values, name)
-        error = max(errors(found, truth).values())
-        rows.append({"law by": name, "rtol": rtol, "ms a motion": 1e3 * float(found.seconds.mean()), "error": error})
+    for law, rtol, way in ways(scene, settings, V0, omega0, direct.t.values):
+        found, seconds = least_seconds(way, rtol != law.rtol[0])
+        errors = np.abs(found - truth).max(axis=(0, 2)) / first
+        rows.append({
+            "law by": law.name, "rtol": rtol, "ms a motion": 1e3 * seconds / V0.size,
+            "error, paper": errors[:paper].max(), "error, random": errors[paper:].max(),
+            "kB": law.size, "error of Q": law.error,
+        })  # fmt: skip
     stage.write_rows(out / "benchmark.csv", rows)
     picture = stage.make_folder(out / "figures") / "benchmark.png"
     draw(rows, picture)
-    said = "{law by}, rtol {rtol:g}", "{ms a motion:.3g} ms, error {error:.2g}"
+    said = "{law by}, rtol {rtol:g}", "{ms a motion:.3g} ms, error {error, random:.2g}"
     headline = {said[0].format_map(row): said[1].format_map(row) for row in rows}
     return stage.Outcome([out / "benchmark.csv", picture], headline)
 

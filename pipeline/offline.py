@@ -1,4 +1,5 @@
-"""Offline: the law of every alpha -> data/tables/law.nc, those of the materials of [tables] -> data/tables/NAME.nc.
+"""Offline: the law of every alpha -> data/tables/law.nc, those of the materials of [tables] -> data/tables/NAME.nc, and
+lam, epsilon, beta, Q and M on a grid of V, delta and alpha, by root solves -> data/tables/grid.nc.
 
 python -m pipeline.offline [--config FILE] [--tables FOLDER] [-o FOLDER]
 
@@ -12,12 +13,13 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import msgspec
+import xarray as xr
 
 import viscoroll as vr
 from viscoroll.core.errors import FileError
+from viscoroll.io.config import preset
 from viscoroll.materials.file import SECTIONS, materials_of
 from viscoroll.materials.law_store import errors_of
 
@@ -37,13 +39,26 @@ class Law(msgspec.Struct, forbid_unknown_fields=True):
     name: str = ""
 
 
+class Grid(msgspec.Struct, forbid_unknown_fields=True):
+    """[tables.grid]: the preset; lowest and highest V and how many; how many delta; every alpha; and the largest
+    difference of a node from the rows that is allowed.
+    """
+
+    preset: str
+    V: tuple[float, float, int]
+    delta: int
+    alpha: list[float]
+    allowed: float
+
+
 class Tables(msgspec.Struct, forbid_unknown_fields=True):
-    """[tables]: the largest errors allowed; lowest and highest alpha of law.nc; the materials by name."""
+    """[tables]: the largest errors allowed; lowest and highest alpha of law.nc; the materials by name; the grid."""
 
     allowed: float
     allowed_N: float
     alpha: tuple[float, float]
     laws: dict[str, Law]
+    grid: Grid
 
 
 def build_all(config: Path, folder: Path) -> stage.Outcome:
@@ -52,20 +67,39 @@ def build_all(config: Path, folder: Path) -> stage.Outcome:
     build(outcome, folder / "law.nc", settings, lambda: vr.tables.law(alpha=settings.alpha))
     for name, law in settings.laws.items():
         build(outcome, folder / f"{name}.nc", settings, partial(vr.tables.law, *bodies(config, law)))
+    build_grid(outcome, folder / "grid.nc", settings.grid)
     return outcome
 
 
-def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[], Any]) -> None:
-    """Build, save and report one."""
+def build_grid(outcome: stage.Outcome, path: Path, settings: Grid) -> None:
+    """Build the grid by root solves, save and report it."""
+    scene, V = preset(settings.preset), vr.tables.spread(*settings.V, "log")
+    delta = vr.tables.creep_nodes(scene, V, settings.delta, alpha=settings.alpha)
+    make = partial(vr.tables.build, scene, V, delta=delta, alpha=settings.alpha, method="direct")
+    grid = made(outcome, path, make)
+    worst = max(float(field.attrs["difference_from_rows"]) for field in grid.values())
+    outcome.headline[f"grid: nodes, largest difference from rows (allowed {settings.allowed:g})"] = worst
+    for way in ("spline", "linear"):
+        outcome.headline[f"grid: largest error of Q between nodes, {way}"] = grid.Q.attrs[f"{way}_error"]
+    outcome.failed |= not worst <= settings.allowed
+
+
+def made(outcome: stage.Outcome, path: Path, make: Callable[[], xr.Dataset]) -> xr.Dataset:
+    """Build and save a table; seconds and size go into the report."""
     began = time.perf_counter()
-    law = make()
+    table = make()
     stage.make_folder(path.parent)
-    vr.tables.save(law, path)
-    errors = errors_of(law)
-    off_N, worst = errors.pop("N"), max(errors.values())
+    vr.tables.save(table, path)
     outcome.files.append(path)
     outcome.headline[f"{path.stem}: build, measure and save, s"] = time.perf_counter() - began
     outcome.headline[f"{path.stem}: size, kB"] = path.stat().st_size / 1e3
+    return table
+
+
+def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[], xr.Dataset]) -> None:
+    """Build, save and report a law."""
+    errors = errors_of(made(outcome, path, make))
+    off_N, worst = errors.pop("N"), max(errors.values())
     outcome.headline[f"{path.stem}: largest relative error (allowed {settings.allowed:g})"] = worst
     outcome.headline[f"{path.stem}: of N, over its largest (allowed {settings.allowed_N:g})"] = off_N
     outcome.failed |= worst > settings.allowed or off_N > settings.allowed_N

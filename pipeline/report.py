@@ -104,9 +104,12 @@ def introduced(found: dict[str, dict[str, Any]]) -> str:
     name = str(found["ensemble"]["headline"]["preset"])
     worth = PRESETS[name].validity(max(abs(V0) for V0, _ in vr.presets.PAPER_STARTS.values())).steady.sentence
     return (
-        f"<p>A viscoelastic cylinder rolls and slides on a half-space of its material: the example of the paper's "
-        f"Sect. 5, preset {escape(name)}: {escape(str(PRESETS[name]))}.  Everything is dimensionless.</p>"
-        f"<p>For motions: {escape(worth)}.</p>"
+        "<p>Five stages made this page.  Offline: tabulates λ, ε, β, Q and M on a grid of V, δ and α by root solves, "
+        "and the law as rows.  Runtime: integrates Eq. (22) from the rows.  Monte Carlo: runs random initial "
+        "conditions.  Validate: holds tables and motions against direct solves.  Benchmark: run time against error.</p>"
+        f"<p>A viscoelastic cylinder rolls and slides on a half-space of its material: first a rubber roller in SI "
+        f"units, then the example of the paper's Sect. 5, preset {escape(name)}: {escape(str(PRESETS[name]))}, without "
+        f"dimension.</p><p>Motions of the paper: {escape(worth)}.</p>"
     )
 
 
@@ -123,23 +126,23 @@ def page(out: Path, found: dict[str, dict[str, Any]]) -> str:
         "<h2>Against direct solves of the printed equations</h2>", f"<p>{verdict}.</p>",
         grid(found["validate"]["headline"].items()),
         links(out, found["validate"]), f"<pre>{escape((out / 'validation.txt').read_text(encoding='utf-8'))}</pre>",
-        "<h2>Time against error</h2><p>Offline a stage wrote the law of the material into a file; at run time roll "
-        "looks it up there.  Here that stands beside the law in SciPy's Radau, and beside splines in a grid of Q and "
-        "M over V and δ; the truth is root solves of the printed equations.  Error: the largest of V and ω over the "
-        "first speed.</p>",
+        "<h2>Time against error</h2><p>The paper's motions and random ones in one compiled integrator, from splines in "
+        "grids of n by n nodes, from rows, and from root solves at every call; beside them roll.  The truth is root "
+        "solves of the printed equations.  Errors are the largest of V and ω over the first speed.  Then the size of "
+        "each table, and the largest error of Q there.</p>",
         grid([times[0], *(row.values() for row in times)]),
-        picture(out / "figures/benchmark.png", out, "Time of a motion over its error."),
+        picture(out / "figures/benchmark.png", out, "Motions: time over error.  Tables: size and error."),
         f"<h2>How long it took</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
         grid((STAGES[name], record["seconds"]) for name, record in found.items()), "</body></html>",
     ]  # fmt: skip
     return "\n".join(part for part in parts if part) + "\n"
 
 
-def make(out: Path) -> None:
+def work(config: Path, out: Path) -> stage.Outcome:
+    del config  # nothing of it
     write_text(out / "index.html", page(out, records(out)))
-    print(f"Everything on one page: {stage.shown(out / 'index.html')}")
+    return stage.Outcome([out / "index.html"])
 
 
 if __name__ == "__main__":
-    given = stage.parser(__doc__).parse_args()
-    sys.exit(stage.told("report", lambda: make(given.output)))
+    sys.exit(stage.run("report", None, work, __doc__))

@@ -23,8 +23,10 @@ def printed(code: str, *arguments: object, **environment: str) -> str:
 
 
 def stage(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    """A stage ("evidence.prove", "offline") that ends of its own accord: 2 where it refuses, 1 where it fails."""
-    done = python("-m", f"pipeline.{name}", *arguments)
+    """A stage ("evidence.prove", "offline"; "" is all of the demo) that ends of its own accord: 2 where it refuses, 1
+    where it fails.
+    """
+    done = python("-m", f"pipeline.{name}".rstrip("."), *arguments)
     assert "Traceback" not in done.stderr, done.stderr
     return done
 

@@ -14,7 +14,7 @@ from viscoroll.core.plots import draw
 
 from ..stage import ROOT
 from .geometry import geometry
-from .law import figure_2, figure_3
+from .law import figure_2, figure_3, grid, rubber_roller
 from .stresses import figure_7
 
 if TYPE_CHECKING:
@@ -44,5 +44,6 @@ PAGES = {
     "broad-stresses": "contact/d_broad_rubber stresses",
 }
 FIGURES: dict[str, Callable[..., Figure]] = {
+    "rubber-roller": rubber_roller, "grid": grid,
     "geometry": geometry, "figure-2": figure_2, "figure-3": figure_3, "figure-7": figure_7, "ensemble": draw,
 } | {name: partial(of_page, *page.split()) for name, page in PAGES.items()}  # fmt: skip

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import msgspec
 from tqdm import tqdm
 
 from viscoroll import ModelWarning
@@ -21,9 +22,15 @@ from ..validate import loaded
 from . import FIGURES
 
 
-def work(config: Path, out: Path) -> stage.Outcome:
-    del config  # nothing of it
-    shown: dict[str, tuple[Any, ...]] = {"ensemble": (loaded(out / "ensemble.nc"),)}
+class Figures(msgspec.Struct, forbid_unknown_fields=True):
+    """[figures]: the file of the grid."""
+
+    grid: str
+
+
+def work(settings: Figures, out: Path) -> stage.Outcome:
+    files_of = {"ensemble": out / "ensemble.nc", "grid": stage.ROOT / settings.grid}
+    shown: dict[str, tuple[Any, ...]] = {name: (loaded(path),) for name, path in files_of.items()}
     folder, files = stage.make_folder(out / "figures"), []
     for name, draw in tqdm(FIGURES.items(), desc="figures", delay=1.0, leave=False):
         files.append(folder / f"{name}.png")
@@ -34,4 +41,4 @@ def work(config: Path, out: Path) -> stage.Outcome:
 if __name__ == "__main__":
     mpl.use("agg")
     warnings.simplefilter("ignore", ModelWarning)  # the paper's cylinder, of which its pages say so
-    sys.exit(stage.run("figures", None, work, __doc__))
+    sys.exit(stage.run("figures", Figures, work, __doc__))

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 SECTIONS: dict[str, dict[str, str]] = {
+    "A rubber roller in SI units": {
+        "rubber-roller": "A roller of rubber with three relaxation times, R = 0.1 m and 35.5 kg for each metre of "
+        "length, launched at 2 m/s without rotation: it slides until ω R reaches V, and then rolls on.",
+    },
     "The cylinder and its contact": {
         "geometry": "Symbols.  The contact has the length λ l₀.  Its middle lies ahead of the axis.  Its front part, "
         "of the length "
@@ -10,6 +14,8 @@ SECTIONS: dict[str, dict[str, str]] = {
         "figure-2": "Critical creepage over speed; above it the whole contact slips.  A fast contact is stiffer, and "
         "slips at a "
         "smaller creepage.  κ = 29.1 in this figure and the next, as in Figs. 2 and 3 of the paper.",
+        "grid": "The grid that make tables wrote: Q over V and δ at three α, for κ = 2.91 and μ = 0.2.  Beyond the "
+        "black line, the critical creepage, the contact slips, and |Q| is μ.",
         "figure-3": "Creep force over creepage, and rolling resistance over speed with its maximum (Fig. 3 of the "
         "paper).",
     },

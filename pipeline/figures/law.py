@@ -1,4 +1,4 @@
-"""The contact law: counterparts of the paper's Figs. 2 and 3."""
+"""The contact law: a rubber roller in SI units, counterparts of the paper's Figs. 2 and 3, the grid of make tables."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import numpy as np
 
 from viscoroll.contact_law.contact import contact
 from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
-from viscoroll.presets import PAPER_FIGURES_2_3
+from viscoroll.presets import PAPER_FIGURES_2_3, RUBBER_CYLINDER
 
 from .title import describe, scaled
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 _MOST_SPEED, _MOST_CREEP = 0.4, 4e-3
@@ -50,3 +51,17 @@ def figure_3() -> Figure:
         axes.axvline(0.0, **THIN)
         axes.legend(frameon=False, loc="upper left")
     return figure
+
+
+def grid(table: xr.Dataset) -> Figure:
+    """Q over V and delta as ``make tables`` wrote it, at three alphas: the surface whose slices are Fig. 3a."""
+    table = table.sel(alpha=[1.5, 11.0, 81.5])
+    drawn = table.Q.plot(x="V", y="delta", col="alpha", xscale="log", figsize=(9.6, 3.4))
+    for axes, star in zip(drawn.axs.flat, table.delta_star.T, strict=True):
+        axes.plot(table.V, star, color="black")
+    return drawn.fig
+
+
+def rubber_roller() -> Figure:
+    """A rubber roller in SI units, launched without rotation."""
+    return RUBBER_CYLINDER.roll(2.0, 0.0, np.linspace(0.0, 0.4, 401)).plot()

@@ -342,3 +342,45 @@ def test_netcdf_of_a_law_by_ncdump(folder):
     for name, kind in (("law.nc", "netCDF-4"), ("three.cdf", "64-bit offset")):
         shown = subprocess.run(["ncdump", "-k", folder / name], capture_output=True, text=True, check=True)
         assert shown.stdout == f"{kind}\n"
+
+
+#: A program -> what prints the sum of Q over grid.nc, and what succeeds where it can run.
+READERS = {
+    "xarray": (
+        f"'{sys.executable}' -W error -c 'import xarray as xr; print(float(xr.open_dataset(\"grid.nc\").Q.sum()))'",
+        "true",
+    ),
+    "h5py": (f"'{sys.executable}' -W error -c 'import h5py; print(h5py.File(\"grid.nc\")[\"Q\"][()].sum())'", "true"),
+    "netCDF4": (
+        f"'{sys.executable}' -W error -c 'import netCDF4; print(netCDF4.Dataset(\"grid.nc\")[\"Q\"][...].sum())'",
+        f"'{sys.executable}' -c 'import netCDF4'",
+    ),
+    "ncdump": (
+        "ncdump -v Q grid.nc | tr -d ',;}' | awk '/^data:/ {found = 1} found' | tr -s ' \\n' '\\n'"
+        " | awk '/^-?[0-9]/ {sum += $1} END {printf \"%.17g\", sum}'",
+        "command -v ncdump",
+    ),
+    "octave": (
+        'octave-cli --eval \'pkg load netcdf; printf("%.17g", sum(ncread("grid.nc", "Q")(:)))\'',
+        "octave-cli --eval 'pkg load netcdf'",
+    ),
+    "R": (
+        'Rscript -e \'library(ncdf4); cat(sprintf("%.17g", sum(ncvar_get(nc_open("grid.nc"), "Q"))))\'',
+        "Rscript -e 'library(ncdf4)'",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_programs_open_a_grid_without_a_warning(tmp_path, name):
+    command, needed = READERS[name]
+    need(needed)
+    scene, V = vr.presets.PAPER_SECTION_5, np.geomspace(1e-3, 2.0, 12)
+    grid = vr.tables.build(scene, V, delta=np.linspace(-0.01, 0.03, 9), alpha=[1.0, 11.0], method="direct")
+    vr.tables.save(grid, tmp_path / "grid.nc")
+    done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False)
+    told = [
+        line for line in done.stderr.splitlines() if "execution_exception" not in line
+    ]  # Octave 7 at the end of all
+    assert (done.returncode, told) == (0, [])
+    assert close(float(done.stdout), float(grid.Q.sum()), rel=tol.INTEROP, scale=float(np.abs(grid.Q).sum()))

@@ -5,8 +5,10 @@ import shlex
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 import tolerances as tol
+import xarray as xr
 from closeness import close
 from places import ROOT
 from processes import made
@@ -28,7 +30,7 @@ def blocks(path: Path, language: str) -> list[str]:
 
 
 def test_readme_block_runs(capsys):
-    (code,) = blocks(ROOT / "README.md", "python")
+    code, _ = blocks(ROOT / "README.md", "python")
     assert len([line for line in code.splitlines() if line.strip()]) <= 12
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
@@ -45,6 +47,20 @@ def test_variables_of_fmus_are_listed(model):
     ]
     head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
     assert head + "\n".join(rows) + "\n\n" in LOADING.read_text()
+
+
+def test_readme_grid(tmp_path, monkeypatch, capsys):
+    """The lines on a grid, of one that holds the points which they name."""
+    monkeypatch.chdir(tmp_path)
+    scene, V = vr.presets.PAPER_SECTION_5_ROUNDED, np.geomspace(0.1, 1.0, 31)
+    grid = vr.tables.build(scene, V, delta=np.linspace(-0.01, 0.01, 41), alpha=[7.0, 11.0, 16.0])
+    (tmp_path / "data/tables").mkdir(parents=True)
+    vr.tables.save(grid, "data/tables/grid.nc")
+    _, code = blocks(ROOT / "README.md", "python")
+    assert len(code.splitlines()) == 3
+    exec(compile(code, "README.md", "exec"), {"xr": xr})
+    Q = vr.contact(scene, 0.3, delta=0.004, fields="Q").Q
+    assert abs(float(capsys.readouterr().out) - Q) <= grid.Q.attrs["linear_error"]
 
 
 @pytest.mark.parametrize("page", ["index", "validity"])

@@ -19,6 +19,7 @@ from scipy import io
 import viscoroll as vr
 from viscoroll.core import files
 from viscoroll.io.tables import schema
+from viscoroll.io.tables.check import NODES_ALLOWED, check_table
 from viscoroll.materials.law_table import law_table
 
 V, DELTA, ALPHA = np.geomspace(1e-2, 2.0, 21), np.linspace(-0.04, 0.04, 33), np.array([1.0, 2.0, 4.0, 8.0, 16.0])
@@ -135,6 +136,41 @@ def test_interpolation(table):
     for field in schema.fields_of(table):
         expected = table[field].broadcast_like(table.beta).transpose(*axes).values
         assert close(getattr(found, field), expected, rel=tol.TABLE_SPLINE_NODE, scale=np.abs(expected).max()), field
+
+
+def test_root_solves_meet_the_rows():
+    """The paper's way to the nodes, of a scene and of a cylinder in SI units, and what the grid says of them."""
+    for what, speeds in ((vr.presets.PAPER_SECTION_5, V), (vr.presets.PAPER_CYLINDER, 1e-2 * V)):
+        direct, rows = (vr.tables.build(what, speeds, delta=DELTA, method=way) for way in ("direct", "table"))
+        assert direct.attrs["method"] == "direct"
+        for name in schema.fields_of(direct):
+            assert not np.array_equal(direct[name], rows[name]) or name == "delta_star", name
+            assert 0.0 <= direct[name].attrs["difference_from_rows"] <= NODES_ALLOWED, name
+            size = np.abs(rows[name].values).max()
+            assert close(direct[name].values, rows[name].values, rel=NODES_ALLOWED, scale=size), name
+
+
+def test_validation_finds_a_wrong_node(alphas):
+    assert all(check.passed for check in check_table(alphas, 2000, 1))
+    wrong = alphas.copy(deep=True)
+    wrong.Q[3, 4, 1] *= 1.0 + 10.0 * NODES_ALLOWED
+    assert [check.name for check in check_table(wrong, 2000, 1) if not check.passed] == ["grid: Q, nodes"]
+    stated = alphas.copy(deep=True)
+    stated.beta.attrs["spline_error"] *= 0.1
+    assert [check.name for check in check_table(stated, 2000, 1) if not check.passed] == ["grid: beta, splines"]
+
+
+def test_creep_nodes_lie_around_the_edge_of_full_slip():
+    scene = vr.presets.PAPER_SECTION_5
+    nodes = vr.tables.creep_nodes(scene, V, 41, alpha=ALPHA)
+    assert nodes.size == 41
+    assert np.array_equal(nodes, -nodes[::-1])
+    grid = vr.tables.build(scene, V, delta=nodes, alpha=ALPHA)
+    assert (np.abs(grid.Q[:, [0, -1]]) == scene.mu).all()
+    even = vr.tables.build(scene, V, delta=np.linspace(nodes[0], nodes[-1], 41), alpha=ALPHA)
+    star, steps = grid.delta_star.values.ravel(), np.diff(nodes)
+    inside = (nodes[:-1] >= star.min()) & (nodes[1:] <= star.max())
+    assert steps[inside].mean() < np.diff(even.delta).mean()
 
 
 def test_axes_of_few_nodes():

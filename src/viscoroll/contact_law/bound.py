@@ -13,6 +13,7 @@ from ..core.checks import checked, yes_or_no
 from ..core.errors import ParameterError
 from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
+from ..materials.law_grid import LawGrid
 from .contact import contact
 from .contact_table import refuse_overflow
 from .parameters import Rolls, framed, refuse_arrays
@@ -31,7 +32,7 @@ class Law:
     """
 
     def __init__(self, roller: Rolls) -> None:
-        from ..kernels.rows.jitted import Jitted, Room
+        from ..kernels.rows.jitted import Jitted
 
         _, scene, scale = framed(roller, "law")
         if scene.each is not None:
@@ -42,8 +43,14 @@ class Law:
         table = scene.table
         assert table is not None
         self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
-        self._jitted = jitted = Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale)
-        self._function, self._plain, self._sloped, self._room = jitted.function, jitted.plain, jitted.address, Room
+        self._take(Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale))
+
+    def _take(self, jitted: Any) -> None:
+        """Keep what is called, and the room for what it finds."""
+        from ..kernels.rows.jitted import Room
+
+        self._jitted, self._room = jitted, Room
+        self._function, self._plain, self._sloped = jitted.function, jitted.plain, jitted.address
 
     @overload
     def __call__(  # type: ignore[overload-overlap]
@@ -85,12 +92,17 @@ class Law:
             except ctypes.ArgumentError:  # an integer beyond the doubles
                 status = 1
             if status:
-                refuse_overflow(self._fastest, checked("V", V))
-                checked("omega", omega)
+                self._refuse(checked("V", V), checked("omega", omega))
             return _loads_and_slopes(out) if slopes else _loads(out[:4])
-        kind = LoadsAndSlopes if slopes else Loads
-        found = contact(self.roller, V, omega=omega, fields=kind._fields)
-        return kind(**found.as_dict())
+        return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+
+    def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
+        """The law at arrays, as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
+        return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
+
+    def _refuse(self, V: Floats, omega: Floats) -> None:
+        """Raise ParameterError for finite numbers at which the law is not defined."""
+        refuse_overflow(self._fastest, V)
 
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
@@ -132,7 +144,25 @@ class WatchedLaw(Law):
         return found
 
 
-def law(roller: Rolls) -> Law:
+class _LawOfGrid(Law):
+    """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
+
+    def __init__(self, grid: LawGrid) -> None:
+        from ..kernels.splines.law import JittedGrid
+
+        self.roller: Any = grid
+        (low, high), slowest = grid.delta, grid.V[0]
+        self._take(JittedGrid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+
+    def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
+        each = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
+        return kind(*each(checked("V", V), checked("omega", omega))[: len(kind._fields)])
+
+    def _refuse(self, V: Floats, omega: Floats) -> None:
+        self.roller.refuse_outside(V, omega)
+
+
+def law(roller: Rolls | LawGrid) -> Law:
     """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
 
     ``law(V, omega)`` is :func:`contact` at a given omega with nothing left to check but V and omega, and
@@ -141,7 +171,8 @@ def law(roller: Rolls) -> Law:
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, or a :class:`Cylinder`, whose law
-        takes and gives SI units: one number each, one material or two bodies.
+        takes and gives SI units: one number each, one material or two bodies; or the grid of
+        :func:`viscoroll.load_law`, in its units.
 
     Returns
     -------
@@ -161,6 +192,12 @@ def law(roller: Rolls) -> Law:
     a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
 
     Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
+
+    Of a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file states
+    (``tests/tables/test_splines.py``): clipped to \\|Q\\| <= mu P; below the slowest speed Q is that at the slowest,
+    and M in proportion to V; beyond both ends of delta \\|Q\\| is mu P where the grid slips fully there.  Other states
+    outside of the axes raise OutOfTableError.  Arrays are looked up one state after another.
     """
-    watched = isinstance(roller, Rolls) and roller.watched
-    return WatchedLaw(roller) if watched else Law(roller)
+    if isinstance(roller, LawGrid):
+        return _LawOfGrid(roller)
+    return WatchedLaw(roller) if isinstance(roller, Rolls) and roller.watched else Law(roller)

@@ -20,6 +20,7 @@ import numpy as np
 from ..core.scale import Scale
 from ..core.typed import Booleans, Floats, Integers
 from ..materials.bodies import one_series
+from ..materials.law_modes import by_modes
 from ..materials.law_table import law_table
 from ..materials.prony import Prony
 from .contact_table import rolling
@@ -46,11 +47,13 @@ class Curve:
         series = one_series(material)
         self.modes, self.alpha = (series.J, series.T), series.alpha
         shortest, longest = series.tau[-1], series.T[0]
-        octaves = math.ceil(math.log2(longest / shortest)) + 2 * _MARGIN
-        self.s = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
-        self.s -= _MARGIN * math.log(2.0)
+        octaves = math.ceil(math.log2(longest / shortest * math.sqrt(self.alpha))) + 2 * _MARGIN
+        places = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
+        # by the formulas of the modes at places of 1/(2 zeta): kernels of contacts need not be compiled for a warning
+        (_, rise, half_space, cylinder), _, N = by_modes(material, 0.5 * np.exp(_MARGIN * math.log(2.0) - places))
+        self.s = places - _MARGIN * math.log(2.0) - 0.5 * np.log1p(2.0 * rise)
         u = np.exp(self.s)
-        M, N = rolling(law_table(material), u, "M", "N")
+        M = u * (half_space + cylinder)
         self.low, self.high, self.M_high = float(u[0]), float(u[-1]), float(M[-1])
         self._N, self._rate = CubicSpline(self.s, N), CubicSpline(self.s, u * u / M)
         self._time, self._way = CubicSpline(self.s, u / M).antiderivative(), self._rate.antiderivative()

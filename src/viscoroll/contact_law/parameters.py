@@ -16,6 +16,7 @@ from ..core.scale import DIMENSIONLESS, Scale
 from ..core.typed import Floats, Integers
 from ..materials.bodies import Bodies, one_series
 from ..materials.cover import Cover
+from ..materials.law_grid import LawGrid
 from ..materials.law_table import LawTable, law_table
 from ..materials.prony import Prony
 from ..materials.prony_forms import HIGHEST_ALPHA
@@ -276,6 +277,9 @@ def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> 
     """
     if not isinstance(given, Rolls):
         sentence = f"{call} takes a Scene or a Cylinder, not {given!r:.60}"
+        if isinstance(given, LawGrid):
+            sentence = f"{call} reads the rows of a law, as motions do, not a grid: vr.law(grid) gives its splines to "
+            sentence += "an integrator of your own (docs/howto/law.md)"
         raise ParameterError("roller", type(given).__name__, "a Scene or a Cylinder", sentence)
     roller = given if slope is None else given.tilted(slope)
     scene = roller.scene()

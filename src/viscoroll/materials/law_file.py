@@ -21,6 +21,7 @@ from .cover import Cover
 from .cover_rows import CoverRows
 from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_axis import LawAxis
+from .law_grid import load_grid
 from .law_store import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
 from .law_table import FUNCTIONS, Floats, LawTable, law_table, made
 from .material import Material
@@ -75,18 +76,21 @@ def name_of(table: LawTable) -> str:
     return " on ".join(body.name or "a material without a name" for body in bodies if body is not None)
 
 
-def load_law(path: str | PathLike[str], alpha: float | None = None) -> LawTable:
+def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     """The law of one material or pair from a file, to stand wherever a Prony or Bodies stands.
 
     Parameters
     ----------
-    path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``.
-    alpha : of a file of every alpha of one relaxation time: that which is wanted, with T_epsilon for the unit of time.
+    path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
+        delta, of ``viscoroll tables build`` or of another program (:func:`viscoroll.materials.law_grid.load_grid`).
+    alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
+        T_epsilon for the unit of time.
 
     Returns
     -------
-    LawTable
-        Bit for bit that of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of
+    LawTable, or of a grid LawGrid
+        A LawGrid is for :func:`viscoroll.law` alone: motions are integrated from rows.  A LawTable is bit for bit
+        that of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of
         :class:`viscoroll.Cylinder`, it stands for its :class:`viscoroll.Material`, and for the base where it has one.
 
     Raises
@@ -96,7 +100,12 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> LawTable:
     ParameterError
         An alpha beside the file of one material, or none for that of every alpha.
     """
-    content = read_law(path)
+    try:
+        content = read_law(path)
+    except FileError:
+        if (grid := load_grid(path, alpha)) is None:
+            raise
+        return grid
     if content.attributes[KIND] != AXIS:
         if alpha is not None:
             raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material")

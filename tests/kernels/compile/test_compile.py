@@ -9,6 +9,7 @@ import pwd
 import re
 import shutil
 import sys
+import threading
 import warnings
 import zlib
 from pathlib import Path
@@ -16,6 +17,7 @@ from types import SimpleNamespace
 
 import numba
 import pytest
+from filelock import FileLock
 from ordinary_user import NOBODY, as_ordinary_user, let_in
 from processes import printed, python
 
@@ -69,6 +71,32 @@ def test_only_what_python_calls_is_compiled_to_machine_code(kernels):
     ]
     assert square(3.0) == 9.0
     assert len([*kernels.rglob("*.nbc")]) == 2
+
+
+def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
+    """And compiles by itself where that takes too long."""
+    assert cubed(2.0) == 8.0
+    (stored,) = kernels.rglob("*.nbc")
+    content, lock = stored.read_bytes(), FileLock(f"{stored}.lock", thread_local=False)
+    stored.unlink()
+    lock.acquire()
+    with monkeypatch.context() as hasty:
+        hasty.setattr(cache_module, "PATIENCE", 0.0)
+        assert kernel(cubed.py_func)(2.0) == 8.0
+    monkeypatch.delattr(deferred.EntryPipeline, "compile_extra")
+    stored.unlink()
+    lock = FileLock(f"{stored}.lock", thread_local=False)
+    lock.acquire()
+
+    def store() -> None:
+        stored.write_bytes(content)
+        lock.release()
+
+    other = threading.Timer(0.2, store)
+    other.start()
+    assert kernel(cubed.py_func)(2.0) == 8.0
+    other.join()
+    assert not [*kernels.rglob("*.lock")]
 
 
 def test_an_ordinary_function_between_kernels_works(kernels):

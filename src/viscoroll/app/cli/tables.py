@@ -52,6 +52,7 @@ def law(given: Namespace) -> None:
     option("--V", type=numbers, required=True, help="speeds of the axis, > 0"),
     option("--delta", type=numbers, required=True, help="creep ratios"),
     option("--alpha", type=numbers, help="a third axis, of a scene"),
+    option("--method", default="table", help="table (default) or direct: root solves of the printed equations"),
     output(*_GRID),
 )  # fmt: skip
 def build(given: Namespace) -> None:
@@ -63,7 +64,8 @@ def build(given: Namespace) -> None:
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
     """
-    vr.tables.export(vr.tables.build(body_of(given.scene), given.V, delta=given.delta, alpha=given.alpha), given.output)
+    axes = {"delta": given.delta, "alpha": given.alpha}
+    vr.tables.export(vr.tables.build(body_of(given.scene), given.V, **axes, method=given.method), given.output)
     _size(given.output)
 
 
@@ -79,7 +81,7 @@ def info(given: Namespace) -> None:
 
 @command("tables validate", FILE, option("-n", type=int, default=10_000, help="random speeds (default 10000)"))
 def validate(given: Namespace) -> int:
-    """The file of a law against the formulas of its relaxation modes, at random speeds.
+    """The file of a law against the formulas of its relaxation modes, at random speeds; a grid against the law.
 
     Exit code 1 where an error exceeds that which the file states.
 

@@ -9,14 +9,15 @@
     grid = vr.tables.build(roller, V=vr.tables.spread(1e-3, 10.0, 201, "log"), delta=[-0.01, 0.0, 0.01])
     vr.tables.export(grid, "rubber.txt")  # Modelica
 
-Read in this order: :mod:`law`, :mod:`build`, :mod:`schema` (what a grid's file holds), :mod:`interpolate`,
-:mod:`store` (atomic save, checked load), :mod:`export` (formats of other programs).
+Read in this order: :mod:`law`, :mod:`nodes`, :mod:`build`, :mod:`schema` (what a grid's file holds),
+:mod:`interpolate`, :mod:`store` (atomic save, checked load), :mod:`export` (formats of other programs).
 """
 
-from .build import build, spread
+from .build import build
 from .export import export
 from .interpolate import Interpolant, interpolate
 from .law import law
+from .nodes import creep_nodes, spread
 from .store import info, load, save
 
-__all__ = ["Interpolant", "build", "export", "info", "interpolate", "law", "load", "save", "spread"]
+__all__ = ["Interpolant", "build", "creep_nodes", "export", "info", "interpolate", "law", "load", "save", "spread"]

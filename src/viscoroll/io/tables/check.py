@@ -1,21 +1,29 @@
-"""The file of a law against the formulas of its modes: rows of a report."""
+"""The file of a law against the formulas of its modes, and a grid against the rows of the law: rows of a report."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from ... import __version__
 from ...core.checks import whole
 from ...core.errors import FileError
 from ...materials.law_file import axis_of, law_of
 from ...materials.law_store import AXIS, KIND, content_of, errors_of
+from ...scene import Scene
+from . import schema
+from .build import RELATIVE, differences, errors_at, random_points
 from .law import measured_errors
 from .store import is_law
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Largest difference of a node of a grid from the rows, relative or over the largest of its field: M as printed is
+#: good to 9e-14 at kappa V = 100 (kernels/printed/law.py).
+NODES_ALLOWED = 1e-12
 #: The stated error is the largest of a sample; of 10^5 others it may be a few roundings more.
 ALLOWANCE, ROUNDING = 2.0, 2e-15
 
@@ -62,9 +70,12 @@ class Report:
 def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     """Compare a law, or those of random alphas, with the formulas of its modes at ``count`` random places.
 
+    Of a grid compare every node with the rows of the law, and splines at ``count`` random points in random cells.
+
     Parameters
     ----------
-    table : of :func:`viscoroll.io.tables.law`, or of :func:`viscoroll.io.tables.load`.
+    table : of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one relaxation
+        time, or of :func:`viscoroll.io.tables.load`.
     count : >= 1.
     seed : of the random places, >= 0.
 
@@ -78,12 +89,12 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     ParameterError
         A count or seed out of range.
     FileError
-        A table that is no law: a grid states its errors when it is built.
+        A grid that is of a material or a cylinder.
     """
     count, seed = whole("n", count, 1), whole("seed", seed, 0)
     source = table.encoding.get("source", "table")
     if not is_law(table):
-        raise FileError(source, "is no law file (viscoroll tables law): grids state their errors when they are built")
+        return _check_grid(table, count, seed, source)
     content = content_of(table)
     read = axis_of if content.attributes[KIND] == AXIS else law_of
     found = measured_errors(read(content, source), count, seed)
@@ -95,3 +106,21 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
         )
         for name, stated in errors_of(table).items()
     ]  # fmt: skip
+
+
+def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
+    """Rows for the nodes of a grid and for the splines between them, two a field; raises FileError."""
+    schema.check(table, source)
+    if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
+        raise FileError(source, "is no grid of a scene with an alpha, and states its errors by itself")
+    scene = Scene(alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"])
+    nodes = differences(table, scene)
+    between = errors_at(table, scene, random_points(table, count, seed))
+    checks = []
+    for name in schema.fields_of(table):
+        kind = "relative" if name in RELATIVE else "over the largest"
+        checks.append(Check(f"grid: {name}, nodes", nodes[name], NODES_ALLOWED, f"{kind}; all, against rows"))
+        stated = ALLOWANCE * float(table[name].attrs["spline_error"]) + ROUNDING
+        found = float(np.max(between[name]))
+        checks.append(Check(f"grid: {name}, splines", found, stated, f"absolute; {count} points, against rows"))
+    return checks

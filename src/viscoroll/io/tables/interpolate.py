@@ -12,6 +12,8 @@ from ...core.checks import broadcast_shape, checked
 from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
 from ...core.results import Values
 from ...core.typed import Floats
+from ...materials.grid_splines import compiled, spline
+from ...materials.law_grid import friction_limit
 from . import schema
 
 if TYPE_CHECKING:
@@ -42,7 +44,7 @@ class Interpolant:
         self._linear = linear or table.attrs[schema.KIND] in ("literal", "material")
         self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
         # bounds that the law keeps, and a spline near the kink at delta_star does not
-        most = friction_limit(table)
+        most = friction_limit(table.attrs)
         self._bounds = {"Q": (-most, most), "Q_over_mu": (-1.0, 1.0), "beta": (0.0, 1.0)}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
@@ -59,6 +61,47 @@ class Interpolant:
                 values = np.clip(values, *self._bounds[name])
             results[name] = np.broadcast_to(values, shape).copy() if shape else float(values)
         return Values(results, title="Interpolated")
+
+    def jitted(self, field: str) -> tuple[Any, Any]:
+        """A field for numba's jitted functions, and what it takes: ``at(spline, V, delta, alpha)``.
+
+        Parameters
+        ----------
+        field : a field over V, delta and alpha or some of them.
+
+        Returns
+        -------
+        at : a jitted function of numbers; it returns ``value``, ``dV``, ``ddelta`` and ``dalpha``, clipped as values
+            of this class are, with slopes 0 there, and NaN outside of the axes.  For an axis that the field is not
+            over any number does.
+        spline : its first argument.
+
+        Raises
+        ------
+        ParameterError
+            An unknown field, and one of an atlas of 0.1.0.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> grid = vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1])
+        >>> at, Q = vr.tables.Interpolant(grid).jitted("Q")
+        >>> at(Q, 0.25, 0.01, 0.0).ddelta > 0.0
+        True
+
+        Notes
+        -----
+        Values differ from those of this class by roundings, slopes are those of the spline
+        (``tests/tables/test_splines.py``).
+        """
+        from ...kernels.splines.spline import spline_at
+
+        (name,) = refuse_unknown("field", field, schema.fields_of(self._table), "a field of this table")
+        if self._table.attrs[schema.KIND] == "atlas":
+            raise ParameterError("field", name, "of a grid over V and delta")
+        dims, found = self._spline(name)
+        logs = () if self._linear else ("V", "alpha")
+        return spline_at, compiled(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
 
     def _places(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
@@ -94,33 +137,6 @@ class Interpolant:
             axes = [self._mapped(dim, self._table[dim].values) for dim in dims]
             self._splines[name] = dims, spline(field.values, axes, 1 if self._linear else 3)
         return self._splines[name]
-
-
-def friction_limit(table: xr.Dataset) -> float:
-    """Largest |Q| that the law admits, Eq. (15): mu, in SI units mu times the load; infinite where no mu is stated.
-
-    Parameters
-    ----------
-    table : a grid.
-
-    Returns
-    -------
-    float
-        In the unit of Q: dimensionless, or N/m.
-    """
-    return float(table.attrs.get("mu", np.inf)) * float(table.attrs.get("load", 1.0))
-
-
-def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
-    """The tensor spline through values on a grid, not-a-knot, along few nodes of lower degree; no axes: the value."""
-    from scipy.interpolate import NdBSpline, make_interp_spline
-
-    knots, degrees = [], tuple(min(degree, axis.size - 1) for axis in axes)
-    for n, axis in enumerate(axes):
-        one = make_interp_spline(axis, values, k=degrees[n], axis=n)
-        knots.append(one.t)
-        values = np.moveaxis(one.c, 0, n)
-    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees) if axes else values
 
 
 def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:

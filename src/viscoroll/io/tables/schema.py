@@ -22,12 +22,12 @@ from ...core.symbols import PAPER, SYMBOLS, meaning
 if TYPE_CHECKING:
     import xarray as xr
 
-SCHEMA_VERSION = "1.2"
+SCHEMA_VERSION = "1.3"
 #: Global attribute that names the kind of a file: "grid", or of earlier versions "atlas", "literal", "material".
 KIND = "viscoroll_table"
 KINDS = ("grid", "atlas", "literal", "material")
 #: Fields over (V, alpha) and over (V, delta, alpha).
-PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star")
+PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta")
 VOLUME = ("beta", "Q")
 _ATLAS_FIELDS = ("beta", "Q_over_mu", "lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
 
@@ -35,8 +35,10 @@ COMMENT = (
     "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, delta_star and beta are "
     "even in V; M, its two parts and Q(V, delta) are odd. beta is even in delta, Q odd. beta has a kink at "
     "|delta| = delta_star(V), beyond which the contact slips fully: beta = 0, |Q| = mu P. epsilon may exceed 1. "
-    "A grid is for look-up blocks of other programs: the file of a law (viscoroll tables law) holds the same exactly, "
-    "at every V, delta, kappa and mu, in a tenth of the size."
+    "A grid is for plots and for look-up blocks of other programs. Do not use it where the edge of full slip, "
+    "|delta| = delta_star, decides a result: look-up smooths it, and the spline_error and linear_error of Q and beta, "
+    "absolute, are those there. The file of a law (viscoroll tables law) is exact at every V, delta, kappa and mu, in "
+    "a tenth of the size; law.nc of make tables holds every alpha."
 )
 
 

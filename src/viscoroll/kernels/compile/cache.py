@@ -14,7 +14,8 @@ import pickle
 import sys
 import warnings
 import zlib
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Callable
@@ -24,7 +25,7 @@ import numba
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
-from .folder import cache_root, read_own, write_own
+from .folder import cache_root, make_own, read_own, write_own
 
 #: where all kernels lie
 HERE = Path(__file__).parents[1]
@@ -34,6 +35,8 @@ _SETTINGS = (
     "EXTEND_VARIABLE_LIFETIMES", "ENABLE_PROFILING", "NRT_STATS", "DEBUG_NRT", "LLVM_REFPRUNE_PASS",
     "LLVM_REFPRUNE_FLAGS",
 )  # fmt: skip
+#: Seconds after which a process compiles what another one seems to: more than any kernel takes on a busy machine.
+PATIENCE = 120.0
 _DIGEST_SIZE = hashlib.sha256().digest_size
 
 
@@ -59,6 +62,29 @@ class DiskCache:
         self._function = function
         self._folder = cache_root() / f"kernels-{sources_digest()}"
         self.cache_path = str(self._folder)
+
+    @contextmanager
+    def alone(self, signature: Any, codegen: Any) -> Iterator[None]:
+        """Have other processes wait for the machine code that this one is about to store, at most :data:`PATIENCE`.
+
+        Where it is stored already, or no lock can be had, nobody waits.
+        """
+        path = self._path(signature, codegen)
+        if path.exists():
+            yield
+            return
+        from filelock import FileLock
+
+        lock = FileLock(f"{path}.lock", timeout=PATIENCE)
+        with suppress(OSError):  # also of the time being over
+            make_own(path.parent)
+            lock.acquire()
+        try:
+            yield
+        finally:
+            if lock.is_locked:
+                Path(lock.lock_file).unlink(missing_ok=True)
+            lock.release()
 
     def load_overload(self, signature: Any, target: Any) -> CompileResult | None:
         """The machine code for this signature, or None."""

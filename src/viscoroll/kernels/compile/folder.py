@@ -54,10 +54,7 @@ def read_own(path: Path) -> bytes:
 
 def write_own(path: Path, content: bytes) -> None:
     """Keep a file in the cache, whole or not at all, for others to read alone; raises OSError."""
-    refuse_shared(path.parent)
-    for folder in reversed((path.parent, *path.parent.parents)):
-        if not folder.exists():
-            folder.mkdir(mode=0o755, exist_ok=True)
+    make_own(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
     try:
         temporary.touch(mode=0o644, exist_ok=False)
@@ -66,6 +63,14 @@ def write_own(path: Path, content: bytes) -> None:
     finally:
         with suppress(OSError):
             temporary.unlink()
+
+
+def make_own(folder: Path) -> None:
+    """Make a folder of the cache and those above it, where they are not there; raises OSError."""
+    refuse_shared(folder)
+    for each in reversed((folder, *folder.parents)):
+        if not each.exists():
+            each.mkdir(mode=0o755, exist_ok=True)
 
 
 def refuse_shared(path: Path) -> None:

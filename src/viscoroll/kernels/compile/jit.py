@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Callable
+from typing import Any, Callable
 
 import numba
 
@@ -30,4 +30,16 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     whole = numba.njit(function, pipeline_class=EntryPipeline, **options)
     whole._cache = DiskCache(function)
     defer(whole, options)
+    _compile_alone(whole)
     return whole
+
+
+def _compile_alone(whole: Any) -> None:
+    """Let no two processes compile the same at the same time."""
+    plain = whole.compile
+
+    def compile_alone(signature: Any) -> Any:
+        with whole._cache.alone(signature, whole.targetctx.codegen()):
+            return plain(signature)
+
+    whole.compile = compile_alone

@@ -1,0 +1,75 @@
+"""Tensor splines on grids, by scipy, and as what compiled code reads (``kernels.splines``)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..core.typed import Floats
+
+
+def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
+    """The tensor spline through values on a grid, not-a-knot, along few nodes of lower degree; no axes: the value.
+
+    Parameters
+    ----------
+    values : (nodes of the first axis, nodes of the second, ...).
+    axes : coordinates of the nodes, increasing.
+    degree : 1 or 3.
+
+    Returns
+    -------
+    scipy.interpolate.NdBSpline, or ``values`` where there are no axes.
+    """
+    from scipy.interpolate import NdBSpline, make_interp_spline
+
+    knots, degrees = [], tuple(min(degree, axis.size - 1) for axis in axes)
+    for n, axis in enumerate(axes):
+        one = make_interp_spline(axis, values, k=degrees[n], axis=n)
+        knots.append(one.t)
+        values = np.moveaxis(one.c, 0, n)
+    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees) if axes else values
+
+
+def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
+    """An axis of a spline as ``kernels.splines.spline`` reads it.
+
+    Parameters
+    ----------
+    knots : of a not-a-knot spline.
+    degree : 0 to 3.
+    log : whether the spline runs in the logarithm of the coordinate.
+    stride : how many coefficients one step along the axis is.
+    """
+    from scipy.interpolate import BSpline
+
+    from ..kernels.splines.spline import TERMS
+
+    edges = knots[degree : knots.size - degree]
+    of, own = np.arange(edges.size - 1)[:, np.newaxis], np.arange(degree + 1)
+    basis = np.zeros((edges.size - 1, TERMS, TERMS))
+    every = BSpline(knots, np.eye(knots.size - degree - 1), degree)
+    for power in own:
+        basis[:, own, power] = every(edges[:-1], nu=power)[of, of + own] / math.factorial(power)
+    return np.concatenate([[edges.size - 1, degree + 1, log, stride], edges, basis.ravel()])
+
+
+def compiled(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds: tuple[float, float]) -> Floats:
+    """A spline over some of V, delta and alpha as the vector that ``kernels.splines.spline`` reads.
+
+    Parameters
+    ----------
+    found : of :func:`spline`; the value of a field over no axis.
+    axes : those that it is over, in their order.
+    logs : those in whose logarithm it runs.
+    bounds : to which values are clipped.
+    """
+    # an axis that the field is not over: no interval, one basis spline, which is 1
+    vectors = dict.fromkeys(("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15))
+    values = np.pad(found.c, [(0, 3 - degree) for degree in found.k]) if axes else np.asarray(found)
+    for n, name in enumerate(axes):
+        vectors[name] = _axis(found.t[n], found.k[n], name in logs, values.strides[n] // values.itemsize)
+    begin = np.cumsum([6, *(each.size for each in vectors.values())])
+    return np.concatenate([bounds, begin, *vectors.values(), values.ravel()])

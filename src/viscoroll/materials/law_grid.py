@@ -1,0 +1,152 @@
+"""The law of a grid: Q over V and delta and M over V as splines, from a file of this package or of another program."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..core.checks import checked, number
+from ..core.errors import FileError, OutOfTableError, ParameterError
+from ..core.files import sealed_content
+from ..core.typed import Floats
+from ..core.units import factor
+from .grid_splines import compiled, spline
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Variables of a grid -> their SI unit; a moment divided by a length is a force.
+UNITS = {"V": "m/s", "delta": "1", "Q": "N/m", "M": "N", "M_half_space": "N", "M_cylinder": "N"}
+#: Ways to interpolate to an alpha between the nodes, by the number of nodes.
+_WAYS = ("nearest", "linear", "quadratic", "cubic")
+#: At the ends of delta this part of the largest |Q| counts as full slip: files may hold six digits.
+_FULL_SLIP = 1.0 - 1e-5
+_MOST_BYTES = 1 << 31
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LawGrid:
+    """What :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes a function of V and omega of it.
+
+    Attributes
+    ----------
+    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.grid_splines.compiled` writes them; over
+        load and load times radius, or N/m and N.
+    V : slowest and fastest speed; dimensionless, or m/s.
+    delta : lowest and highest creep ratio (omega R - V)/V.
+    slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond.
+    R : radius in m, 1 where all is dimensionless.
+    title : of the file.
+    """
+
+    splines: dict[str, Floats]
+    V: tuple[float, float]
+    delta: tuple[float, float]
+    slips: bool
+    R: float
+    title: str
+
+    def __repr__(self) -> str:
+        return f"LawGrid(for vr.law alone: {self.title})"
+
+    def refuse_outside(self, V: Floats, omega: Floats) -> None:
+        """Raise OutOfTableError for a state outside of the axes."""
+        if np.abs(V) > self.V[1]:
+            raise OutOfTableError("V", float(V), -self.V[1], self.V[1])
+        raise OutOfTableError("delta", float(np.divide(omega * self.R - V, V)), *self.delta)
+
+
+def friction_limit(attributes: Any) -> float:
+    """Largest |Q| that the law admits, Eq. (15): mu, in SI units mu times the load; infinite where no mu is stated.
+
+    Parameters
+    ----------
+    attributes : of a grid.
+
+    Returns
+    -------
+    float
+        In the unit of Q: dimensionless, or N/m.
+    """
+    return float(attributes.get("mu", np.inf)) * float(attributes.get("load", 1.0))
+
+
+def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
+    """The law of a grid from a netCDF file of any program; None of a file that is no netCDF or has no Q over V, delta.
+
+    Parameters
+    ----------
+    path : variables V(V) > 0, delta(delta), Q over both and M over V, perhaps M_half_space and M_cylinder, each with an
+        attribute ``units``; all over alpha too where there is an axis of that name.  Global attributes: mu, and where V
+        has a unit R in m and the load in N/m.
+    alpha : where the grid has an axis of it; between its nodes by a spline in ln alpha.
+
+    Raises
+    ------
+    FileError
+        A damaged file; a variable that is missing, has other dimensions or other units, is not finite or does not
+        increase; no R beside speeds with a unit.
+    ParameterError
+        An alpha that the grid does not hold, or none where it has that axis.
+    """
+    import xarray as xr
+
+    content = io.BytesIO(sealed_content(path, _MOST_BYTES, "grid", "build it again"))
+    try:
+        table = xr.load_dataset(content, decode_times=False)
+    except Exception:  # libraries raise many kinds
+        return None
+    if not {"V", "delta", "Q"} <= set(map(str, table.variables)):
+        return None
+    table = _at_alpha(table, path, alpha)
+    try:
+        return _law_of(_in_si(table))
+    except (KeyError, ValueError) as error:  # of a variable that is missing, and of scipy
+        raise FileError(path, f"is no grid of a law: {' '.join(str(error).split()):.120}") from error
+
+
+def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
+    """A grid at one alpha, where it is over any; raises ParameterError."""
+    if "alpha" not in table.dims:
+        return table
+    low, high = table["alpha"].values[[0, -1]]
+    if alpha is None or not low <= number("alpha", alpha) <= high:
+        raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds")
+    if low == high:
+        return table.squeeze("alpha")
+    way: Any = _WAYS[min(table.sizes["alpha"], len(_WAYS)) - 1]
+    return table.assign_coords(alpha=np.log(table["alpha"])).interp(alpha=np.log(alpha), method=way)
+
+
+def _in_si(table: xr.Dataset) -> xr.Dataset:
+    """A grid in SI units where its V has a unit, else without dimension; raises ParameterError."""
+    names = [name for name in UNITS if name in table.variables]
+    given = {name: str(table[name].attrs.get("units", "missing")) for name in names}
+    for name, unit in given.items():
+        wanted = "1" if given["V"] == "1" else UNITS[name]
+        try:
+            by = factor(unit, wanted)[0]
+        except ParameterError as error:
+            raise ParameterError(f"units of {name}", unit, f"of {wanted}, as those of V") from error
+        table = table.assign({name: table[name].astype(np.float64) * by})
+    return table.assign_attrs(R=1.0) if given["V"] == "1" else table
+
+
+def _law_of(table: xr.Dataset) -> LawGrid:
+    """The law of a grid in SI units; raises KeyError and ValueError, among these ParameterError."""
+    V, delta = checked("V", table["V"].values, low=0.0, strict=True), table["delta"].values
+    axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}
+    for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
+        field = table[name] if name in table else 0.5 * table["M"]
+        found = spline(field.transpose(*over).values, [axes[each] for each in over], 3)
+        splines[name] = compiled(found, over, ("V",), (-most, most) if name == "Q" else (-np.inf, np.inf))
+    return LawGrid(
+        splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
+        slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= _FULL_SLIP * most).all()),
+        R=number("R", table.attrs.get("R", "missing, the radius in m"), low=0.0, strict=True),
+        title=str(table.attrs.get("title", "of another program")),
+    )  # fmt: skip

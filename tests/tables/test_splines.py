@@ -1,0 +1,240 @@
+"""Splines of a grid in compiled code, and the law that they make: for integrators in Python, numba and C."""
+
+import ctypes
+import pickle
+
+import numba
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from closeness import close
+
+import viscoroll as vr
+from viscoroll.io.tables import schema
+
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
+ROLLER = vr.presets.PAPER_CYLINDER
+V, ALPHA = np.geomspace(1e-4, 4.0, 81), np.array([5.0, 7.0, 11.0, 16.0])
+
+
+@pytest.fixture(scope="module")
+def grid() -> xr.Dataset:
+    return vr.tables.build(SCENE, V, delta=vr.tables.creep_nodes(SCENE, V, 81, alpha=ALPHA), alpha=ALPHA)
+
+
+@pytest.fixture(scope="module")
+def path(grid, tmp_path_factory):
+    place = tmp_path_factory.mktemp("grid") / "grid.nc"
+    vr.tables.save(grid, place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def si_grid() -> xr.Dataset:
+    """Of a cylinder, as another program may have it: Q and M alone, over mm/s, in kN/m and N mm/m."""
+    speeds = 1e-3 * V
+    own = vr.tables.build(ROLLER, speeds, delta=vr.tables.creep_nodes(ROLLER, speeds, 81))
+    return xr.Dataset(
+        {
+            "Q": (("delta", "V"), 1e-3 * own.Q.values.T, {"units": "kN/m"}),
+            "M": ("V", 1e3 * own.M.values, {"units": "N mm/m"}),
+        },
+        {
+            "V": ("V", 1e3 * own.V.values, {"units": "mm s-1"}),
+            "delta": ("delta", own.delta.values, {"units": "1"}),
+        },
+        {"R": ROLLER.R, "mu": ROLLER.mu, "load": ROLLER.load},
+    )
+
+
+def inside(table: xr.Dataset, count: int) -> dict[str, np.ndarray]:
+    """Random points in a grid, of V and alpha even in their logarithms."""
+    random, points = np.random.default_rng(3), {}
+    for name in schema.axes_of(table):
+        low, high = table[name].values[[0, -1]]
+        points[name] = random.uniform(low, high, count) if name == "delta" else np.geomspace(low, high, count)
+    return {name: random.permutation(each).clip(*table[name].values[[0, -1]]) for name, each in points.items()}
+
+
+@numba.njit
+def many(at, spline, V, delta, alpha, out):
+    for n in range(V.size):
+        found = at(spline, V[n], delta[n], alpha[n])
+        out[n] = found.value, found.dV, found.ddelta, found.dalpha
+
+
+@pytest.mark.parametrize("linear", [False, True])
+@pytest.mark.parametrize("kind", ["alphas", "one alpha", "few nodes"])
+def test_compiled_values_are_those_of_the_interpolant(grid, kind, linear):
+    table = {
+        "alphas": grid,
+        "one alpha": grid.isel(alpha=0, drop=True),
+        "few nodes": grid.isel(V=[0, 9], delta=[3, 9, 20]),
+    }[kind]
+    look_up, points = vr.tables.Interpolant(table, linear), inside(table, 500)
+    places = [points.get(axis, np.ones(500)) for axis in ("V", "delta", "alpha")]
+    for field in schema.fields_of(table):
+        own = {str(dim): points[str(dim)] for dim in table[field].dims}
+        out, want = np.empty((500, 4)), look_up(field, **own)[field]
+        many(*look_up.jitted(field), *places, out)
+        size = np.abs(table[field].values).max()
+        assert close(out[:, 0], want, rel=tol.COMPILED_SPLINE, scale=size), field
+        for n, axis in enumerate(("V", "delta", "alpha"), 1):
+            if axis not in own:
+                assert (out[:, n] == 0.0).all()
+
+
+def test_compiled_slopes_are_those_of_the_values(grid):
+    points, step = inside(grid, 200), 1e-6
+    middle = {name: each * (1.0 - 4.0 * step) + 2.0 * step * grid[name].values.mean() for name, each in points.items()}
+    for field in ("Q", "lam"):
+        at, spline = vr.tables.Interpolant(grid).jitted(field)
+        for one in np.column_stack([*middle.values()]):
+            found = at(spline, *one)
+            for n, slope in enumerate(found[1:]):
+                move = np.eye(3)[n] * one[n] * step
+                low, high = at(spline, *(one - move)).value, at(spline, *(one + move)).value
+                if abs(found.value) < SCENE.mu and {abs(low), abs(high)}.isdisjoint({SCENE.mu}):
+                    scale = abs(found.value) / abs(one[n])
+                    assert close((high - low) / (2.0 * move[n]), slope, rel=tol.COMPILED_SLOPE, scale=scale)
+
+
+def test_compiled_values_are_clipped_and_nothing_is_extrapolated(grid):
+    one = grid.sel(alpha=[11.0])
+    free = one.assign_attrs(mu=np.inf)
+    (at, Q), (_, plain) = (vr.tables.Interpolant(table).jitted("Q") for table in (one, free))
+    creeps = np.linspace(one.delta[0].item(), one.delta[-1].item(), 4001)
+    values = np.array([at(Q, 0.02, creep, 0.0) for creep in creeps])
+    beyond = np.array([abs(at(plain, 0.02, creep, 0.0).value) for creep in creeps]) > SCENE.mu
+    assert beyond.any()
+    assert (np.abs(values[beyond, 0]) == SCENE.mu).all()
+    assert (values[beyond, 1:] == 0.0).all()
+    for outside in ((5.0, 0.0), (1e-5, 0.0), (0.1, 1.0), (np.nan, 0.0), (0.1, np.nan), (-0.1, 0.0)):
+        assert np.isnan(at(Q, *outside, 0.0)).all()
+
+
+# --- the law of a grid ---
+
+
+@numba.njit
+def called(law, V, omega):
+    return law(V, omega)
+
+
+def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, path):
+    given = vr.load_law(path, alpha=11.0)
+    law, exact = vr.law(given), vr.law(SCENE)
+    points = inside(grid, 2000)
+    speeds = points["V"] * np.random.default_rng(1).choice([-1.0, 1.0], 2000)
+    omega = speeds * (1.0 + points["delta"])
+    found, truth = law(speeds, omega, slopes=True), exact(speeds, omega)
+    assert np.abs(found.Q - truth.Q).max() <= grid.Q.attrs["spline_error"]
+    assert np.abs(found.M - truth.M).max() <= grid.M.attrs["spline_error"]
+    assert (found.M_half_space == found.M_cylinder).all()
+    (function, data), out = law.ctypes, (ctypes.c_double * 8)()
+    for n in range(50):
+        assert function(speeds[n], omega[n], out, data) == 0
+        state = tuple(float(each[n]) for each in found)
+        assert tuple(out) == state == called(law.jitted, speeds[n], omega[n]) == law.jitted(speeds[n], omega[n])
+        assert law(speeds[n], omega[n]) == state[:4]
+    again = pickle.loads(pickle.dumps(law))
+    assert again(0.3, 0.301) == law(0.3, 0.301)
+    assert "for vr.law alone" in repr(law)
+
+
+def test_slopes_of_the_law_of_a_grid(path):
+    law, step = vr.law(vr.load_law(path, alpha=11.0)), 1e-7
+    for V, omega in ((0.3, 0.301), (-0.3, -0.301), (2.0, 1.99), (1e-5, 0.99e-5), (0.5, -0.5)):
+        found = law(V, omega, slopes=True)
+        over_V = [
+            (high - low) / (2.0 * step * V) for low, high in zip(law(V * (1 - step), omega), law(V * (1 + step), omega))
+        ]
+        over_omega = (law(V, omega * (1 + step)).Q - law(V, omega * (1 - step)).Q) / (2.0 * step * omega)
+        scale = 1.0 / abs(V)
+        assert close(found.dQ_dV, over_V[0], rel=tol.COMPILED_SLOPE, scale=scale)
+        assert close(found.dM_half_space_dV, over_V[2], rel=tol.COMPILED_SLOPE, scale=scale)
+        assert close(found.dM_cylinder_dV, over_V[3], rel=tol.COMPILED_SLOPE, scale=scale)
+        assert close(found.dQ_domega, over_omega, rel=tol.COMPILED_SLOPE, scale=scale)
+
+
+def test_the_law_of_a_grid_beyond_its_axes(path):
+    law = vr.law(vr.load_law(path, alpha=11.0))
+    assert law(0.0, 0.1)[:2] == (SCENE.mu, 0.0)
+    assert law(-0.5, 3.0).Q == SCENE.mu
+    slow = law(1e-4, 1.01e-4)
+    assert close(law(1e-6, 1.01e-6).Q, slow.Q, rel=tol.COMPILED_SLOPE)
+    assert close(law(1e-6, 1.01e-6).M, 1e-2 * slow.M, rel=tol.COMPILED_SLOPE)
+    assert np.isnan(law.jitted(4.1, 4.1)).all()
+    assert np.isnan(called(law.jitted, np.nan, 0.1)).all()
+
+
+@pytest.mark.parametrize("form", ["NETCDF4", "NETCDF3_64BIT"])
+def test_a_grid_of_another_program(si_grid, tmp_path, form):
+    """Other units and order of dimensions, netCDF 3 and 4, no attribute of this package."""
+    path = tmp_path / "other.nc"
+    si_grid.to_netcdf(path, engine="h5netcdf" if form == "NETCDF4" else "scipy", format=form)
+    law, exact = vr.law(vr.load_law(path)), ROLLER.law()
+    for V, creep in ((1e-3, 1e-3), (-3e-3, 5e-3), (1e-4, -0.01), (2e-3, 0.5)):
+        omega = V * (1.0 + creep) / ROLLER.R
+        found, truth = law(V, omega, slopes=True), exact(V, omega, slopes=True)
+        load = ROLLER.load
+        assert close(found.Q, truth.Q, rel=tol.COARSE_GRID, scale=load)
+        assert close(found.M, truth.M, rel=tol.COARSE_GRID, scale=load * ROLLER.R)
+        assert close(found.dQ_domega, truth.dQ_domega, rel=tol.COARSE_GRID_SLOPE, scale=abs(load * ROLLER.R / V))
+
+
+def test_what_is_no_grid_of_a_law(si_grid, tmp_path):
+    bare, unitless = si_grid.copy(), si_grid.Q.copy()
+    bare.attrs = unitless.attrs = {}
+    for changed, words in (
+        (si_grid.drop_vars("M"), ("is no grid of a law", "'M'")),
+        (bare, ("R = ", "radius in m")),
+        (si_grid.assign_attrs(R=-1.0), ("R = -1", "> 0")),
+        (si_grid.assign(Q=si_grid.Q.assign_attrs(units="N m2")), ("units of Q = N m2", "N/m")),
+        (si_grid.assign(Q=si_grid.Q.assign_attrs(units="1")), ("units of Q = 1", "N/m")),
+        (si_grid.assign(Q=unitless), ("units of Q = missing",)),
+        (si_grid.assign(M=si_grid.Q.assign_attrs(units="N")), ("'V'", "delta")),
+        (si_grid.assign(M=si_grid.M.copy(data=np.nan * V)), ("nans",)),
+        (si_grid.isel(V=slice(None, None, -1)), ("strictly increasing",)),
+        (si_grid.assign_coords(V=si_grid.V.copy(data=V - V[0])), ("V = 0", "> 0")),
+    ):
+        changed.to_netcdf(tmp_path / "bad.nc", engine="h5netcdf")
+        with pytest.raises(vr.FileError) as raised:
+            vr.load_law(tmp_path / "bad.nc")
+        assert all(word in str(raised.value) for word in ("bad.nc", *words)), str(raised.value)
+
+
+def test_a_grid_of_an_alpha_out_of_its_range(path):
+    for alpha in (None, 4.0, 17.0, np.nan):
+        with pytest.raises(vr.ParameterError, match=r"alpha = .*: must be"):
+            vr.load_law(path, alpha=alpha)
+
+
+def test_states_outside_of_a_grid_are_refused(path, si_grid, tmp_path):
+    law = vr.law(vr.load_law(path, alpha=11.0))
+    with pytest.raises(vr.ParameterError, match=r"V = 5: must be within the table's range \[-4, 4\]"):
+        law(5.0, 5.0)
+    with pytest.raises(vr.ParameterError, match="V = nan"):
+        law(np.nan, 1.0)
+    free = si_grid.isel(delta=slice(30, 51))
+    free.attrs = {"R": ROLLER.R}
+    free.to_netcdf(tmp_path / "narrow.nc", engine="h5netcdf")
+    narrow = vr.law(vr.load_law(tmp_path / "narrow.nc"))
+    with pytest.raises(vr.ParameterError, match="delta = 1: must be within the table's range"):
+        narrow(np.array([1e-3, 1e-3]), np.array([1e-2, 2e-2]))
+
+
+@pytest.mark.parametrize("call", ["roll", "ensemble", "contact", "steady"])
+def test_motions_are_not_integrated_from_a_grid(path, call):
+    given = vr.load_law(path, alpha=11.0)
+    calls = {
+        "roll": lambda: vr.roll(given, 1.0, 1.0, [1.0]),
+        "ensemble": lambda: vr.ensemble(given, [1.0], [1.0], [1.0]),
+        "contact": lambda: vr.contact(given, 1.0, delta=0.0),
+        "steady": lambda: vr.steady(given, force=0.01),
+    }
+    with pytest.raises(vr.ParameterError, match=f"^{call} reads the rows of a law.*vr.law.grid. gives its splines"):
+        calls[call]()
+    with pytest.raises(vr.ParameterError, match=r"for vr\.law alone"):
+        SCENE.replace(material=given)
