@@ -31,6 +31,8 @@ SCENE = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=1.0)
 CYLINDER = vr.Cylinder(R=1.0, m=40.0, E=2e6, nu=0.5, T_epsilon=0.5, T_sigma=0.05, mu=0.3)
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0], [0.5]), 0.25)
 OMEGA = np.geomspace(1e-2, 1e2, 12)
+#: whole milliseconds, which a duration of pandas holds exactly
+TIMES = np.round(OMEGA, 3)
 CURVE = 1e6 * (1.0 + OMEGA**2 / (1.0 + OMEGA**2)), 1e6 * OMEGA / (1.0 + OMEGA**2)
 #: a value of each argument, which goes with those of the others of its function
 SAMPLES: dict[str, Any] = {
@@ -51,7 +53,10 @@ OWN: dict[tuple[str, str], Any] = {
     ("Prony.times", "factor"): 2.0,
     ("Material.abaqus", "g"): [0.5], ("Material.abaqus", "tau"): [0.5], ("Material.ansys", "alpha"): [0.5],
     ("Material.ansys", "tau"): [0.5], ("Material.comsol", "G"): [1e6], ("Material.comsol", "tau"): [0.5],
-    ("Material.lsdyna", "G"): [1e6], ("Material.lsdyna", "beta"): [2.0],
+    ("Material.lsdyna", "G"): [1e6], ("Material.lsdyna", "beta"): [2.0], ("Material.abaqus", "k"): [0.5],
+    ("Material.ansys", "k"): [0.5], ("Material.comsol", "K"): [1e6], ("Material.lsdyna", "K"): [1e6],
+    ("Cover", "series"): RUBBER.prony, ("Cover", "part"): 0.75, ("Cover", "other_nu"): 0.25,
+    ("fit_relaxation", "t"): TIMES, ("fit_relaxation", "relaxation"): 1e6 * (1.0 + np.exp(-TIMES)),
     ("fit_prony", "omega"): OMEGA, ("fit_prony", "storage"): CURVE[0], ("fit_prony", "loss"): CURVE[1],
     ("fit_prony", "temperature"): np.full(12, 30.0),
     ("Coastdown", "t"): [0.0, 0.25, 0.5], ("Coastdown", "V"): [0.5, 0.4, 0.3], ("Coastdown", "x"): [0.0, 0.1, 0.2],
@@ -60,10 +65,11 @@ OWN: dict[tuple[str, str], Any] = {
 #: words of annotations of what may be a number with a unit, and of what is none
 NUMBERS = ("float", "ArrayLike", "Numbers", "Acting", "Course", "Any")
 NO_NUMBERS = ("Mapping", "PathLike", "Callable[[", "Iterable[str]", "Reasons", "Labels", "LawTable")
-#: not looked at: what has a unit only where it is used (see the tests of drives), files, mappings by name, results
+#: left out: values that have a unit where they are used alone (tests of drives), files, mappings by name, results;
+#: ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
 LEFT_OUT = {
     "Schedule", "Feedback", "read_dma", "load_law", "identify", "Values", "Steady", "Motion", "Ensemble", "Validity",
-    "Fit", "Law",
+    "Fit", "Law", "DynamicModuli", "RelaxationFit",
 }  # fmt: skip
 #: what has methods that take numbers
 MADE: dict[str, Callable[[], Any]] = {
@@ -109,7 +115,7 @@ def may_be_numbers(name: str, parameter: inspect.Parameter) -> bool:
     """Whether its annotation allows for a number that has a unit."""
     said = str(parameter.annotation)
     return any(word in said for word in NUMBERS) and not (
-        any(word in said for word in NO_NUMBERS) or name in ("self", "fields", "material", "path")
+        any(word in said for word in NO_NUMBERS) or name in ("self", "fields", "material", "path", "resolve")
     )
 
 

@@ -169,14 +169,15 @@ class Material(FromPrograms):
         """
         if not callable(shift):
             raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
-        if np.ndim(temperature):
+        given = checked("temperature", temperature, unit="degC")
+        if given.ndim:
             sentence = (
-                f"temperature is an array of shape {np.shape(temperature)}, and a material is at one temperature: make "
+                f"temperature is an array of shape {given.shape}, and a material is at one temperature: make "
                 "one each, [rubber.at(T, shift) for T in temperatures], or give the temperatures to a run file as a "
                 "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
             )
-            raise ParameterError("temperature", np.shape(temperature), "one number", sentence)
-        temperature = celsius("temperature", temperature)
+            raise ParameterError("temperature", given.shape, "one number", sentence)
+        temperature = celsius("temperature", float(given))
         factor = relative(shift, temperature, self.temperature)
         measured = None if self.measured is None else self.measured.shifted(factor)
         return replace(self, T_ref=self.T_ref * factor, measured=measured, temperature=temperature)
