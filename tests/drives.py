@@ -1,5 +1,8 @@
 """A roller that is driven, and drives that data files hold: numbers, schedules and gains in plain words."""
 
+import math
+from typing import NamedTuple
+
 import viscoroll as vr
 
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
@@ -11,10 +14,27 @@ DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
 ON_DMA = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
 
 
+class Wave(NamedTuple):
+    """A callable of time: mean + amplitude sin(rate t + phase)."""
+
+    mean: float
+    amplitude: float
+    rate: float
+    phase: float
+
+    def __call__(self, t: float) -> float:
+        return self.mean + self.amplitude * math.sin(self.rate * t + self.phase)
+
+    def __rmul__(self, factor: float) -> "Wave":  # type: ignore[override]
+        return self._replace(mean=factor * self.mean, amplitude=factor * self.amplitude)
+
+
 def given(plain):
     """As calls take them."""
     if not isinstance(plain, dict):
         return plain
+    if "sine" in plain:
+        return Wave(plain["mean"], *plain["sine"])
     if "times" in plain:
         return vr.Schedule(**plain)
     return vr.Feedback(**plain | {"value": given(plain["value"])})

@@ -9,10 +9,11 @@ from refusals import refused
 from viscoroll.core.blocks import cores, run_blocks, thread_count
 
 
-@pytest.mark.parametrize("threads", ["two", "0", "-5"])
+@pytest.mark.parametrize("threads", ["two", "0", "-5", "1.5"])
 def test_a_number_of_threads_that_is_none(monkeypatch, threads):
     monkeypatch.setenv("VISCOROLL_THREADS", threads)
     refused(thread_count, f"VISCOROLL_THREADS = '{threads}': must be a whole number >= 1")
+    refused(lambda: run_blocks(lambda start, stop: None, 2, 100), "VISCOROLL_THREADS")
     monkeypatch.setenv("VISCOROLL_THREADS", "")
     assert thread_count() == cores()
 

@@ -62,6 +62,10 @@ def test_materials(toml):
         (RUBBER, rubber),
         (RUBBER + more, replace(rubber, name="tread", density=1100.0)),
         (RUBBER + warm, rubber.at(30.0, vr.WLF(T0=20.0))),
+        (
+            RUBBER + "reference = 20.0\n" + warm.replace("20.0", "-10.0"),
+            replace(rubber, temperature=20.0).at(30.0, vr.WLF(T0=-10.0)),
+        ),
         (RUBBER + thermal, rubber.at(30.0, vr.Arrhenius(energy=8e4, T0=20.0))),
         ("[material]\nE = inf\nnu = 0.5", vr.Material.rigid()),
         ("[material]\nE = 2e11\nnu = 0.3", vr.Material.elastic(2e11, 0.3)),

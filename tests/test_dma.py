@@ -127,6 +127,185 @@ def test_reference_between_curves_and_shifts_that_are_given():
         assert close(given.alpha, ALPHA, rel=tol.DMA_ALPHA)
 
 
+@pytest.mark.parametrize("reference", [0.0, 20.0, -30.0])
+def test_times_are_those_at_the_reference(reference):
+    """By a function whose constants are of another temperature, by factors in either order: all modes times a_T."""
+    omega, *columns = isotherms(21, 0.0)
+    moved = vr.WLF(C1=8.86 * 101.6 / 41.6, C2=41.6, T0=-60.0)  # WLF of T0 = 0, C2 = 101.6, moved to -60
+    truth = np.sort(TAU * wlf(reference))
+    for shift, turn in (
+        (moved, 1),
+        (lambda T: 7.0 * wlf(T), -1),
+        (3.0 * wlf(TEMPERATURES), 1),
+        (wlf(TEMPERATURES), -1),
+    ):
+        curves = [column[::turn] for column in (omega, *columns)]
+        given = shift if callable(shift) else shift[::turn]
+        fit = vr.fit_prony(
+            *curves, TAU.size, temperature=TEMPERATURES[::turn], reference=reference, shift=given, misfit=1e-6
+        )
+        assert close(np.sort(fit.prony.tau) * fit.T_ref, truth, rel=tol.DMA_SHIFTED_TIMES)
+        assert close(fit.shifts.a_T, wlf(TEMPERATURES) / wlf(reference), rel=tol.DMA_SHIFTED_TIMES)
+        assert fit.material().temperature == fit.temperature == reference
+
+
+def test_the_reference_that_a_shift_means():
+    """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the middle curve."""
+    curves = isotherms(21, 0.0)
+    for shift, reference in (
+        (vr.WLF(C1=8.86, C2=101.6, T0=0.0), 0.0),
+        (vr.Arrhenius(energy=8e4, T0=-10.0), -10.0),
+        (wlf(TEMPERATURES) / wlf(20.0), 20.0),
+        (2.0 * wlf(TEMPERATURES), 0.0),
+        (vr.WLF(C1=8.86 * 101.6 / 201.6, C2=201.6, T0=100.0), 0.0),
+    ):
+        fit = vr.fit_prony(*curves, temperature=TEMPERATURES, shift=shift)
+        assert fit.shifts.reference == reference
+        assert close(np.interp(reference, TEMPERATURES, fit.shifts.a_T), 1.0, rel=tol.DMA_SHIFTED_TIMES)
+
+
+def test_temperatures_as_they_were_measured():
+    """Within 0.5 K of a neighbour points are of one set, and the report says so; factors go by the sets."""
+    omega, storage, loss = (np.concatenate(column[::-1]) for column in isotherms(21, 0.0))
+    nominal = np.repeat(TEMPERATURES[::-1], 21)
+    measured = nominal + np.tile(np.linspace(-0.3, 0.3, 21), TEMPERATURES.size)
+    for shift in (None, wlf(TEMPERATURES[::-1])):
+        exact = vr.fit_prony(omega, storage, loss, temperature=nominal, reference=0.0, shift=shift)
+        fit = vr.fit_prony(omega, storage, loss, temperature=measured, reference=0.0, shift=shift)
+        assert close(fit.shifts.temperature, TEMPERATURES, rel=1e-12, scale=1.0)
+        assert close(fit.shifts.a_T, exact.shifts.a_T, rel=tol.DMA_SHIFTED_TIMES)
+        assert "were taken for 8" in str(fit)
+        assert "were taken for" not in str(exact)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.permutations(range(8)), st.sampled_from([None, -30.0, 0.0, 20.0]), st.booleans(), st.floats(1e-3, 1e3))
+def test_the_order_of_curves_and_the_unit_of_factors_do_not_matter(order, reference, by_points, scale):
+    """Curves in any order with factors in the same, all factors times a number: one fit, at the reference."""
+    curves = isotherms(7, 0.0)
+    base = 0.0 if reference is None else reference
+    expected = vr.fit_prony(*curves, temperature=TEMPERATURES, shift=wlf, reference=base)
+    turned = [[column[n] for n in order] for column in curves]
+    temperature = TEMPERATURES[list(order)]
+    factors = (wlf(TEMPERATURES) * (scale if reference is not None else 1.0))[list(order)]
+    if by_points:
+        turned, temperature = [np.concatenate(column) for column in turned], np.repeat(temperature, 7)
+    fit = vr.fit_prony(*turned, temperature=temperature, shift=factors, reference=reference)
+    assert fit.temperature == base
+    assert close(fit.omega, expected.omega, rel=tol.DMA_SHIFTED_TIMES)
+    assert close(fit.shifts.a_T, expected.shifts.a_T, rel=tol.DMA_SHIFTED_TIMES)
+
+
+def test_a_plateau_fixes_no_shift():
+    """Two decades below the slowest mode nothing moves: a warning and the report say so; storage alone is offered."""
+    omega = np.logspace(-5.0, -3.0, 11)
+    curves = [curve(omega * wlf(T), tau=TAU[1:], strengths=STRENGTHS[1:])[1:] for T in (0.0, 10.0)]
+    columns = [omega] * 2, *zip(*curves, strict=True)
+    columns = [list(column) for column in columns]
+    columns[2] = [np.full(11, 50.0), np.full(11, 50.0)]  # the noise floor of the instrument
+    with pytest.warns(vr.ModelWarning, match=r"does not fix the shift from 0 to 10 C \(.*; give shift=, or try on="):
+        fit = vr.fit_prony(*columns, temperature=[0.0, 10.0], misfit=0.5)
+    assert "does not fix the shift from 0 to 10 C" in str(fit)
+
+
+def test_shifts_by_storage_alone():
+    """A loss modulus that does not shift with the storage modulus (here: constant) leaves its shifts as they are."""
+    omega, storage, _ = isotherms(21, 0.0)
+    flat = [np.full(21, 1e5)] * TEMPERATURES.size
+    fit = vr.fit_prony(omega, storage, flat, temperature=TEMPERATURES, reference=0.0, on="storage", misfit=0.5)
+    assert close(np.log10(fit.shifts.a_T), np.log10(wlf(TEMPERATURES)), rel=tol.DMA_SHIFT, scale=1.0)
+
+
+# --- shear, records, many points, relaxation ---
+
+
+def test_shear_is_shear():
+    """E = 2 (1 + nu) G where the material is made, and the report, the material and the files say so."""
+    omega, storage, loss = curve(WHOLE)
+    tension = vr.fit_prony(omega, storage, loss, source="sweep.csv")
+    record = vr.DynamicModuli(omega, storage / 2.98, loss / 2.98, mode="shear", source="sweep.csv")
+    shear = vr.fit_prony(record)
+    assert close(shear.material(0.49).E, tension.material(0.49).E, rel=tol.DMA_EXACT)
+    assert close(shear.material(0.3).G, shear.E, rel=tol.DMA_EXACT)
+    assert "shear: E = 2 (1 + nu) G = 2.98 G" in str(shear.material(0.49).measured)
+    text = str(shear)
+    for words in ("the data are of shear", "2.98 G at nu = 0.49", "in G', ", "slope of G' allows", "G_i/G"):
+        assert words in text
+    assert "shear" not in str(tension)
+    assert shear.to_xarray().attrs["modulus"] == shear.mode == "shear"
+    assert vr.fit_prony(*record[:3], mode="shear").material(0.4) == vr.fit_prony(record, source="60 points").material(
+        0.4
+    )
+
+
+def test_a_record_with_temperatures_becomes_curves():
+    omega, storage, loss = isotherms(11, 0.0)
+    flat = [np.concatenate(column) for column in (omega, storage, loss)]
+    at = np.repeat(TEMPERATURES, 11)
+    record = vr.DynamicModuli(*flat, temperature=at, source="steps.csv")
+    fit = vr.fit_prony(record, reference=20.0)
+    assert fit.prony == vr.fit_prony(*flat, temperature=at, reference=20.0).prony
+    assert (fit.source, fit.temperature, fit.material().temperature) == ("steps.csv", 20.0, 20.0)
+    one = vr.fit_prony(*curve(WHOLE), temperature=23.0)
+    assert one.material().temperature == 23.0
+    assert "23 C, at which these times are" in str(one)
+
+
+@pytest.mark.parametrize("kind", ["dynamic", "relaxation"])
+def test_many_points_are_thinned(kind):
+    """20,000 points with noise give the series of exact data, in a time that does not grow with them."""
+    if kind == "dynamic":
+        omega, storage, loss = curve(np.geomspace(1e-2, 1e5, 20000), noise=0.01)
+        fit = vr.fit_prony(omega, storage, loss)
+    else:
+        t = np.geomspace(1e-5, 1e3, 20000)
+        noisy = relaxing(t) * (1.0 + 0.01 * np.random.default_rng(1).standard_normal(t.size))
+        fit = vr.fit_relaxation(t, noisy)
+    assert fit.reached
+    assert fit.points == 20000
+    assert fit.data[0].size <= 500
+    assert "logarithmic bins stand for the points" in str(fit)
+    inner = np.geomspace(1e-2, 1e4, 200)
+    _, storage, loss = curve(inner)
+    material = fit.material()
+    assert close(material.storage(inner), storage, rel=tol.DMA_MANY)
+    assert close(material.loss(inner), loss, rel=tol.DMA_MANY if kind == "dynamic" else tol.DMA_RELAXATION_LOSS)
+    assert close((fit.measured.low, fit.measured.high), fit.band, rel=1e-15)
+
+
+def relaxing(t):
+    return E + np.exp(-np.divide.outer(t, TAU)) @ STRENGTHS
+
+
+def test_relaxation_and_dynamic_data_give_one_material():
+    """E(t) of ten modes and E', E'' of the same: the same moduli inside both bands; the band follows from 1/t."""
+    t = np.geomspace(1e-4, 1e3, 60)
+    fit = vr.fit_relaxation(t[::-1], relaxing(t)[::-1], misfit=1e-3, temperature=20.0, source="step.csv")
+    assert fit.reached
+    assert close((fit.measured.low, fit.measured.high), (1e-3, 1e4), rel=1e-12)
+    assert (fit.measured.source, fit.material().temperature) == ("step.csv", 20.0)
+    omega = np.geomspace(1e-2, 1e3, 30)
+    material = fit.material(0.5)
+    _, storage, loss = curve(omega)
+    assert close(material.storage(omega), storage, rel=tol.DMA_RELAXATION)
+    assert close(material.loss(omega), loss, rel=tol.DMA_RELAXATION_LOSS)
+    assert close(fit.modulus(t), fit.material().relaxation(t), rel=1e-13)
+    assert close(fit.E, E, rel=tol.DMA_ALPHA)
+    shear = vr.fit_relaxation(t, relaxing(t) / 3.0, misfit=1e-3, mode="shear").material(0.5)
+    assert close(shear.relaxation(t), relaxing(t), rel=tol.DMA_RELAXATION)
+    assert "in G(t)" in str(vr.fit_relaxation(t, relaxing(t), mode="shear"))
+    roller = vr.Cylinder(R=0.1, m=30.0, material=material, mu=0.5)
+    assert fit.validity(roller, 0.1).holds == roller.validity(0.1).measured.holds
+    assert fit.to_xarray().relaxation_fit.dims == ("t",)
+    fit.plot()
+
+
+def test_two_modes_of_a_relaxation_are_found_exactly():
+    t = np.geomspace(1e-4, 1e2, 50)
+    fit = vr.fit_relaxation(t, 1.0 + 2.0 * np.exp(-t) + 6.0 * np.exp(-t / 1e-3))
+    assert close((*fit.prony.tau, *fit.prony.E, fit.E, fit.T_ref), (1.0, 1e-3, 2.0, 6.0, 1.0, 1.0), rel=tol.DMA_EXACT)
+
+
 # --- files ---
 
 

@@ -52,6 +52,9 @@ NAMES = vars(experiments) | {
     "law_table": law_table, "table_of": table_of,
     "SOFT": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0),
     "STEEL": vr.Material.elastic(2e11, 0.3),
+    "COVERED": vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0),
+    "THIN": vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5),
+    "RUBBER_COVER": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), thickness=0.02),
     "PAIR": lambda material, base: vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base).validity(1.0),
     "stats": stats, "PAPER": vr.presets.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.presets.RUBBER_CYLINDER,
 }  # fmt: skip

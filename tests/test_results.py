@@ -124,6 +124,15 @@ def test_without_a_threshold_nothing_is_told_to_rest():
     assert "to rest" not in repr(m)
 
 
+def test_a_motion_tells_its_end_in_the_units_of_its_cylinder():
+    """A threshold in m/s is of V and R omega; a speed that is prescribed is no second course of V."""
+    roller = vr.presets.RUBBER_CYLINDER
+    assert "|V| and R |omega| fell below the rest threshold (" in repr(roller.roll(1.0, 0.0, [0.0, 1e4], rest=0.1))
+    rows = [line.split("  ")[1] for line in repr(roller.roll(None, 1.0, [0.0, 1.0], V=1.0)).splitlines()[1:]]
+    assert [rows.count("V"), rows.count("prescribed V")] == [1, 1]
+    assert repr(vr.roll(SCENE, 0.0, 0.0, 1e-4)).endswith("(1 step)")
+
+
 def test_a_validity_is_a_card(results):
     """Not the numbers of all times, in text and in a notebook; its parts are a sentence each."""
     found = results["motion in SI"].validity()

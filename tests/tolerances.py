@@ -8,6 +8,11 @@ BESSEL_ULP = 4.0
 #: Q; measured 4e-13.  A slope in place of a mean one is off by 2e-7 and more.
 SMALL_TRACTION = 1e-11
 
+# --- core/quantities.py (test_quantities.py) ---
+#: A number in another unit and back: two roundings of the argument (of kelvin less 273.15: ten), times the condition of
+#: what is computed, a motion's and a fit's below 1e3.
+UNIT_CONVERTED = 1e-11
+
 # --- contact_law/stress.py (test_stress.py) ---
 #: V = 0 and alpha = 1 are ellipses: roundings of the edge distances; relative to the peak.
 STRESS_ELLIPSE = 1e-15
@@ -46,6 +51,9 @@ INTEROP = 1e-12
 INTEROP_SLOPES = 1e-11
 #: Motions of vr_roll.h at rtol 1e-8 against ``roll`` at 1e-10.
 INTEROP_ROLL = 1e-7
+#: vr_roll.h at rtol 1e-9 against ``roll``, through rest or from it, of the largest of V, omega and x; below its
+#: ``rest`` of 1e-6 or less creep counts from that.
+INTEROP_TURNED = 1e-7
 
 # --- ratios.py (test_ratios.py) ---
 #: r, k, i2 in units in the last place; the stated bound of the module; measured 1.4.
@@ -293,6 +301,17 @@ UNSTEADY_SLOW, UNSTEADY_FAST = 1e-2, 1e-3
 UNSTEADY_UNIT = 1e-9
 
 # --- DMA to Prony (test_dma.py) ---
+#: times and factors of exact data at another reference: the least squares of ten modes of rounded data.
+DMA_SHIFTED_TIMES = 1e-6
+#: moduli of 20,000 points with 1 % noise, which are the means of 500 bins, inside the band.
+DMA_MANY = 0.02
+#: E' and E'' of a series fitted to E(t) to 0.1 and 0.3 %, a decade inside the band: E'' has the ripple of one mode a
+#: decade, which E(t) does not show; measured 0.007 and 0.11.
+DMA_RELAXATION, DMA_RELAXATION_LOSS = 0.02, 0.2
+#: contact length at the speed from which on a layer counts as thick: the bisection.
+LAYER_SPEED = 1e-8
+#: share of 1000 random draws, 27 %, and that lam changes with a_T too: three standard deviations and 5 %.
+SHARE = 0.2
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
 DMA_EXACT = 1e-6
 #: Ten modes over eight decades, 0.5 % noise: rms misfit of E' and E'' each, as asked for by default.
@@ -310,6 +329,10 @@ DMA_WINDOW_MOMENT = 0.1
 DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
+#: Files written with seven digits: half a unit of the last one, of loss over storage twice.
+DMA_DIGITS = 2e-6
+#: Numbers written with ten digits.
+WRITTEN = 1e-9
 #: that of the curve shipped from pyvisco, "about 1.65"; measured 1.68.
 DMA_PYVISCO = (1.55, 1.75)
 #: log10 a_T of WLF-made data: 21 points in three decades without noise (the interpolant; measured 1.3e-4), and 11
@@ -376,6 +399,9 @@ FMU_ROLLER = 1e-9
 FMU_FROM_REST = 1e-6
 #: A roller by CVode of fmpy at rtol 1e-8 and its own absolute tolerance.
 FMU_TOOL = 1e-4
+#: The same at the tolerance that the FMU declares, 1e-5, through rest, of the largest speed or 1 m/s: CVode's errors
+#: add up to some tens of its tolerance.
+FMU_NEAR_REST = 1e-3
 # --- callables as polynomials (motion/test_fitted.py) ---
 #: Values taken and pieces made; measured 2,000 to 21,000 and up to 76: the root has no bounds to its slope at 0.
 CALLABLE_VALUES, CALLABLE_PIECES = 25_000, 100
@@ -390,6 +416,14 @@ LATE_CREEP = 1e-14
 CALLABLE_STEPS = 500
 #: A jump a number's distance away.
 CALLABLE_JUMP = 1e-14
+#: Bytes that a corner takes while schedules are made ready: ten columns of a piece, and some thirty numbers on the way.
+BYTES_A_CORNER = 500
+#: Bytes beside the arrays of 100 motions of 3,000 corners each (4.8 MB): a copy that nobody can write to, and the
+#: pieces of some motions at a time.
+BYTES_OF_SCHEDULES = 20e6
+#: A pulse of END/8000 by a callable and by a schedule: its ends are found to the rounding of END, a share of 1e-12 of
+#: its width.  What it changes, as a share of V, is far more.
+CALLABLE_PULSE, CALLABLE_PULSE_ACTS = 1e-10, 1e-2
 
 # --- setting out (motion/test_sets_out.py) ---
 #: Faint drives against one of 1e-9, which is not quite linear.
@@ -416,3 +450,36 @@ DRAWN = 0.35
 PRIOR = 0.15
 #: What two outliers of 20 standard deviations move a robust fit by, of a logarithm, at most, and another at least.
 OUTLIERS = 0.1
+
+# --- covers of finite thickness (test_covers.py) ---
+#: A cover of 1e9 l0 against the half-space: lam, epsilon, delta_star, Q and M; asked 1e-12, of M 1e-11.
+COVER_THICK = 1e-12
+#: Rows against the solve with more terms: lam, delta_star, epsilon and M; asked.  The solve itself loses digits of
+#: epsilon at very low and of M at very high speed.
+COVER_ROWS = 1e-11
+#: delta_0 times 2 kappa where nu < 1/2: the strain is added up along the contact between points.
+COVER_FREE = 1e-5
+#: The load of an elastic layer by pipeline/evidence/prove/layer.py, which is good to seven digits.
+COVER_ELASTIC = 1e-7
+#: delta_0 of an elastic half-space, in closed form: a rule of 512 points.
+COVER_LOCAL = 1e-9
+#: A foundation of springs, which is off by the thickness over the half length times 0.43, at 1/6 of it.
+COVER_THIN = 0.08
+#: M V at 1e9 and 2e9 times the fastest rate.
+COVER_FAST = 1e-6
+#: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as large as that.
+COVER_NU = 1e-5
+#: Differences over a millionth of V: their second order, and rounding over a millionth.
+COVER_SLOPES = 1e-6
+#: Motions whose energy is looked at.
+COVER_RTOL = 1e-9
+#: Differences of V and omega over time: their second order.
+COVER_RATES = 1e-6
+#: Forces at equilibria, over P: roundings of Q near its limit.
+COVER_STEADY = 1e-13
+#: A thickness each, interpolated in its logarithm, against a law of its own; motions at rtol 1e-10.
+COVER_EACH, COVER_EACH_MOTION = 1e-10, 1e-9
+#: delta at rest and at 1e-11 of a relaxation time, by which lengths differ.
+COVER_REST = 1e-9
+#: Steel of 2e11 Pa beside rubber of 2e6 Pa takes 1e-5 of the compliance.
+COVER_ON_STEEL = 1e-3

@@ -64,8 +64,13 @@ chord <- function(law, p, s) {
   total
 }
 
+# NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300.
 contact_state <- function(law, kappa, mu, V, slip) {
   u <- kappa * abs(V)
+  if (!isTRUE(kappa > 0 && mu > 0 && mu < Inf && u <= 1e300 && abs(slip) < Inf)) {
+    names <- c("lam", "epsilon", "delta_star", "beta", "Q", "M", "M_half_space", "M_cylinder", "N")
+    return(as.list(setNames(rep(NaN, 9), names)))
+  }
   f <- as.list(speed(law, u))
   L <- f$lam * (1 + f$epsilon)
   delta <- if (slip == 0) 0 else abs(slip / V)

@@ -2,6 +2,7 @@
 ! gfortran -c read_law.f90 $(nf-config --fflags);  link with $(nf-config --flibs).  Arrays come as (power, octave).
 module read_law_file
   use netcdf
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
   implicit none
   type law
     integer :: e0, rows
@@ -100,6 +101,7 @@ contains
     end if
   end function
 
+  ! NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300
   pure type(state) function contact(a, kappa, mu, V, slip) result(s)
     type(law), intent(in) :: a
     real(8), intent(in) :: kappa, mu, V, slip
@@ -107,6 +109,11 @@ contains
     real(8) :: u, f(7), z, L, delta, D, w, r, turn
     integer :: k
     u = kappa*abs(V)
+    if (.not. (kappa > 0 .and. mu > 0 .and. ieee_is_finite(mu) .and. u <= 1d300 .and. ieee_is_finite(slip))) then
+      z = ieee_value(z, ieee_quiet_nan)
+      s = state(z, z, z, z, z, z, z, z, z)
+      return
+    end if
     turn = merge(0d0, sign(1d0, slip), slip == 0)
     p = at(a, u)
     if (p%row < a%rows) then

@@ -47,8 +47,14 @@ function law({ lam, epsilon, m_half_space, m_cylinder, N, share, press, e0, alph
     const part = Math.min(Math.max((2 ** (e0 + b.row - 1) - v1) / (v2 - v1), 0), 1);
     return part * chord(a, 1) * a.dt_dx + (1 - part) * chord(b, -1) * b.dt_dx;
   }
+  // NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300
   return function contact(kappa, mu, V, slip) {
-    const u = kappa * Math.abs(V), [lam, epsilon, mh, mc, N] = speed(u), L = lam * (1 + epsilon);
+    const u = kappa * Math.abs(V);
+    if (!(kappa > 0 && mu > 0 && mu < Infinity && u <= 1e300 && Math.abs(slip) < Infinity)) {
+      const names = ["lam", "epsilon", "delta_star", "beta", "Q", "M", "M_half_space", "M_cylinder", "N"];
+      return Object.fromEntries(names.map(name => [name, NaN]));
+    }
+    const [lam, epsilon, mh, mc, N] = speed(u), L = lam * (1 + epsilon);
     const delta = slip === 0 ? 0 : Math.abs(slip / V), D = 2 * kappa * delta / mu, w = L - D, sign = Math.sign(slip);
     const state = {
       lam, epsilon, delta_star: 0.5 * mu * L / kappa, beta: 0, Q: sign * mu,

@@ -9,7 +9,13 @@ function contact = read_law(path)
 end
 
 function s = state(law, kappa, mu, V, slip)
+  % NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300
   u = kappa * abs(V);
+  if ~(kappa > 0 && mu > 0 && mu < Inf && u <= 1e300 && abs(slip) < Inf)
+    s = struct('lam', NaN, 'epsilon', NaN, 'delta_star', NaN, 'beta', NaN, 'Q', NaN, ...
+               'M', NaN, 'M_half_space', NaN, 'M_cylinder', NaN, 'N', NaN);
+    return
+  end
   f = speed(law, u);
   L = f(1) * (1 + f(2));  delta = 0;
   if slip ~= 0, delta = abs(slip / V); end

@@ -38,10 +38,12 @@ def chord(c, row, t, s):
     return total
 
 
+# NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300
 @np.errstate(all="ignore")
 def state(c, e0, alpha, limit, kappa, mu, V, slip):
     (W, C), rows = limit[0], c.shape[1]
     u = kappa * np.abs(V)
+    good = (kappa > 0.0) & (mu > 0.0) & (mu < np.inf) & (u <= 1e300) & (np.abs(slip) < np.inf)
     row, t, _ = place(u, e0)
     z = 0.5 / (u * np.sqrt(alpha))
     half, log = 0.5 * alpha * z, np.log(z)
@@ -65,9 +67,10 @@ def state(c, e0, alpha, limit, kappa, mu, V, slip):
     beyond *= 0.5 * alpha**2 * (2.0 - 0.5 * alpha * sum(bracket)) / v1 / v2
     S = np.where(r2 >= rows, beyond, np.where(r1 == r2, chord(c[6], r1, t1, t2) * p1, two))
     q = np.where(D < L / 8.0, D * ((2.0 * L - D) * press - 2.0 * u * L / w * S), 1.0 - w * w * press)
-    return {
+    found = {
         "lam": lam, "epsilon": epsilon, "delta_star": 0.5 * mu * L / kappa,
         "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)),
         "Q": np.sign(slip) * mu * np.where(slips, 1.0, np.minimum(q, 1.0)),
         "M": V * (half_space + cylinder), "M_half_space": V * half_space, "M_cylinder": V * cylinder, "N": N,
     }  # fmt: skip
+    return {name: np.where(good, each, np.nan) for name, each in found.items()}

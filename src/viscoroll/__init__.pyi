@@ -3,8 +3,11 @@
 from . import datasets as datasets
 from . import presets as presets
 from .app import fmu as fmu
+from .app.dma import DynamicModuli as DynamicModuli
 from .app.dma import Fit as Fit
+from .app.dma import RelaxationFit as RelaxationFit
 from .app.dma import fit_prony as fit_prony
+from .app.dma import fit_relaxation as fit_relaxation
 from .app.dma import read_dma as read_dma
 from .app.identification import Coastdown as Coastdown
 from .app.identification import Resistance as Resistance
@@ -34,6 +37,7 @@ from .io import runs as runs
 from .io import sampling as sampling
 from .io import tables as tables
 from .materials.bodies import Bodies as Bodies
+from .materials.cover import Cover as Cover
 from .materials.law_file import load_law as load_law
 from .materials.material import Material as Material
 from .materials.measured import Measured as Measured

@@ -11,20 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_law.assumptions import WAVE_LIMIT, Validity
-from .contact_law.known import Known
-from .core.checks import broadcast_shape, checked, frozen
+from .contact_law.known import Known, say
+from .core.checks import broadcast_shape, checked, frozen, one_name
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
-from .core.scale import Scale
+from .core.scale import SI, Scale
 from .core.symbols import MEASURED
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
-from .motion.warned import say
 from .scene import Methods, Scene
 
+#: thicknesses over l0 this near, relative, are one
+_SAME_THICKNESS = 1e-9
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
 UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
@@ -35,6 +36,7 @@ class Cylinder(Methods):
     """A viscoelastic cylinder on a half-space, in SI units.
 
     The functions of the package, and its methods of the same names, take and give SI units, per m of its length.
+    Arguments that carry another unit are converted, or refused (``docs/howto/contact.md``).
     :meth:`scene` is its dimensionless counterpart; ``scale`` holds what 1 of each of its quantities is.
 
     Parameters
@@ -100,13 +102,12 @@ class Cylinder(Methods):
             raise ParameterError(missing, None, "given, or material", sentence)
         for name in ("R", "m", "mu", "j", "g", *(() if material is not None else _SOLID)):
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
-            given[name] = frozen(checked(name, given[name], low=low, strict=True, high=high))
+            given[name] = frozen(checked(name, given[name], unit=SI, low=low, strict=True, high=high))
         if given["pressed"] is not None:
-            given["pressed"] = frozen(checked("load", given["pressed"], low=0.0, strict=True))
+            given["pressed"] = frozen(checked("load", given["pressed"], unit=SI, low=0.0, strict=True))
         numbers = {name: given[name] for name in _NUMBERS if given[name] is not None}
         broadcast_shape(**{name: np.asarray(value) for name, value in numbers.items()})
-        if plane not in ("strain", "stress"):
-            raise ParameterError("plane", repr(plane), "'strain' or 'stress'")
+        one_name("plane", plane, "strain", "stress")
         for name, value in given.items():
             object.__setattr__(self, name, value)
         if material is None:
@@ -197,7 +198,7 @@ class Cylinder(Methods):
     @property
     def l0(self) -> Any:
         """Contact length at rest, sqrt(32 R P/E'), m."""
-        return _contact_length(self.R, self.load, self.E_prime)
+        return contact_length(self.R, self.load, self.E_prime)
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
@@ -211,6 +212,8 @@ class Cylinder(Methods):
     @cached_property
     def _scene(self) -> Scene:
         law: Any = self.material if isinstance(self.material, LawTable) else None
+        if law is not None and law.cover is not None:
+            self._refuse_other_load(law)
         if self._papers:
             slow, fast = (np.asarray(each, np.float64) for each in (self.T_epsilon, self.T_sigma))
             with np.errstate(all="ignore"):
@@ -218,9 +221,17 @@ class Cylinder(Methods):
             if slow.ndim:
                 slow, fast = np.broadcast_arrays(slow, fast)
                 law = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / self.T_ref)[:, np.newaxis], alpha=law)
-        return scene_of(
-            self.R, self.m, self.load, self.E_prime, self.T_ref, self.pair.law if law is None else law, self.mu, self.j
-        )
+        if law is None:
+            law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
+        return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+
+    def _refuse_other_load(self, law: LawTable) -> None:
+        """Raise ParameterError where the law of a layer is that of another l0."""
+        given: Any = law.material
+        own = self.pair.cover(self.l0)
+        if own.shape or abs(own.thickness / given.thickness - 1.0) > _SAME_THICKNESS:
+            found = f"the law of a layer of {given.thickness:.6g} l0"
+            raise ParameterError("material", found, f"that of {short(own.thickness)} l0, as the load and R have it")
 
     @cached_property
     def _known(self) -> Known:
@@ -230,9 +241,15 @@ class Cylinder(Methods):
     def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
         return self._known.judge(found, lam, V, omega, density, self.plane)
 
+    @property
+    def watched(self) -> bool:
+        return self._known.silent is not None
+
     def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
-        """Warn where the contact at a speed of V, m/s, asks for frequencies that the data of a body do not hold."""
-        if V is not None and self._known.speeds is not None:
+        """Warn where the contact at a speed of V, m/s, is longer than the radius or than a layer allows, or asks for
+        frequencies that the data of a body do not hold.
+        """
+        if V is not None and self._known.silent is not None:
             self._known.look(V, extent)
 
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
@@ -241,13 +258,18 @@ class Cylinder(Methods):
             return
         V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))
         if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._known.wave_speed:
-            say([f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"])
+            fault = f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"
+            say([fault], "motion", "validity() of cylinder or result")
 
     def look_at_motion(self, V0: Any, V: Any) -> None:
-        """Warn where the fastest speed of a motion, or of each, asks for frequencies that the data do not hold."""
-        if self._known.speeds is not None:
+        """Warn where the fastest speed of a motion, or of each, asks for frequencies that the data do not hold, or its
+        contact is longer than a layer allows.
+        """
+        if self._known.silent is not None:
             fastest = np.abs(0.0 if V0 is None else V0)
-            self._known.look(fastest if V is None else np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1)), None)
+            self._known.look(
+                fastest if V is None else np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1)), None, motion=True
+            )
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]
@@ -256,7 +278,7 @@ class Cylinder(Methods):
         return {} if held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in held]}
 
 
-def _contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
     """l0 of Sect. 3.1, m."""
     return np.sqrt(32.0 * R * load / E_prime)
 
@@ -269,6 +291,6 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
     with np.errstate(all="ignore"):
-        kappa, gamma = R / _contact_length(R, load, E_prime), load * T**2 / (m * R)
+        kappa, gamma = R / contact_length(R, load, E_prime), load * T**2 / (m * R)
     of = "alpha" if isinstance(law, float | np.ndarray) else "material"
     return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{of: law})

@@ -48,7 +48,8 @@ class Scene(Methods, Parameters):
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
     material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
-        counts its times.  A law of :func:`viscoroll.load_law` stands for its material, or its alpha.
+        counts its times.  A law of :func:`viscoroll.load_law` stands for its material, or its alpha.  A
+        :class:`viscoroll.Cover` is a layer of finite thickness.
 
     Raises
     ------

@@ -124,6 +124,13 @@ def test_standard_output_that_takes_nothing(redirected, code, error):
     assert (done.returncode, done.stderr) == (code, error)
 
 
+@pytest.mark.parametrize("redirected", ["2>&-", "2>/dev/full", ">&- 2>&-"])
+def test_an_error_that_nobody_hears_is_one(redirected):
+    command = ["bash", "-c", f"{shlex.join([*POINT, '--omega', '1'])} {redirected}"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
+
+
 @pytest.mark.parametrize(
     ("raised", "code", "words"), [(KeyboardInterrupt, 130, ""), (MemoryError, 2, "not enough memory")]
 )
@@ -144,6 +151,7 @@ def test_example_of_help_runs(run, tables, here, monkeypatch, command):
     (here / "data").mkdir()
     (here / "data" / "tables").symlink_to(tables)
     (here / "docs").symlink_to(ROOT / "docs")
+    (here / "src").symlink_to(ROOT / "src")
     (here / "run.toml").write_text(UNCERTAIN)
     _, *examples = run(*command.split(), "--help").partition("example:")[2].split("\n  viscoroll ")
     for example in examples:
@@ -176,8 +184,46 @@ def test_material_fit(run, here):
     fit = vr.fit_prony(*vr.read_dma(data), source="dma.csv")
     assert report == f"{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
-    assert "Prony series of 2 modes" in run("material", "fit", data, "--modes", "2")
+    assert "Prony series of 4 modes" in run("material", "fit", data, "--modes", "4", "--misfit", "0.05")
     assert f"measured          {fit.measured}" in run("material", "show", "a.toml")
+
+
+def test_a_fit_that_misses_writes_no_file(here, capsys):
+    """Exit code 1, whether the misfit was asked for in vain or is above 5 %; with --force a file that says so."""
+    data = str(ROOT / "src/viscoroll/datasets/dma.csv")
+    for more, words in ((["--misfit", "1e-4"], "0.01% was not reached"), (["--misfit", "0.9"], "is above 5%")):
+        fit = ["material", "fit", data, *more, "--modes", "1", "-o"]
+        for name in ("poor.toml", "poor.nc"):
+            assert main([*fit, name]) == 1
+            told = capsys.readouterr().err
+            assert words in told
+            assert f"{name} is not written" in told
+            assert not (here / name).exists()
+            assert main([*fit, name, "--force"]) == 0
+            assert words in capsys.readouterr().err
+            assert "forced: the misfit of" in read_materials(here / name)["material"].measured.source
+            (here / name).unlink()
+
+
+def test_a_fit_of_shear_at_several_temperatures(run, here):
+    """Columns by their names, WLF whose constants are of another temperature than the reference."""
+    rubber, shift = vr.Material(3e6, 0.5, vr.Prony([1.0, 2.0], [1.0, 0.01])), vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+    f, rows = np.geomspace(0.01, 100.0, 13), []
+    for T in (0.0, 20.0, 40.0):
+        omega = 2.0 * np.pi * f
+        at = rubber.at(T, shift)
+        rows += [*zip(f, at.storage(omega) / 3e6, at.loss(omega) / 3e6, np.full(f.size, T), strict=True)]
+    np.savetxt(
+        here / "a.csv", rows, delimiter=";", header="f [Hz];Module A [MPa];Module B [MPa];T [°C]", encoding="utf8"
+    )
+    run(
+        "material", "fit", "a.csv", "--column", "storage=Module A", "--column", "loss=Module B", "--mode", "shear",
+        "--wlf", f"{8.86 * 101.6 / 61.6},61.6,-20", "--reference", "40", "--nu", "0.5", "-o", "a.toml",
+    )  # fmt: skip
+    found, true = read_materials(here / "a.toml")["material"], rubber.at(40.0, shift)
+    assert found.temperature == 40.0
+    assert close(found.storage(omega), true.storage(omega), rel=0.01)
+    assert close(found.loss(omega), true.loss(omega), rel=0.05)
 
 
 def test_a_belt_of_a_fit_that_was_saved(run, here):
@@ -192,7 +238,7 @@ def test_a_belt_of_a_fit_that_was_saved(run, here):
     (here / "roller.toml").write_text(f'{roller}[base]\nfile = "belt.toml"\nthickness = 0.006\n')
     shown = run("validity", "roller.toml", "--V", "100")
     assert "the base was measured from 0.0628 to 628 rad/s" in shown
-    assert "times as long as the layer is thick" in shown
+    assert "half the contact is up to" in shown
 
 
 def test_a_cylinder_of_a_file_is_in_si(run, here):
@@ -206,6 +252,17 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
     assert table["V [m s-1]"] == cylinder.roll(1.0, 0.5, [0.0, 0.1]).V.tolist()
     assert run(*point, "--format", "csv").startswith("V [m s-1],delta,lam,length [m],")
     assert f"{cylinder.steady(slope=0.003).V[0]:.10g}" in run("steady", "a.toml", "--slope", "0.003")
+
+
+def test_a_load_without_an_equilibrium_is_told(run, capsys):
+    """Above a table, alone where there is no row, and beside a table for programs."""
+    reason = "load 0: force + torque = 0.12 exceeds the largest rolling moment 0.084471 (at V = 0.234265)\n"
+    assert run("steady", *PRESET, "--force", "0.12") == reason
+    assert run("steady", *PRESET, "--force", "0.12,0.01").startswith(f"{reason}\n state")
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        assert main(["steady", *PRESET, "--force", "0.12", "-o", "s.csv"]) == 0
+    assert capsys.readouterr() == ("", f"viscoroll: warning: {reason}")
 
 
 def test_output_for_machines_and_for_eyes(run, here):
@@ -337,13 +394,15 @@ def test_tables_validate(run, capsys, tables):
 
 
 def test_answered(run, refuse, here, tables):
-    (here / "folder.csv").mkdir()
+    for name in ("folder.csv", "folder.nc", "folder.zarr"):
+        (here / name).mkdir()
     (here / "run.toml").write_text(UNCERTAIN)
     run("contact", *PRESET, "--V", "1", "--delta", "0", "-o", "one.nc")
     whole = (tables / "rubber.nc").read_bytes()
     (here / "half.nc").write_bytes(whole[: len(whole) // 2])
     (here / "law.nc").write_bytes(whole)
     (here / "rubber.nc").write_bytes(whole)
+    (here / "dma.csv").write_bytes((ROOT / "src/viscoroll/datasets/dma.csv").read_bytes())
     for name, text in (
         ("file", "as it was"), ("s.toml", SCENE), ("bad.toml", "[scene]\nalhpa = 11\n"), ("rubber.toml", ONE),
         ("tread.toml", RUBBER), ("warm.toml", RUBBER + "temperature = 30.0\n"),

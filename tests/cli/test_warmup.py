@@ -37,6 +37,12 @@ for law in (many, vr.Bodies(many, vr.Prony([3.0], [2.0]), 0.3)):
     vr.ensemble(each, [1.0, 1.5], 0.5, [1e-3], force=0.01)
     vr.stress(each, 0.1, 0.3, delta=1e-3)
 vr.contact(scene, V, delta=0.0, fields="N")
+cover = vr.Scene(material=vr.Cover(many[0], nu=0.3, thickness=0.5, on="base"), kappa=9.0, mu=0.2, gamma=1.0)
+vr.contact(cover, V, omega=0.1, slopes=True)
+vr.ensemble(cover, [1.0, 1.5], 0.5, [1e-3], force=0.01, fields=("V", "slip_loss"))
+vr.steady(cover, V=V[:3], force=0.0)
+vr.law(cover)(0.1, 0.2)
+vr.ensemble(cover.replace(material=vr.Cover(3.0, nu=0.5, thickness=[0.5, 0.6])), 1.0, 0.5, [1e-3])
 """
 CODE = f"""
 import importlib

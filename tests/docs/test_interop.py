@@ -75,7 +75,7 @@ int main(void) {{
     vr_state s = vr_contact(&law, x[0], x[1], x[2], x[3]), t;
     vr_slopes d;
     vr_contact_slopes(&law, x[0], x[1], x[2], x[3], &t, &d);
-    if (t.Q != s.Q || t.M != s.M || t.beta != s.beta) return 3;
+    if (s.Q == s.Q && (t.Q != s.Q || t.M != s.M || t.beta != s.beta)) return 3;
     printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", s.lam, s.epsilon, s.delta_star, s.beta, s.Q,
            s.M, s.M_half_space, s.M_cylinder, s.N);
     printf(",%.17g,%.17g,%.17g,%.17g,%.17g\\n", d.dQ_dV, d.dQ_domega, d.dM_dV, d.dM_half_space_dV, d.dM_cylinder_dV);
@@ -166,6 +166,117 @@ def test_programs_have_the_contact_of_the_package(folder, name):
         for n, field in enumerate(SLOPES, len(FIELDS)):
             scale = np.broadcast_to(np.abs(scales[field]), V.shape)[moving]
             assert close(found[moving, n], wanted[field][moving], rel=tol.INTEROP_SLOPES, scale=scale), (name, field)
+
+
+#: no states, of which every field is NaN: kappa, mu, V, slip
+NO_STATES = np.array(
+    [
+        [np.nan, 0.3, 0.1, 0.01],
+        [10.0, np.nan, 0.1, 0.01],
+        [10.0, 0.3, np.nan, 0.01],
+        [10.0, 0.3, 0.1, np.nan],
+        [10.0, 0.3, np.inf, 0.01],
+        [10.0, 0.3, 0.1, -np.inf],
+        [10.0, 0.3, np.nan, -0.01],
+        [-10.0, 0.3, 0.1, 0.01],
+        [10.0, 0.0, 0.1, 0.01],
+        [10.0, 0.3, -1e300, 0.01],
+    ]
+)
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_programs_give_nan_for_what_is_no_state(folder, name):
+    """Also the sign of a NaN is none: Q was +mu for a NaN speed."""
+    program, command, needed = PROGRAMS[name]
+    need(needed)
+    words = {"node": "NaN", "R": "NaN"}.get(name, "nan")
+    lines = [",".join(f"{value!r}" for value in row.tolist()) for row in NO_STATES]
+    text = "\n".join(lines).replace("nan", words).replace("inf", "Infinity" if name == "node" else "inf")
+    (folder / "program").write_text(program.replace("states.csv", "none.csv"))
+    (folder / "none.csv").write_text(text.replace("inf", "Inf" if name == "R" else "inf") + "\n")
+    command = command.replace("states.csv", "none.csv")
+    done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = [row for row in csv.reader(io.StringIO(done.stdout)) if row]
+    assert len(found) == len(NO_STATES)
+    assert np.isnan(np.array(found, dtype=float)).all()
+
+
+#: motions: V and slip at the start, force and torque; a throw, and drives that pass through rest or start from it
+ROLLED = {
+    "thrown": (0.5, -0.3, 0.0, 0.0),
+    "pulled back": (0.3, 0.0, -0.05, 0.0),
+    "turned back": (-0.4, 1.0, 0.0, -0.03),
+    "from rest": (0.0, 0.0, 0.0, 0.05),
+}
+
+
+@pytest.fixture(scope="module")
+def roller(tmp_path_factory) -> Path:
+    """A program of vr_roll.h: numbers of a roller and of its motion -> what each call gave, V, omega, x at the end."""
+    need("command -v cc")
+    place = tmp_path_factory.mktemp("roll")
+    vr.tables.export(vr.tables.law(11.0), place / "paper.h")
+    shutil.copy(HEADERS / "vr_roll.h", place)
+    (place / "roll.c").write_text(
+        '#include <stdio.h>\n#include <stdlib.h>\n#include "paper.h"\n#include "vr_roll.h"\n'
+        "int main(int count, char **text) {\n"
+        "  double a[9];\n  long n, calls;\n  int worst = 0;\n"
+        "  for (n = 1; n < count && n < 10; n++) a[n - 1] = atof(text[n]);\n"
+        "  vr_roller r = {&paper, 10.0, 0.3, a[0], 0.5, a[1], a[2], a[3], a[4], a[5], 0.0, 0.0, 0, 0};\n"
+        "  calls = (long)a[7];\n"
+        "  for (n = 0; n < calls; n++) { int e = vr_roll(&r, a[6] / calls, a[8]); if (e > worst) worst = e; }\n"
+        '  printf("%d %.17g %.17g %.17g\\n", worst, r.V, r.V + r.slip, r.x);\n'
+        "  return 0;\n}\n"
+    )
+    subprocess.run(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", shell=True, cwd=place, check=True)
+    return place / "roll"
+
+
+def c_rolled(program: Path, *numbers: float) -> list[float]:
+    """gamma, force, torque, rest, V, slip, time, calls and rtol -> status, V, omega, x."""
+    done = subprocess.run([program, *map(repr, numbers)], capture_output=True, text=True, check=True)
+    return [float(word) for word in done.stdout.split()]
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # slow rolling is unsteady
+@pytest.mark.parametrize("rest", [0.0, 1e-9, 1e-6])
+@pytest.mark.parametrize("calls", [1, 40, 40_000])
+@pytest.mark.parametrize("name", ROLLED)
+def test_a_roller_of_c_in_steps_of_any_length(roller, name, calls, rest):
+    """40 units of time in one call or in calls of 1e-3: a drive that turned the roller stopped it there for good."""
+    V, slip, force, torque = ROLLED[name]
+    gamma, end = 0.5, 40.0
+    status, *found = c_rolled(roller, gamma, force, torque, rest, V, slip, end, calls, 1e-9)
+    motion = vr.roll(
+        vr.Scene(11.0, 10.0, 0.3, gamma), V, V + slip, [end], rtol=1e-11, force=force or None, torque=torque or None
+    )
+    exact = np.array([motion.V[0], motion.omega[0], motion.x[0]])
+    assert status == 0
+    assert close(np.array(found), exact, rel=tol.INTEROP_TURNED, scale=np.abs(exact).max())
+
+
+def test_a_roller_of_c_stays_at_rest_and_starts_from_it(roller):
+    """Without a drive V = omega = 0 in the end, and to the end; with one it leaves V = slip = 0."""
+    status, V, omega, x = c_rolled(roller, 0.5, 0.0, 0.0, 1e-6, 0.5, -0.3, 4000.0, 1000, 1e-8)
+    assert (status, V, omega) == (0, 0.0, 0.0)
+    assert c_rolled(roller, 0.5, 0.0, 0.0, 1e-6, 0.5, -0.3, 8000.0, 2000, 1e-8)[3] == x
+    assert c_rolled(roller, 0.5, 0.0, 0.0, 1e-6, 0.0, 0.0, 1.0, 10, 1e-8) == [0, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@pytest.mark.parametrize("place", range(9))
+def test_a_roller_of_c_refuses_what_is_no_number(roller, place, bad):
+    """Status 2, and a state as it was, whatever is NaN or infinite; a time or tolerance below 0 too."""
+    numbers = [0.5, 0.01, 0.0, 1e-6, 0.5, -0.3, 1.0, 1, 1e-8]
+    if place != 7:  # number of calls
+        numbers[place] = bad
+        status, *_, x = c_rolled(roller, *numbers)
+        assert (status, x) == (2, 0.0)
+    if place in (0, 6, 8):
+        numbers[place] = -1.0
+        assert c_rolled(roller, *numbers) == [2, 0.5, 0.2, 0.0]
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model

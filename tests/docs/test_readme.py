@@ -16,6 +16,7 @@ from run_files import run_of
 
 import viscoroll as vr
 from viscoroll.app import cli
+from viscoroll.app.fmu.variables import MODELS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -35,6 +36,17 @@ def test_readme_block_runs(capsys):
     printed = capsys.readouterr().out
     assert "slides for 0.13 s, then rolls to 27.1 m" in printed
     assert "V is right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s" in printed
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_variables_of_fmus_are_listed(model):
+    """Every variable of a model in order, with its start and unit, as in its modelDescription.xml."""
+    rows = [
+        f"| `{v.name}` | {v.causality} | {v.unit} | {'' if v.start is None else f'{v.start:g}'} | {v.text} |"
+        for v in MODELS[model].variables
+    ]
+    head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
+    assert head + "\n".join(rows) + "\n\n" in LOADING.read_text()
 
 
 def test_readme_grid(tmp_path, monkeypatch, capsys):

@@ -46,14 +46,14 @@ def built(tmp_path_factory):
 
 
 class Instance:
-    """An instance of an FMU, in model exchange unless it is for co-simulation; names in place of references."""
+    """An instance of an FMU, in model exchange or co-simulation; names in place of references."""
 
-    def __init__(self, path, **given):
+    def __init__(self, path, kind="ModelExchange", **given):
         self.about = fmpy.read_model_description(path)
         self.said = []
         self.references = {v.name: v.valueReference for v in self.about.modelVariables}
         self.folder = fmpy.extract(path)
-        self.fmu = fmpy.instantiate_fmu(self.folder, self.about, "ModelExchange", logger=self._note)
+        self.fmu = fmpy.instantiate_fmu(self.folder, self.about, kind, logger=self._note)
         self.two = self.about.fmiVersion == "2.0"
         self.set(**given)
         if self.two:
@@ -74,6 +74,10 @@ class Instance:
     def get(self, *names):
         return np.array((self.fmu.getReal if self.two else self.fmu.getFloat64)(self.at(names)))
 
+    def step(self, t, h):
+        """From t by h, in co-simulation."""
+        self.fmu.doStep(t, h)
+
     def slopes(self, unknowns, knowns):
         """A row for each unknown."""
         columns = [self.fmu.getDirectionalDerivative(self.at(unknowns), self.at([one]), [1.0]) for one in knowns]
@@ -81,8 +85,8 @@ class Instance:
 
 
 @contextmanager
-def opened(path, **given):
-    one = Instance(path, **given)
+def opened(path, kind="ModelExchange", **given):
+    one = Instance(path, kind, **given)
     try:
         yield one
     finally:
@@ -176,11 +180,112 @@ def test_roller_by_an_integrator_of_the_tool(built):
     cylinder, t = CYLINDERS["unlike"], np.linspace(0.0, 0.3, 4)
     found = fmpy.simulate_fmu(
         built("unlike", "Roller", 3), stop_time=t[-1], output_interval=t[1], fmi_type="ModelExchange",
-        relative_tolerance=1e-8, output=["v", "omega"],
+        relative_tolerance=1e-8, start_values={"v0": 1.0}, output=["v", "omega"],
     )  # fmt: skip
     exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
     assert close(found["v"], exact.V, rel=tol.FMU_TOOL)
     assert close(found["omega"], exact.omega, rel=tol.FMU_TOOL, scale=np.abs(exact.omega).max())
+
+
+#: ways to come to rest, to pass through it and to leave it: V0, omega0, force on the axis, torque
+NEAR_REST = {
+    "slowly": (1e-3, 1e-2, 0.0, 0.0),
+    "to rest": (0.02, 0.2, 0.0, 0.0),
+    "through rest": (0.3, 3.0, -5.0, 0.0),
+    "pulled": (0.0, 0.0, 20.0, 0.0),
+    "turned": (0.0, 0.0, 0.0, 0.5),
+    "left alone": (0.0, 0.0, 0.0, 0.0),
+}
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # slow rolling is unsteady
+@pytest.mark.parametrize("throw", NEAR_REST)
+@pytest.mark.parametrize("name", CYLINDERS)
+def test_an_integrator_of_the_tool_passes_through_rest(built, name, throw):
+    """CVode stopped there, with error -4: it saw the law below v_min as it is, with slopes without bounds."""
+    V0, omega0, force, torque = NEAR_REST[throw]
+    omega0 *= 0.1 / CYLINDERS[name].R
+    t = np.linspace(0.0, 20.0, 21)
+    found = fmpy.simulate_fmu(
+        built(name, "Roller", 2), stop_time=t[-1], output_interval=t[1], fmi_type="ModelExchange",
+        start_values={"v0": V0, "omega0": omega0, "drive_force": force, "drive_torque": torque},
+        output=["v", "omega"],
+    )  # fmt: skip
+    exact = CYLINDERS[name].roll(V0, omega0, t, rtol=1e-10, force=force or None, torque=torque or None)
+    for column, values in {"v": exact.V, "omega": exact.omega}.items():
+        scale = max(np.abs(values).max(), 1.0 if column == "v" else 1.0 / CYLINDERS[name].R)
+        assert close(found[column], values, rel=tol.FMU_NEAR_REST, scale=scale), column
+
+
+# --- states and steps ---
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_state_that_was_taken_is_gone_on_from_with_the_same_bits(built, version):
+    """Of another time, with other parameters and inputs; by itself and as bytes, also in another instance."""
+    names = ("v", "slip", "x", "omega", "drive_force", "mu", "load")
+    path, given = built("alike", "Roller", version), {"v0": 1.0, "omega0": 2.0, "drive_force": 3.0, "mu": 0.2}
+    with opened(path, "CoSimulation", **given) as one, opened(path, "CoSimulation") as other:
+        one.step(0.0, 0.05)
+        state, then = one.fmu.getFMUState(), one.get(*names)
+        kept = one.fmu.serializeFMUState(state)
+        one.step(0.05, 0.1)
+        exact = one.get(*names)
+        one.set(drive_force=-50.0)
+        one.step(0.05 + 0.1, 0.1)
+        one.fmu.setFMUState(state)
+        assert np.array_equal(one.get(*names), then)
+        one.step(0.05, 0.1)
+        assert np.array_equal(one.get(*names), exact)
+        same = other.fmu.deserializeFMUState(kept)
+        other.fmu.setFMUState(same)
+        other.step(0.05, 0.1)
+        assert np.array_equal(other.get(*names), exact)
+        for damaged in (kept[:-1], b"x" + kept[1:]):
+            with pytest.raises(fmpy.fmi1.FMICallException):
+                other.fmu.deserializeFMUState(damaged)
+            assert "those that this FMU has serialized" in other.said[-1]
+        one.fmu.freeFMUState(state)
+        other.fmu.freeFMUState(same)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("model", MODELS)
+def test_that_states_can_be_taken_is_declared(built, model, version):
+    about = fmpy.read_model_description(built("alike", model, version))
+    for kind in (about.modelExchange, about.coSimulation) if MODELS[model].states else (about.modelExchange,):
+        assert kind.canGetAndSetFMUstate
+        assert kind.canSerializeFMUstate
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_steps_that_are_none_are_refused_in_words(built, version):
+    """Backwards, NaN, infinite, or from another time than the end of the last one; the state stays as it was."""
+    with opened(built("alike", "Roller", version), "CoSimulation", v0=1.0) as roller:
+        roller.step(0.0, 0.05)
+        at = roller.get("v", "omega", "x")
+        for t, h, said in (
+            (0.05, -0.05, "communicationStepSize = -0.05: must be finite and >= 0"),
+            (0.05, np.nan, "communicationStepSize = "),
+            (0.05, np.inf, "communicationStepSize = inf: must be finite"),
+            (5.0, 0.05, "currentCommunicationPoint = 5: must be 0.05, the end of the last step"),
+            (np.nan, 0.05, "currentCommunicationPoint = "),
+        ):
+            with pytest.raises(fmpy.fmi1.FMICallException):
+                roller.step(t, h)
+            assert said in roller.said[-1]
+            assert np.array_equal(roller.get("v", "omega", "x"), at)
+        roller.step(0.05, 0.0)
+        assert np.array_equal(roller.get("v", "omega", "x"), at)
+        roller.step(0.05 + 1e-12, 0.05)  # times of tools are sums
+
+
+def test_a_state_that_is_no_number_is_refused_in_words(built):
+    with opened(built("alike", "Roller", 2), v0=1.0) as roller:
+        roller.fmu.setContinuousStates(*_pointer(np.array([1.0, np.nan, 0.0])))
+        with pytest.raises(fmpy.fmi1.FMICallException):
+            roller.get("der_v")
+        assert "slip = nan: must be finite" in roller.said[-1].replace("-nan", "nan")
 
 
 def test_slopes_of_the_roller_are_those_of_its_rates(built):

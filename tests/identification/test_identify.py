@@ -140,6 +140,25 @@ def test_outliers_count_less_where_asked():
         assert tol.OUTLIERS * (not robust) < off < bound
 
 
+@pytest.mark.parametrize("points", [40, 400])
+def test_a_robust_fit_tells_outliers_from_a_wrong_model(points):
+    """With 5 % of outliers good data are no misfit of it; a wrong model is one, and a sigma far below the noise too."""
+    V = np.geomspace(0.02, 20.0, points)
+    one = roller().contact(V, delta=0.0, fields="M").M
+    two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
+    spoilt = np.zeros(points)
+    spoilt[7::20] = 0.2 * (-1.0) ** np.arange(points // 20)
+
+    def misfit(M: np.ndarray, robust: bool = True) -> bool:
+        data = [vr.Resistance(V, M + spoilt, sigma=0.01)]
+        return bool(vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, robust=robust).misfit)
+
+    good = noise(1, one, 0.01)
+    assert (misfit(good, robust=False), misfit(good)) == (True, False)
+    assert misfit(noise(2, two.contact(V, delta=0.0, fields="M").M, 0.01))
+    assert misfit(noise(3, one, 0.025))
+
+
 def test_a_prior_tells_what_slow_rolling_does_not():
     prior = {"E": (3e6, 0.1), "E_1": (9.0, 0.1)}
     data = [resistance(SLOW, seed=7)]

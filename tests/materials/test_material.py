@@ -5,6 +5,7 @@ import math
 from functools import partial
 
 import numpy as np
+import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
@@ -89,8 +90,25 @@ def test_wlf_by_hand():
     shift = vr.WLF(T0=20.0)
     warm = RUBBER.at(30.0, shift=shift)
     assert close(math.log10(warm.T_ref / RUBBER.T_ref), -174.4 / 61.6, rel=tol.MATERIAL)
-    assert dataclasses.replace(warm, T_ref=RUBBER.T_ref) == RUBBER
-    assert RUBBER.at(20.0, shift=shift) == RUBBER
+    assert warm.temperature == 30.0
+    assert dataclasses.replace(warm, T_ref=RUBBER.T_ref, temperature=None) == RUBBER
+    assert RUBBER.at(20.0, shift=shift) == dataclasses.replace(RUBBER, temperature=20.0)
+
+
+@pytest.mark.parametrize("reference", [-40.0, 20.0, 35.0])
+def test_a_shift_whose_constants_are_of_another_temperature(reference):
+    """WLF moved to another reference is the same law: C2' = C2 + T0' - T0, C1' C2' = C1 C2."""
+    usual = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+    C2 = 101.6 + reference - 20.0
+    moved = vr.WLF(C1=8.86 * 101.6 / C2, C2=C2, T0=reference)
+    rubber = dataclasses.replace(RUBBER, temperature=20.0, measured=vr.Measured(0.1, 300.0, 0.01))
+    warm = rubber.at(60.0, shift=moved)
+    assert close(warm.T_ref, rubber.T_ref * usual(60.0), rel=tol.MATERIAL_PRINTED)
+    assert close(warm.measured.low, 0.1 / usual(60.0), rel=tol.MATERIAL_PRINTED)
+    back = warm.at(20.0, shift=usual)
+    assert close(back.T_ref, rubber.T_ref, rel=tol.MATERIAL_PRINTED)
+    assert back.temperature == 20.0
+    assert "temperature=20.0" in repr(rubber)
 
 
 def test_arrhenius_by_hand():
@@ -122,6 +140,44 @@ def test_what_the_contact_feels_under_a_constant_bulk_modulus():
         assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, rel=tol.MATERIAL_FORMS)
 
 
+@pytest.mark.parametrize(
+    ("nu", "g", "k"),
+    [
+        (0.49, [0.3, 0.3], [0.0, 0.0]),
+        (0.35, [0.5, 0.3], [0.2, 0.1]),
+        (0.3, [0.1, 0.0], [0.5, 0.3]),
+        (0.2, [0.4, 0.3], [0.4, 0.3]),
+    ],
+)
+def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
+    """E/(1 - nu^2) = 4 G (3 K + G)/(3 K + 4 G) at every frequency, by every program's way to say it."""
+    g, k, tau, omega = np.array(g), np.array(k), np.array([0.01, 1.0]), np.logspace(-3.0, 5.0, 50)
+    product = 1j * omega[:, None] * tau
+    G0, K0 = 1e6 / (2.0 * (1.0 + nu)), 1e6 / (3.0 * (1.0 - 2.0 * nu))
+    G, K = (X * (1.0 - x.sum() + (product / (1.0 + product)) @ x) for X, x in ((G0, g), (K0, k)))
+    G_inf, K_inf = G0 * (1.0 - g.sum()), K0 * (1.0 - k.sum())
+    late = (3.0 * K_inf - 2.0 * G_inf) / (6.0 * K_inf + 2.0 * G_inf)
+    for found in (
+        vr.Material.abaqus(1e6, nu, g, tau, k=k),
+        vr.Material.abaqus(1e6, nu, np.transpose([g, k, tau])),
+        vr.Material.abaqus(2.0 * (1.0 + late) * G_inf, late, g, tau, k=k, long_term=True),
+        vr.Material.ansys(1e6, nu, g, tau, k=k),
+        vr.Material.comsol(2.0 * (1.0 + late) * G_inf, late, g * G0, tau, K=k * K0),
+        vr.Material.lsdyna(g * G0, 1.0 / tau, nu=late, G_inf=G_inf, K=k * K0),
+        vr.Material.lsdyna(g * G0, 1.0 / tau, bulk=K_inf, G_inf=G_inf, K=k * K0),
+        vr.Material.lsdyna([*g * G0, G_inf], [*1.0 / tau, 0.0], K=[*k * K0, K_inf]),
+    ):
+        assert close(found.nu, late, rel=tol.MATERIAL_FORMS)
+        plane = 4.0 * G * (3.0 * K + G) / (3.0 * K + 4.0 * G)
+        assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, rel=tol.MATERIAL_FORMS)
+
+
+def test_bulk_terms_equal_to_those_of_shear_leave_nu_alone():
+    plain = vr.Material.abaqus(1e6, 0.3, [0.2, 0.3], [0.1, 10.0])
+    assert vr.Material.abaqus(1e6, 0.3, [0.2, 0.3], [0.1, 10.0], k=[0.2, 0.3]).prony.E.size == plain.prony.E.size
+    assert vr.Material.ansys(1e6, 0.5, [0.2], [0.1], k=[0.7]) == vr.Material.ansys(1e6, 0.5, [0.2], [0.1])
+
+
 def test_one_material_by_all_programs():
     """G(t) = 1 + 2 exp(-t/0.1 s) + 3 exp(-t/4 s) MPa, nu = 1/2."""
     E, G, tau = 3e6, np.array([2e6, 3e6]), np.array([0.1, 4.0])
@@ -145,7 +201,12 @@ STORED = (
     vr.Material.rigid(name="ideal"),
     vr.Material.elastic(1e6, 0.3, name="tread \U0001f6de, Gummi für µ\tand\x7f\n"),
     vr.Material(
-        2e6, 0.5, vr.Prony([2.0], [1e-3]), thickness=0.02 / 3.0, measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f")
+        2e6,
+        0.5,
+        vr.Prony([2.0], [1e-3]),
+        thickness=0.02 / 3.0,
+        measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f"),
+        temperature=-1.0 / 3.0,
     ),
 )
 

@@ -54,7 +54,7 @@ def values(curve: schedule.Curve, t: np.ndarray) -> np.ndarray:
 def test_a_callable_is_met_in_few_values(name, rtol):
     """Off by a tenth of rtol of the largest value so far, in thousands of values; most of these took no end of them."""
     function = Counted(CALLABLES[name])
-    curve = schedule.curve("torque", function, END, rtol)
+    curve = schedule.curve(schedule.course("torque", function, END, rtol))
     assert function.calls <= tol.CALLABLE_VALUES
     assert curve.starts.size <= tol.CALLABLE_PIECES
     assert (np.diff(curve.starts) > 0.0).all()
@@ -77,6 +77,24 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
         ):
             vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
         assert function.calls <= 2 * fitted.MOST
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_a_narrow_pulse_is_seen_where_it_is_resolved(many):
+    """A pulse of END/8000, between two of the thousand samples that are taken without ``resolve``."""
+    width, at = END / 8000.0, END * 0.5
+
+    def pulse(t: float) -> float:
+        return 20.0 * (at < t < at + width)
+
+    corners = vr.Schedule([at, at, at + width, at + width], [0.0, 20.0, 20.0, 0.0])
+    roll = vr.ensemble if many else vr.roll
+    exact, free = (roll(ROLLER, 0.1, 0.1, [END], torque=torque).V for torque in (corners, None))
+    missed = roll(ROLLER, 0.1, 0.1, [END], torque=pulse).V
+    seen = roll(ROLLER, 0.1, 0.1, [END], torque=pulse, resolve=0.5 * width).V
+    assert np.array_equal(missed, free)
+    assert close(seen, exact, rel=tol.CALLABLE_PULSE)
+    assert np.abs(exact - free).min() > tol.CALLABLE_PULSE_ACTS * np.abs(exact).max()
 
 
 def course(m: Any) -> np.ndarray:

@@ -117,6 +117,17 @@ def test_a_rest_costs_speed():
     assert close(V[-1], V0 - start, rel=1e-6)
 
 
+@pytest.mark.parametrize("t_w", [0.5, 3.0])
+def test_a_short_rest_costs_less(t_w):
+    """W of docs/validity.md after a time t_w, of one mode, whose way is short of nothing."""
+    scene, V0 = vr.Scene(alpha=11.0, kappa=10.0, mu=0.2, gamma=1.0), 0.5
+    J, L, fresh = 10.0 / 11.0, 2.0 * 10.0 * V0, np.exp(-t_w)
+    climbed = 0.25 * J * np.log(1.0 + (0.681 * L) ** 2) - np.log(11.0) / 88.0
+    W = (1.0 - fresh) * climbed - 0.5 * J * fresh * L / (L + 2.0)
+    found = vr.roll(scene, V0, V0, 1e-12, unsteady=True, rested=t_w).V[0]
+    assert close(found, np.sqrt(V0**2 - max(W, 0.0) / 300.0), rel=1e-9)
+
+
 def test_caught_in_the_imprint():
     """V = 1.3 is 4.3 cm/s, of which validity says it too."""
     with pytest.warns(RuntimeWarning, match="caught in the imprint of its rest"):

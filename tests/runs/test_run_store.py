@@ -37,6 +37,9 @@ block = 100
 keep = "all"
 """
 
+#: without it one flow map holds for all motions
+MU = '[scene]\nmu = { distribution = "uniform", loc = 0.1, scale = 0.2 }\n'
+
 #: an interrupt is answered within a second; a process that starves among others takes longer
 INTERRUPT_SECONDS = 20.0
 
@@ -156,6 +159,89 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
     assert [path.name for path in thesis.iterdir()] == ["chapter.tex"]
     with locked(tmp_path / "store.zarr"):
         refused(partial(run_ensemble, run, tmp_path / "store.zarr"), "another process", error=vr.FileError)
+
+
+def test_a_folder_that_may_not_be_read_is_no_damaged_store(run_file, tmp_path, whole, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    for call in (lambda: verify(whole), lambda: open_run(whole), lambda: run_ensemble(read_run(run_file), whole)):
+        refused(call, "whole.zarr: cannot be read (Permission denied)", error=vr.FileError)
+
+
+# --- more motions ---
+
+
+@pytest.fixture
+def smaller(run_file, tmp_path):
+    """A store of 350 of the motions, the last block of which is a half; then the run file asks for all of them."""
+    run_file.write_text(RUN.replace("n = 1200", "n = 350"))
+    assert run_ensemble(read_run(run_file), tmp_path / "store.zarr", threads=2) == 4
+    run_file.write_text(RUN)
+    return tmp_path / "store.zarr"
+
+
+def test_a_run_grows(run_file, smaller, whole):
+    """Its whole blocks stay as they are, and all files become those of the larger run."""
+    kept = {path: path.stat().st_mtime_ns for path in smaller.glob("records/00000000[012]")}
+    assert len(kept) == 3
+    assert run_ensemble(read_run(run_file), smaller, threads=2) == 9
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept
+    assert content(smaller) == content(whole)
+    assert verify(smaller).ok
+    assert len(open_run(smaller)) == 1200
+
+
+def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkeypatch):
+    """Until then it is the smaller store or one that is not finished, never one of fewer motions than it says."""
+    sync = files._sync
+    for room in (0, 3, 20, 40, 100):
+        calls = iter(range(10**6))
+
+        def limited(path, calls=calls, room=room):
+            if next(calls) >= room:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            sync(path)
+
+        monkeypatch.setattr(files, "_sync", limited)
+        with pytest.raises(vr.FileError, match="No space left"):
+            run_ensemble(read_run(run_file), smaller, threads=1)
+        assert not verify(smaller).ok
+        refused(lambda: open_run(smaller), "puts it right", error=vr.FileError)
+    monkeypatch.undo()
+    run_ensemble(read_run(run_file), smaller)
+    assert content(smaller) == content(whole)
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "words"),
+    [
+        ("", "n = 300", "holds 350 motions of this run file, which may become more, not fewer: set n >= 350"),
+        ('design = "latin"', "n = 1200", "a Latin hypercube, whose strata are of all motions: keep n = 350"),
+        ('design = "sobol"', "n = 1200", "which is even where n is a power of two: set n = 2048"),
+        ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
+        ("", "n = 5000", "found by method 'integrate': add method = 'integrate' to [run]"),
+    ],
+)  # fmt: skip
+def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, words):
+    """And the store stays as it was."""
+    text = RUN.replace(MU, "") + f"{before}\n"
+    if before.startswith("block"):
+        text = text.replace("block = 100\n", "", 1)
+    store = tmp_path / "store.zarr"
+    run_file.write_text(text.replace("n = 1200", "n = 350"))
+    run_ensemble(read_run(run_file), store, threads=2)
+    was = content(store)
+    run_file.write_text(text.replace("n = 1200", now))
+    refused(lambda: run_ensemble(read_run(run_file), store), words, "give another folder", error=vr.FileError)
+    assert content(store) == was
+
+
+def test_a_sobol_sequence_grows_to_powers_of_two(run_file, tmp_path):
+    for store, counts in (("grown", (256, 1024)), ("scratch", (1024,))):
+        for n in counts:
+            text = RUN.replace("n = 1200", f"n = {n}").replace("block = 100", "block = 256")
+            run_file.write_text(text + 'design = "sobol"\n')
+            run_ensemble(read_run(run_file), tmp_path / store, threads=2)
+    assert content(tmp_path / "grown") == content(tmp_path / "scratch")
 
 
 def test_a_killed_run_goes_on(run_file, tmp_path, whole):

@@ -120,6 +120,11 @@ def test_moments_and_quantiles(size):
     assert abs(one.spread / one.count - kept.var()) <= tol.MOMENT
 
 
+def test_quantiles_of_those_at_rest_are_zero():
+    one = histogram(np.array([0.0] * 8 + [-1.0, 0.5, 2.0]))
+    assert quantiles(one, (0.1, 0.2, 0.5, 0.8)).tolist() == [0.0] * 4
+
+
 def test_of_nothing_there_are_none():
     one = histogram(np.array([np.nan]))
     assert one.count == 0

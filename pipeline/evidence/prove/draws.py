@@ -116,6 +116,46 @@ def braked(random: np.random.Generator) -> Case:
     return Case(scene, V0, omega0, t, drive | {"brake": vr.Schedule(times, brake)})
 
 
+def prescribed(random: np.random.Generator) -> Case:
+    """V or omega prescribed, as large as the other speed at first times 1e-9 to 1e3, and long enough for that to pass.
+
+    Returns
+    -------
+    Case
+        alpha - 1 in [0.01, 1e4], kappa in [1e-3, 1e3], mu in [1e-5, 2], at most kappa, so that omega does not
+        change its sign in partial slip; gamma and j in [0.01, 100].  The speed stays,
+        ramps up and down, falls by up to 8 decades and stays, or stands at 0 for a while; the other one is driven by a
+        force or a torque of up to 4 mu that stays, ramps and jumps.
+    """
+    alpha, kappa, mu, gamma, j = powers(random, (-2.0, 4.0), (-3.0, 3.0), (-5.0, 0.3), (-2.0, 2.0), (-2.0, 2.0))
+    mu = min(mu, kappa)
+    by_V = random.random() < 0.5
+    other, ratio, size, longer = powers(random, (-4.0, 1.0), (-9.0, 3.0), (-2.0, 0.6), (-0.3, 1.3))
+    other *= float(random.normal()) * float(random.random() < 0.8)
+    end = max(abs(other), 1e-3) * (j if by_V else 1.0) / (mu * gamma) * longer
+    speed = _prescribed_speed(random, end, max(abs(other), 1e-3) * ratio)
+    cuts = np.repeat(np.sort(random.uniform(0.0, end, random.integers(0, 4))), 2)
+    times = np.concatenate([[0.0], cuts, [end]])
+    acting = vr.Schedule(times, random.normal(size=times.size) * mu * size)
+    scene, t = vr.Scene(1.0 + alpha, kappa, mu, gamma, j), np.linspace(0.0, end, 25)
+    if by_V:
+        return Case(scene, None, other, t, {"V": speed, "torque": acting})
+    return Case(scene, other, None, t, {"omega": speed, "force": acting})
+
+
+def _prescribed_speed(random: np.random.Generator, end: float, size: float) -> vr.Schedule:
+    """A speed of about this size that stays, ramps, falls by up to 8 decades, or stands at 0 for a while."""
+    sign, times = float(random.choice([-1.0, 1.0])), np.sort(random.uniform(0.0, end, 4))
+    kind = random.integers(4)
+    if kind == 0:
+        return vr.Schedule([0.0], [sign * size])
+    if kind == 1:
+        return vr.Schedule(times, random.normal(size=4) * size)
+    if kind == 2:
+        return vr.Schedule(times[:2], [sign * size, sign * size * powers(random, (-8.0, 0.0))[0]])
+    return vr.Schedule(times, [sign * size, 0.0, 0.0, size * float(random.normal())])
+
+
 def fed_back(random: np.random.Generator) -> Case:
     """Such a motion with gains, of which none makes the speeds grow."""
     case = driven(random)

@@ -217,7 +217,7 @@ def balance(m: vr.Motion) -> float:
     """What is missing in the balance of energy, over the largest of its terms."""
     energy, work = 0.5 * (m.V**2 + m.scene.j * m.omega**2), m.work_force + m.work_torque
     lost = m.brake_loss + m.slip_loss + m.rolling_loss
-    scale = max(float(np.abs(part).max()) for part in (energy, work, lost))
+    scale = max(float(np.abs(part).max()) for part in (energy, m.work_force, m.work_torque, lost))
     return float(np.abs(work - (energy - energy[0]) - lost).max()) / scale if scale > 0.0 else 0.0
 
 
@@ -313,6 +313,9 @@ PROOFS = [
             draws.braked),
     _driven("fed_back_motions", "such motions under force and torque that follow the speeds too, gains of -10 to -0.1",
             draws.fed_back),
+    # at speeds of 1e-19 grip may be spent to rounding
+    _driven("prescribed_motions", "V or omega prescribed, over 12 decades beside the other speed, alpha to 1e4, kappa "
+            "in [1e-3, 1e3], mu in [1e-5, kappa], gamma and j in [0.01, 100]", draws.prescribed, given_up=0.001),
     # creep may relax within the rounding of time
     _driven("wild_motions", "random scenes with alpha to 1e8, mu from 1e-6 and j from 1e-3 to 1e3, starts, drives as "
             "before", partial(draws.driven, wild=True), 100.0, 0.02),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import motion, ratios, series, shape, states
+from . import cover, motion, ratios, series, shape, states
 from .claim import Proof
 
-TABLE: list[Proof] = [*ratios.PROOFS, *states.PROOFS, *shape.PROOFS, *series.PROOFS, *motion.PROOFS]
+TABLE: list[Proof] = [*ratios.PROOFS, *states.PROOFS, *shape.PROOFS, *series.PROOFS, *motion.PROOFS, *cover.PROOFS]

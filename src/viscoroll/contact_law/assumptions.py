@@ -23,6 +23,12 @@ CREEP_LIMIT = 0.3
 #: contact length over the thickness of a layer, up to which the length is within 5 % of that on a half-space of any
 #: Poisson's ratio (pipeline/evidence/prove/layer.py)
 THICK_LIMIT = 2.0 / 3.0
+#: kappa = R/l0 at which the contact at rest reaches half a radius from the axis: below, contacts and motions warn
+LEAST_KAPPA = 1.0
+NOT_SMALL = (
+    "kappa = R/l0 is below 1: the contact at rest is longer than the radius, where no half-space stands for a cylinder "
+    "(are moduli in Pa, the load in N/m?)"
+)
 #: root mean square of relative errors up to which a fit counts as the material that was measured
 MISFIT_LIMIT = 0.05
 
@@ -64,7 +70,8 @@ class Validity(NamedTuple):
     bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
     measured : value: 1/s at which the contact is passed, :func:`passage`, against the frequencies that the data of each
         body hold; needs a material's ``measured``.
-    thick : value: contact length over the thickness of the thinnest layer; needs a material's ``thickness``.
+    thick : of a layer of known thickness; value: half the length of the contact over the thickness, up to which one
+        stick zone in front and slip behind are right.
     plane : not to be seen from V.
 
     Examples
@@ -110,9 +117,15 @@ UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
     "both bodies pass the contact at about one speed; give omega to see whether",
     "of the bodies' elastic constants Dundurs' constant must be 0, as of like bodies",
     "nothing is known of the frequencies that the material was measured at",
-    "thickness not known: the law is that of a half-space",
+    "thickness not known: the law is that of a half-space, whose contact length is within 5 % of that on a layer where "
+    f"it is up to {THICK_LIMIT:.2g} times as long as that is thick",
     "the cylinder is long or held between walls (plane strain), or a thin disc",
 )))  # fmt: skip
+
+#: whether the law of steady rolling may drive a motion, of covers
+UNKNOWN_OF_COVERS = Assumption(
+    None, None, "whether the law of steady rolling may drive a motion is not known of a layer of finite thickness"
+)
 
 
 def passage(V: Any, length: Any) -> Any:
@@ -200,17 +213,3 @@ def measurement(seen: Any, records: Mapping[str, Measured]) -> Assumption:
         holds = holds & (data.low <= seen) & (seen <= data.high) & (data.misfit <= MISFIT_LIMIT)
         sentence += f"; {body} was measured from {data}"
     return Assumption(holds, seen, sentence)
-
-
-def thickness(length: Any, layers: Mapping[str, float | None]) -> Assumption:
-    """Contact length over the thickness of the thinnest of the layers; None where none is known."""
-    thin = min((given for given in layers.values() if given is not None), default=None)
-    if thin is None:
-        return UNKNOWN.thick
-    unknown = [f"the thickness of {body} is not known" for body, given in layers.items() if given is None]
-    ratio = length / thin
-    return Assumption(
-        ratio <= THICK_LIMIT, ratio,
-        f"the contact is {np.max(ratio, initial=0.0):.2g} times as long as the layer is thick; up to {THICK_LIMIT:.2g} "
-        "its length is within 5 % of that on a half-space" + "".join(f"; {text}" for text in unknown),
-    )  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from ..core.checks import checked
+from ..core.checks import checked, yes_or_no
 from ..core.errors import ParameterError
 from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
@@ -83,6 +83,8 @@ class Law:
         ParameterError
             NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
         """
+        if slopes is not False:
+            slopes = yes_or_no("slopes", slopes)
         if type(V) in _NUMBERS and type(omega) in _NUMBERS:
             out = self._room()
             try:
@@ -116,7 +118,7 @@ class Law:
 
         It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
         error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
-        there.  All laws share the function.
+        there.  All laws of half-spaces share the function, and all laws of covers another one.
         """
         return self._jitted.function_address, self._jitted.address
 
@@ -130,6 +132,16 @@ class Law:
 
     def __repr__(self) -> str:
         return f"law of {self.roller!r}"
+
+
+class WatchedLaw(Law):
+    """The law of a cylinder that has speeds to warn of: each call with numbers looks at its speed."""
+
+    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
+        found: Any = super().__call__(V, omega, slopes=slopes)  # type: ignore[call-overload]
+        if type(V) in _NUMBERS and type(omega) in _NUMBERS:  # of arrays contact looks
+            self.roller.look(V, (V, V))
+        return found
 
 
 class _LawOfGrid(Law):
@@ -179,9 +191,13 @@ def law(roller: Rolls | LawGrid) -> Law:
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
     a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
 
+    Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
+
     Of a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file states
     (``tests/tables/test_splines.py``): clipped to \\|Q\\| <= mu P; below the slowest speed Q is that at the slowest,
     and M in proportion to V; beyond both ends of delta \\|Q\\| is mu P where the grid slips fully there.  Other states
     outside of the axes raise OutOfTableError.  Arrays are looked up one state after another.
     """
-    return _LawOfGrid(roller) if isinstance(roller, LawGrid) else Law(roller)
+    if isinstance(roller, LawGrid):
+        return _LawOfGrid(roller)
+    return WatchedLaw(roller) if isinstance(roller, Rolls) and roller.watched else Law(roller)

@@ -13,16 +13,17 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import broadcast_shape, checked, checked_extent
+from ..core.checks import broadcast_shape, checked, checked_extent, yes_or_no
 from ..core.errors import ParameterError, one_of
 from ..core.labels import unlabelled
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
 from ..core.typed import Numbers
 from ..materials.bodies import Bodies
+from ..materials.cover import Cover
 from ..materials.law_table import LawTable
 from ..materials.prony import Prony
-from .contact_fields import OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
+from .contact_fields import FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .contact_table import FASTEST, refuse_overflow, states_of
 from .parameters import Parameters, Rolls, framed
 
@@ -77,10 +78,11 @@ def contact(
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
         for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
         ``M_half_space M_cylinder``, the parts of M in either body, and ``N``, of M(V) + N V' where speed
-        changes slowly, in units of T_ref^2; ``grip``, 1 - |Q|/mu to all its digits;
+        changes slowly, in units of T_ref^2; ``grip``, 1 - |Q|/mu to all its digits; ``delta_0``, the creep of free
+        rolling on a cover by the strain that the pressure makes, 0 of half-spaces;
         ``length`` of the contact, over l0 or in m, and ``C_rr`` = M/(P R), the coefficient of rolling resistance; only
         these are computed.  Default: the first nine; of bodies that differ, and of a Cylinder, the two parts too;
-        of a Cylinder ``length`` and ``C_rr``.
+        of a Cylinder ``length`` and ``C_rr``, and of a cover ``delta_0``.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
@@ -129,11 +131,16 @@ def contact(
     _, scene, scale = framed(roller, "contact")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
+    if slopes is not False:
+        slopes = yes_or_no("slopes", slopes)
     names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
+    if type(scene.material) is Cover:
+        names = _of_cover(names, fields is None)
     creep_name = "omega" if delta is None else "delta"
-    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta})
+    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = checked_extent("V", given["V"])
     creep = checked(creep_name, given[creep_name])
+    given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
         roller.look(speed, ends)
@@ -158,7 +165,7 @@ def states(
         arrays = {name: np.asarray(value) for name, value in arrays.items()}
         shape = broadcast_shape(**arrays)
         refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * V) <= fastest:
+    elif not abs(scene.kappa * float(V)) <= fastest:
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
@@ -179,6 +186,15 @@ def states(
     if "full_slip" in names:
         rows["full_slip"] = rows["full_slip"] != 0.0
     return {name: rows[name].reshape(shape) if shape else rows[name] for name in names}
+
+
+def _of_cover(names: tuple[str, ...], plain: bool) -> tuple[str, ...]:
+    """The fields of a cover: where none were named, delta_0 with them; raises ParameterError where N is."""
+    if UNSTEADY in names:
+        raise ParameterError(
+            "fields", repr(UNSTEADY), "left out for a cover: N of a layer of finite thickness is not known"
+        )
+    return (*names, FREE) if plain else names
 
 
 @lru_cache(maxsize=64)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ..core.checks import one_name
 from ..core.errors import ParameterError, refuse_unknown
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
@@ -12,9 +13,11 @@ SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 #: on request alone, and not by the printed equations
 UNSTEADY, GRIP = "N", "grip"
+#: creep of free rolling by the strain that the pressure makes: of covers, 0 of half-spaces
+FREE = "delta_0"
 #: of which field each of these is made by units alone: the length is over l0, C_rr = M/(P R)
 SAME = {"length": "lam", "C_rr": "M"}
-KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, *SAME)
+KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, FREE, *SAME)
 #: what is given without a word, of like bodies and of others, and of a cylinder in SI units
 DEFAULT = {
     (True, False): FIELDS,
@@ -31,14 +34,13 @@ def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool
     ParameterError
         A name or a method that there is not, or one that the other does not give.
     """
-    if method not in ("table", "direct"):
-        raise ParameterError("method", repr(method), "'table' or 'direct'")
+    one_name("method", method, "table", "direct")
     names = DEFAULT[like, si] if fields is None else refuse_unknown("fields", fields, KNOWN, "a field")
     if slopes:
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
         raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
-    for name in (UNSTEADY, GRIP):
+    for name in (UNSTEADY, GRIP, FREE):
         if method == "direct" and name in names:
             raise ParameterError("fields", repr(name), "computed by method='table' alone: it is not in the paper")
     return names

@@ -63,7 +63,7 @@ def states_of(
                 raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")
             return
         if set(names) - {UNSTEADY}:
-            loop(law, asked, np.empty((3, room)), stop - start)
+            loop(law, asked, np.empty((4, room)), stop - start)
         if UNSTEADY not in names:
             return
         N = out[names.index(UNSTEADY), start:stop]
@@ -73,7 +73,7 @@ def states_of(
             unsteady_loop(given.unsteady_record, parts[0], parts[2], N)
         else:
             to_zeta = _asked(("zeta",), direct)[-1]
-            loop(law, asked._replace(to=to_zeta, out=N[None], first=0), np.empty((3, room)), stop - start)
+            loop(law, asked._replace(to=to_zeta, out=N[None], first=0), np.empty((4, room)), stop - start)
             N[:] = by_modes(each, N).N
 
     if count <= _TOGETHER and single:
@@ -112,7 +112,7 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> Non
     if not (kappa.size and V.size):
         return
     low, high = extent(V)
-    if extent(kappa)[1] * max(-low, high) <= fastest:
+    if float(extent(kappa)[1]) * float(max(-low, high)) <= fastest:
         return
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..core.checks import broadcast_shape, checked
 from ..core.typed import Numbers
-from .assumptions import UNKNOWN, Validity, place, smallness, unlike_speeds
+from .assumptions import UNKNOWN, UNKNOWN_OF_COVERS, Validity, place, smallness, unlike_speeds
+from .contact import states
+from .cover_validity import layer
 from .parameters import Rolls, framed
 from .steadiness import Steadiness
 
@@ -37,15 +41,26 @@ def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density
         NaN or infinite speeds, a density that is not one positive number, shapes that do not broadcast.
     """
     _, scene, scale = framed(roller, "validity")
-    given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
-    speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
+    speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
+    given = {name: checked(name, each, unit=scale) for name, each in speeds.items()}
+    with np.errstate(over="ignore"):
+        speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
-    free = scene.freely(speed)
-    found = free.strained(scene.kappa)
-    steady = UNKNOWN.steady if scene.gamma is None else Steadiness.of(free.scaled(scale))
-    judged = UNKNOWN._replace(small_contact=smallness(found.reach), under_axis=place(found.epsilon), steady=steady)
+    if scene.cover is None:
+        free = scene.freely(speed)
+        found = free.strained(scene.kappa)
+        steady = UNKNOWN.steady if scene.gamma is None else Steadiness.of(free.scaled(scale))
+        judged = UNKNOWN._replace(small_contact=smallness(found.reach), under_axis=place(found.epsilon), steady=steady)
+    else:
+        found, thick = layer(scene, speed)
+        judged = UNKNOWN._replace(
+            small_contact=smallness(found.reach), under_axis=place(found.epsilon), steady=UNKNOWN_OF_COVERS, thick=thick
+        )
     if spin is not None:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
-        judged = judged._replace(creep=unlike_speeds(delta, np.abs(delta) >= scene.mu * np.asarray(found.reach)))
+        full: Any = np.abs(delta) >= scene.mu * np.asarray(found.reach)
+        if scene.cover is not None:
+            full = states(scene, speed, spin, True, ("full_slip",))["full_slip"]
+        judged = judged._replace(creep=unlike_speeds(delta, full))
     return roller.known(judged, found.lam, given["V"], given.get("omega"), density)

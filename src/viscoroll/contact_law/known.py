@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,13 +13,16 @@ import numpy as np
 
 from ..core.checks import number
 from ..core.errors import ModelWarning, outside
+from ..core.scale import SI
 from ..kernels.compile.notice import is_worker
 from ..materials.law_table import law_table
 from ..materials.material import Material
 from ..materials.measured import Measured
 from ..materials.pair import Pair
 from .assumptions import (
+    LEAST_KAPPA,
     MISFIT_LIMIT,
+    NOT_SMALL,
     Assumption,
     Validity,
     coupling,
@@ -26,14 +30,17 @@ from .assumptions import (
     inertia,
     measurement,
     passage,
-    thickness,
 )  # fmt: skip
 from .contact_table import rolling
 from .parameters import Parameters
 
 #: of the compliance, a part below which a body may be as thin and as little known as it likes
 _LEAST_PART = 0.01
-#: said once a process for each
+#: speeds of what no speed makes right
+NOWHERE = math.inf, 0.0
+#: log2 of kappa V at which the speeds of a cover are evaluated: interpolation between them has an error below 1 %
+_OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
+#: data of materials of which a warning was given in this process
 _told: set[Measured] = set()
 
 
@@ -73,7 +80,13 @@ class Known:
         if not records or series is None:
             return None
         ends = max(data.low for data in records), min(data.high for data in records)
-        low, high = held_speeds(series, *(rate * self.T_ref for rate in ends))
+        low, high = (rate * self.T_ref for rate in ends)
+        if self.scene.cover is not None:
+            u = np.exp2(_OCTAVES_OF_SPEED)
+            (lam,) = rolling(law_table(self.scene.cover), u, "lam")
+            low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
+        else:
+            low, high = held_speeds(series, low, high)
         return low / self.T_ref, high / self.T_ref
 
     @cached_property
@@ -82,7 +95,7 @@ class Known:
         if self.held is None:
             return None
         if any(data.misfit > MISFIT_LIMIT for data in self.measured.values()):
-            return math.inf, 0.0
+            return NOWHERE
         return self.held[0] * float(np.max(self.l0)), self.held[1] * float(np.min(self.l0))
 
     @cached_property
@@ -94,7 +107,7 @@ class Known:
     def judge(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None, plane: str) -> Validity:
         """What is added to the validity of a state, of which ``lam`` is."""
         if density is not None:
-            density = number("density", density, low=0.0, strict=True)
+            density = number("density", density, unit=SI, low=0.0, strict=True)
         fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
         pair, length = self.pair, lam * self.l0
         long = "a long cylinder, or one held between walls (plane strain)"
@@ -102,30 +115,58 @@ class Known:
             quasistatic=inertia(*self._slowness(fastest, density)),
             bodies=coupling(*(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like),
             measured=measurement(passage(V, length), self.measured),
-            thick=thickness(length, {name: body.thickness for name, body in self.bodies.items()}),
             plane=Assumption(None, None, long if plane == "strain" else "a thin disc (plane stress)"),
         )
 
-    def look(self, V: Any, extent: tuple[float, float] | None) -> None:
-        """Warn where a contact at V asks for frequencies that the data do not hold; where :attr:`speeds` are known.
+    @cached_property
+    def small(self) -> bool:
+        """Whether the contact at rest is no longer than the radius, of every one of the cylinders."""
+        return float(np.min(self.scene.kappa, initial=math.inf)) >= LEAST_KAPPA
+
+    @cached_property
+    def silent(self) -> tuple[float, float] | None:
+        """|V| between which :meth:`look` has nothing to say, m/s; None where it has nothing at any speed."""
+        bands = [band for band in (self.speeds, None if self.small else NOWHERE) if band is not None]
+        return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
+
+    def look(self, V: Any, extent: tuple[float, float] | None, *, motion: bool = False) -> None:
+        """Warn where contacts at V are outside of what the model or the data hold; where :attr:`silent` is not None.
 
         Only extremes are looked at, and rest is passed over: M is 0 there.
+
+        Parameters
+        ----------
+        V : speeds, m/s.
+        extent : the least and the largest of them, where they are known.
+        motion : whether they are of a motion, whose start was judged by ``motion/warned.py`` already.
         """
-        assert self.speeds is not None
-        assert self.held is not None
-        if not beyond(extent or extent_of(V), self.speeds) or _told.issuperset(self.measured.values()) or is_worker():
+        assert self.silent is not None
+        ends = extent or extent_of(V)
+        if not beyond(ends, self.silent) or is_worker():
             return
+        if not (self.small or motion):
+            say([NOT_SMALL], "contact", "validity(V).small_contact")
+        if self.speeds is not None and beyond(ends, self.speeds) and not _told.issuperset(self.measured.values()):
+            self._look_at_data(V)
+
+    def _look_at_data(self, V: Any) -> None:
+        """Warn of speeds at which a contact asks for what was not measured, once for each material."""
+        assert self.held is not None
         # the extremes of V and of l0 may be of different cylinders
         l0 = np.reshape(self.l0, np.shape(self.l0) + (1,) * (np.ndim(V) - np.ndim(self.l0)))
         rates = extent_of(np.abs(V) / l0)
-        if self.speeds != (math.inf, 0.0) and not beyond(rates, self.held):
+        if self.speeds != NOWHERE and not beyond(rates, self.held):
             return
-        material, unit = self.scene.in_own_time()
-        (lam,) = rolling(law_table(material), np.array(rates) * unit * self.T_ref, "lam")
         _told.update(self.measured.values())
-        sentence = measurement(passage(np.array(rates), lam), self.measured).sentence
-        text = f"the material is not known here as measured: {sentence}.  M and the contact length are a guess of the "
-        warnings.warn(text + "fit then; validity(V).measured tells where", ModelWarning, stacklevel=outside())
+        sentence = measurement(passage(np.array(rates), self._lam(np.array(rates))), self.measured).sentence
+        text = f"M and the contact length are not backed by measurements here: {sentence}"
+        warnings.warn(f"{text}; validity(V).measured tells at which V they are", ModelWarning, stacklevel=outside())
+
+    def _lam(self, rate: Any) -> Any:
+        """Contact length over that at rest, of |V|/l0 in 1/s, for the one material."""
+        material, unit = self.scene.in_own_time()
+        (lam,) = rolling(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
+        return lam
 
     def _slowness(self, speed: Any, density: float | None) -> tuple[Any, list[str]]:
         """(Speed over that of the slowest shear wave, or None; bodies whose density is not known)."""
@@ -143,9 +184,50 @@ class Known:
         return (np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None), unknown
 
 
+def say(faults: list[str], of: str, where: str) -> None:
+    """Warn of faults of the model, in workers never.
+
+    Without numbers: Python says the same words once for each line of a program.
+
+    Parameters
+    ----------
+    faults : sentences; none: no warning.
+    of : what the model is not good for, "motion" or "contact".
+    where : what tells more.
+    """
+    if faults and not is_worker():
+        text = f"the model is not good for this {of}: {'; '.join(faults)}.  See {where}"
+        warnings.warn(text, ModelWarning, stacklevel=outside())
+
+
+def warn_of_share(share: float, records: Iterable[Measured]) -> bool:
+    """Warn of the share of motions that start where a material was not measured; returns whether it did.
+
+    Parameters
+    ----------
+    share : of the motions, 0 to 1; none: no warning.
+    records : what was measured of the bodies; contacts do not warn of them any more.
+    """
+    known = list(records)
+    if share <= 0.0 or is_worker() or _told.issuperset(known):
+        return False
+    _told.update(known)
+    said = "; ".join(map(str, known))
+    text = f"for {share:.1%} of the motions the material is not known as measured at the start (measured from {said}, "
+    warnings.warn(
+        f"{text}at the medians of the inputs): M is a guess of the fit there", ModelWarning, stacklevel=outside()
+    )
+    return True
+
+
+def slowest_of(extent: tuple[float, float]) -> float:
+    """The least |V| of speeds between these."""
+    return max(extent[0], -extent[1], 0.0)
+
+
 def beyond(extent: tuple[float, float], ends: tuple[float, float]) -> bool:
     """Whether speeds leave what is held; rest is passed over: M is 0 there."""
-    slowest, fastest = max(extent[0], -extent[1], 0.0), max(extent[1], -extent[0])
+    slowest, fastest = slowest_of(extent), max(extent[1], -extent[0])
     return fastest > ends[1] or 0.0 < slowest < ends[0]
 
 

@@ -15,6 +15,7 @@ from ..core.results import short
 from ..core.scale import DIMENSIONLESS, Scale
 from ..core.typed import Floats, Integers
 from ..materials.bodies import Bodies, one_series
+from ..materials.cover import Cover
 from ..materials.law_grid import LawGrid
 from ..materials.law_table import LawTable, law_table
 from ..materials.prony import Prony
@@ -43,6 +44,11 @@ class Rolls:
     material: Any
     #: attributes of datasets
     about: ClassVar[dict[str, Any]] = {}
+
+    @property
+    def watched(self) -> bool:
+        """Whether there are speeds of which :meth:`look` warns."""
+        return False
 
     def scene(self) -> Parameters:
         """The dimensionless parameters."""
@@ -98,7 +104,10 @@ class Rolls:
         return found
 
     def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
-        """Warn where a contact at V asks more of a material than was measured; ``extent`` of V, where it is known."""
+        """Warn where a contact at V is outside of what the model or the data of a material hold.
+
+        V : speeds, in the unit of what rolls.  extent : the least and the largest of them, where they are known.
+        """
 
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
         """Warn of starts that are beyond the speed of waves."""
@@ -195,8 +204,18 @@ class Parameters(Rolls):
         return given.cylinder if isinstance(given, Bodies) and given.like else given
 
     def in_own_time(self) -> tuple[Any, float]:
-        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref)."""
+        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
+
+        Of a cover it and 1: its law is not that of the series alone.
+        """
+        if self.cover is not None:
+            return self.cover, 1.0
         return (self.alpha, 1.0) if self.series is None else _in_own_time(self.series)
+
+    @property
+    def cover(self) -> Cover | None:
+        """The layer of finite thickness that it rolls with or on; None of half-spaces."""
+        return self.material if isinstance(self.material, Cover) else None
 
     @property
     def like_bodies(self) -> bool:
@@ -205,12 +224,16 @@ class Parameters(Rolls):
 
     def tilted(self, slope: Any) -> Self:
         cosine = slope_factor(slope)[1]
+        more = {}
+        if self.cover is not None:  # over the l0 of the load that is left
+            more = {"material": self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))}
         return self.replace(
-            kappa=self.kappa / np.sqrt(cosine), gamma=None if self.gamma is None else self.gamma * cosine
+            kappa=self.kappa / np.sqrt(cosine), gamma=None if self.gamma is None else self.gamma * cosine, **more
         )
 
     def freely(self, V: Any) -> Free:
-        """What rolls at V, let go."""
+        """What rolls at V, let go; raises ParameterError of a cover."""
+        refuse_cover(self, "how it rolls freely from rest needs N, which is not known")
         given: Any
         materials: Any
         unit: Any
@@ -239,6 +262,11 @@ class Parameters(Rolls):
         return f"Scene({', '.join(f'{name}={short(value)}' for name, value in self._given.items())})"
 
 
+def scale_of(given: Any) -> Scale:
+    """Scale of what rolls; what is neither a scene nor a cylinder has that of a scene, and is refused elsewhere."""
+    return given.scale if isinstance(given, Rolls) else DIMENSIONLESS
+
+
 def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> tuple[Rolls, Parameters, Scale]:
     """What rolls, on its slope, its parameters and its scale; ``moves``: with a gamma.
 
@@ -259,6 +287,13 @@ def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> 
         sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
         raise ParameterError("gamma", None, "a number > 0", sentence)
     return roller, scene, roller.scale
+
+
+def refuse_cover(scene: Parameters, why: str) -> None:
+    """Raise ParameterError where a body is a layer of finite thickness; ``why``: what is not known of it."""
+    if scene.cover is not None:
+        sentence = f"thickness = {short(scene.cover.thickness)} (over l0): of a layer of finite thickness {why}"
+        raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
 
 
 def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a single number") -> None:

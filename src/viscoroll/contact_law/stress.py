@@ -16,7 +16,7 @@ from ..core.typed import Floats, Numbers
 from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
 from .contact import states
-from .parameters import Parameters, Rolls, framed
+from .parameters import Parameters, Rolls, framed, refuse_cover
 
 _BLOCK = 1 << 15
 
@@ -57,14 +57,17 @@ def stress(
     from ..kernels.rows.stress import Points
 
     _, scene, scale = framed(roller, "stress")
+    refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
-    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta})
+    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
     at, speed, creep = (checked(*given) for given in places.items())
+    places = dict(zip(places, (at, speed, creep), strict=True))
     if scale.si:
         roller.look(speed)
-        at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
+        with np.errstate(over="ignore"):  # a place so far away has no stress, such a speed is refused
+            at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
     state = states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(speed < 0.0, -1.0, 1.0)

@@ -70,14 +70,17 @@ def thread_count(threads: int | None = None) -> int:
     ParameterError
         Where either is no whole number >= 1.
     """
-    if threads is not None:
-        return whole("threads", threads, 1)
-    if not (asked := os.environ.get("VISCOROLL_THREADS")):
-        return cores()
+    return whole("threads", threads, 1) if threads is not None else _threads_of_environment() or cores()
+
+
+def _threads_of_environment() -> int | None:
+    """``$VISCOROLL_THREADS``, None where it is not set; raises ParameterError where it is no whole number >= 1."""
+    if not (given := os.environ.get("VISCOROLL_THREADS")):
+        return None
     with suppress(ValueError):
-        if (count := int(asked)) >= 1:
+        if (count := int(given)) >= 1:
             return count
-    raise ParameterError("VISCOROLL_THREADS", repr(asked), "a whole number >= 1")
+    raise ParameterError("VISCOROLL_THREADS", repr(given), "a whole number >= 1, or not set")
 
 
 def cores() -> int:
@@ -111,7 +114,11 @@ def run_blocks(
     """
     edges: Iterable[tuple[int, int]] = ((start, min(start + block, count)) for start in range(0, count, block))
     blocks = -(-count // block)
-    workers = min(thread_count(threads), blocks) if blocks > 1 or threads is not None else blocks
+    workers = blocks
+    if blocks > 1 or threads is not None:
+        workers = min(thread_count(threads), blocks)
+    elif count > 1:
+        _threads_of_environment()  # refuses what is wrong for small work too
     if workers <= 1 and progress is None:
         ended = getattr(_heeded, "event", None)
         for start, stop in edges:

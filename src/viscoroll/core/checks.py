@@ -1,4 +1,8 @@
-"""Numbers that callers give, as float64 or refused by name: finite, in range, of shapes that go together."""
+"""Numbers that callers give, as float64 in the unit of the argument, or refused by name.
+
+Numbers are finite, in range, and of shapes that go together; what carries a unit is converted
+(:mod:`.quantities`).
+"""
 
 from __future__ import annotations
 
@@ -8,45 +12,77 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import ParameterError
+from .errors import ParameterError, described
+from .quantities import in_unit, is_plain, is_real
+from .scale import Units
 from .typed import Booleans, Floats
+
+#: bytes of a double
+_DOUBLE = 8
 
 
 def checked(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     """``value`` as float64, finite, >= ``low`` (> if ``strict``) and <= ``high``, which may be given.
 
+    ``unit`` : what the argument is counted in, as of :func:`checked_extent`.
+
     Raises
     ------
     ParameterError
-        If it is not numeric, not finite, below ``low`` or above ``high``.
+        If it is not numeric, not finite, below ``low`` or above ``high``, or carries another unit.
     """
     return checked_extent(name, value, **bounds)[0]
 
 
 def checked_extent(
-    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
-) -> tuple[Floats, tuple[float, float]]:
-    """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array."""
+    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, strict: bool = False,
+    high: float = math.inf,
+) -> tuple[Floats, tuple[float, float]]:  # fmt: skip
+    """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array.
+
+    Parameters
+    ----------
+    unit : what the argument is counted in, to which what carries a unit is converted: an SI unit as "m s-1", "1" of
+        a number without dimension; or what has units by name, as a :class:`.scale.Scale`.
+    """
     if type(value) is float and low < value < high:
         return np.asarray(value), (value, value)
-    allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
-    allowed += "" if high == math.inf else f", <= {high:g}"
-    try:
-        given = np.asarray(value)
-    except ValueError:  # ragged
-        given = np.asarray(None)
-    if isinstance(value, np.ma.MaskedArray):
-        raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
-    if given.dtype.kind not in "iuf":
-        raise ParameterError(name, f"{value!r:.60}", allowed)
-    array = given.astype(np.float64, copy=False)
+    array = _numbers(name, value, unit, (low, strict, high))
     smallest, largest = extent(array) if array.size else (0.0, 0.0)
     # a NaN compares false; without one, no mask of the size of the array is needed
     above = smallest > low if strict else smallest >= low
     if array.size and not (above and -math.inf < smallest and largest < math.inf and largest <= high):
         bad = ~(np.isfinite(array) & (array > low if strict else array >= low) & (array <= high))
-        raise ParameterError(name, _listed(array, bad), allowed)
+        raise ParameterError(name, _listed(array, bad), _allowed(low, strict, high) or "a finite number")
     return array, (smallest, largest)
+
+
+def _allowed(low: float, strict: bool, high: float) -> str:
+    """A range in words; "" of all finite numbers."""
+    least = [] if low == -math.inf else [f"finite and {'>' if strict else '>='} {low:g}"]
+    return ", ".join(least + ([] if high == math.inf else [f"<= {high:g}"]))
+
+
+def _numbers(name: str, value: Any, unit: Units, bounds: tuple[float, bool, float]) -> Floats:
+    """``value`` as float64 in ``unit``; raises ParameterError for what is no number, with its ``bounds`` in words."""
+    plain = value
+    if not is_plain(value):
+        plain = in_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
+        if isinstance(plain, np.ma.MaskedArray):
+            raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
+    try:
+        given = np.asarray(plain)
+        if given.dtype.kind == "O" and all(map(is_real, given.flat)):
+            given = given.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):  # ragged, or an integer beyond the doubles
+        given = np.asarray(None)
+    if given.dtype.kind not in "iuf":
+        allowed = _allowed(*bounds)
+        raise ParameterError(name, described(value), f"a number, {allowed}" if allowed else "a finite number")
+    if given.dtype.itemsize <= _DOUBLE:
+        return given.astype(np.float64, copy=False)
+    with np.errstate(over="ignore"):  # of long doubles, which are infinite then
+        return given.astype(np.float64)
 
 
 def _listed(array: Floats, bad: Booleans) -> str:
@@ -67,8 +103,9 @@ def extent(array: Floats) -> tuple[float, float]:
 
 
 def number(
-    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
-) -> float:
+    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, strict: bool = False,
+    high: float = math.inf,
+) -> float:  # fmt: skip
     """As :func:`checked`, and a single number.
 
     Raises
@@ -78,9 +115,9 @@ def number(
     """
     if type(value) is float and low < value < high:
         return value
-    array = checked(name, value, low=low, strict=strict, high=high)
+    array = checked(name, value, unit=unit, low=low, strict=strict, high=high)
     if array.ndim:
-        raise ParameterError(name, f"{value!r:.60}", "a single number")
+        raise ParameterError(name, described(value), "a single number")
     return float(array)
 
 
@@ -117,7 +154,29 @@ def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
     ParameterError
         Otherwise.
     """
+    if type(value) is int and least <= value <= most:
+        return value
     if isinstance(value, bool) or not (isinstance(value, int | np.integer) and least <= value <= most):
         allowed = f"a whole number >= {least}" if most == math.inf else f"a whole number in [{least}, {most}]"
-        raise ParameterError(name, f"{value!r:.60}", allowed)
+        raise ParameterError(name, described(value), allowed)
     return int(value)
+
+
+def one_name(name: str, value: Any, *allowed: str) -> None:
+    """Raise ParameterError where ``value`` is none of the ``allowed`` texts, the last of which stands behind "or"."""
+    if not (isinstance(value, str) and value in allowed):
+        *most, last = map(repr, allowed)
+        raise ParameterError(name, described(value), f"{', '.join(most)} or {last}")
+
+
+def yes_or_no(name: str, value: Any) -> bool:
+    """``value`` as True or False.
+
+    Raises
+    ------
+    ParameterError
+        For what is no truth value of Python or numpy: texts and numbers have a truth that nobody meant.
+    """
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    raise ParameterError(name, described(value), "True or False")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from inspect import signature
 from typing import Any
 
@@ -12,7 +12,11 @@ from numpy.typing import ArrayLike
 
 from .checks import checked, frozen
 from .errors import ParameterError
-from .scale import Scale
+from .quantities import converted, in_unit, without_unit
+from .scale import HasUnits, Scale
+
+#: of what acts, the quantities whose units its gains on V and omega have
+_GAINS = {"force": ("dQ_dV", "dQ_domega"), "torque": ("dM_dV", "drag")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +26,7 @@ class Schedule:
     Parameters
     ----------
     times : (k,), ascending, >= 0; of an ensemble also (n, k), of each motion its own.
-    values : (k,), or (n, k).
+    values : (k,), or (n, k).  Where times or values carry units, what they drive converts them.
 
     Raises
     ------
@@ -32,18 +36,21 @@ class Schedule:
 
     times: Any
     values: Any
+    #: that times and values carried
+    units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name, low in (("times", 0.0), ("values", -np.inf)):
-            object.__setattr__(self, name, frozen(checked(name, getattr(self, name), low=low)))
+            _keep(self, name, low)
         times, values = self.times, self.values
         fits = {np.ndim(times), np.ndim(values)} <= {1, 2}
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
             raise ParameterError("Schedule", shapes, "times (k,) and values (k,), or (n, k) for n motions")
-        if (np.diff(times) < 0.0).any():
-            raise ParameterError("times", times[..., :-1][np.diff(times) < 0.0][0], "in ascending order")
+        falls = times[..., 1:] < times[..., :-1]
+        if falls.any():
+            raise ParameterError("times", times[..., :-1][falls][0], "in ascending order")
         thrice = times[..., 2:] == times[..., :-2]
         if thrice.any():
             raise ParameterError("times", times[..., :-2][thrice][0], "there once, or twice for a jump")
@@ -69,19 +76,61 @@ class Feedback:
     value: Any
     V: Any = 0.0
     omega: Any = 0.0
+    #: that value and gains carried
+    units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if not (callable(self.value) or isinstance(self.value, Schedule)):  # those are checked with their motion
-            object.__setattr__(self, "value", frozen(checked("value", self.value)))
+            _keep(self, "value", -np.inf)
         for name in ("V", "omega"):
-            object.__setattr__(self, name, gain := frozen(checked(name, getattr(self, name))))
-            if np.ndim(gain) > 1:
+            _keep(self, name, -np.inf)
+            if np.ndim(gain := getattr(self, name)) > 1:
                 raise ParameterError(name, f"of shape {np.shape(gain)}", "a number, or one a motion, (n,)")
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Of its gains."""
         return np.broadcast_shapes(np.shape(self.V), np.shape(self.omega))
+
+
+def _keep(given: Schedule | Feedback, name: str, low: float) -> None:
+    """Check the numbers of a part of what drives, and keep them and their unit; raises ParameterError."""
+    plain, unit = without_unit(name, getattr(given, name))
+    object.__setattr__(given, name, frozen(checked(name, plain, low=low)))
+    if unit is not None:
+        given.units[name] = unit
+
+
+def in_units_of(name: str, given: Any, units: HasUnits) -> Any:
+    """What a caller gave for an argument, in the unit of that: numbers, and what drives over time or with the speeds.
+
+    Raises
+    ------
+    ParameterError
+        A unit of another dimension; a feedback where nothing follows the speeds.
+    """
+    if isinstance(given, Schedule):
+        return _converted(name, given, {"times": units.unit("t"), "values": units.unit(name)})
+    if not isinstance(given, Feedback):
+        return in_unit(name, given, units.unit(name))
+    if name not in _GAINS:
+        sentence = f"{name} is a Feedback, which acts as force= or torque= alone: give its gains there"
+        raise ParameterError(name, "a Feedback", "no Feedback", sentence)
+    wanted = dict(zip(("value", "V", "omega"), map(units.unit, (name, *_GAINS[name])), strict=True))
+    given = _converted(name, given, wanted)
+    value = in_units_of(name, given.value, units) if isinstance(given.value, Schedule) else given.value
+    return given if value is given.value else replace(given, value=value)
+
+
+def _converted(name: str, given: Any, wanted: dict[str, str]) -> Any:
+    """A schedule or a feedback whose parts are in the ``wanted`` units, by their names."""
+    if not given.units:
+        return given
+    parts = {
+        part: converted(f"{part} of {name}", getattr(given, part), unit, wanted[part])
+        for part, unit in given.units.items()
+    }
+    return replace(given, **parts)
 
 
 def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:
@@ -110,7 +159,7 @@ def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
     """
     if slope is None:
         return 0.0, 1.0
-    theta = checked("slope", slope)
+    theta = checked("slope", slope, unit="rad")
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
         allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2), as np.radians(degrees) gives"
@@ -138,9 +187,9 @@ def over(name: str, given: Any, scale: Scale) -> Any:
         if np.ndim(unit):
             raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
         refuse_more_than_t(name, given)
-        return lambda t: checked(f"{name}(t)", given(t * scale["t"]), low=low) / unit
+        return lambda t: checked(f"{name}(t)", given(t * scale["t"]), unit=scale.unit(name), low=low) / unit
     if isinstance(given, Schedule):
         values = checked(f"values of {name}", given.values, low=low)
         return Schedule(given.times / scale["t"], values / (unit[:, np.newaxis] if np.ndim(unit) else unit))
-    value = checked(name, given, low=low) / unit
+    value = checked(name, given, unit=scale, low=low) / unit
     return value if value.ndim else float(value)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import copyreg
 from collections.abc import Collection, Iterable
+from datetime import date, timedelta
 from enum import IntEnum
 from typing import Any
 
@@ -31,11 +32,42 @@ class ViscorollError(Exception):
 
 
 class ParameterError(ViscorollError, ValueError):
-    """``name`` has a ``value`` outside what is ``allowed``; ``sentence`` says it where "must be" does not."""
+    """``name`` has a ``value`` outside what is ``allowed``; ``sentence`` says it where "must be" does not.
+
+    The message is one line, whatever the text of the value is.
+    """
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name, self.value, self.allowed = name, value, allowed
-        super().__init__(sentence or f"{name} = {value!s}: must be {allowed}")
+        super().__init__(" ".join((sentence or f"{name} = {value!s}: must be {allowed}").split("\n")))
+
+
+#: kinds of what callers give in place of numbers, the first that fits
+_KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
+    ((str,), "a text"),
+    ((bytes,), "bytes"),
+    ((bool,), "a truth value"),
+    ((complex,), "a complex number"),
+    ((date,), "a date"),
+    ((timedelta,), "a duration"),
+    ((dict,), "a dictionary"),
+    ((list, tuple), "a list"),
+)
+
+
+def described(value: Any) -> str:
+    """What a caller gave, for a message: its text in one line, cut at 60 characters, and its kind but of numbers."""
+    text = f"{' '.join(repr(value).split()):.60}"
+    if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
+        return text
+    kind = next((words for types, words in _KINDS if isinstance(value, types)), "")
+    if not kind and type(value).__module__.partition(".")[0] == "numpy":
+        shape = getattr(value, "shape", ())
+        kind = f"of type {value.dtype}" if hasattr(value, "dtype") else "of numpy"
+        kind += f", shape {shape}" if shape else ""
+    if not kind:
+        kind = "a function" if callable(value) else f"of type {type(value).__name__}"
+    return f"{text} ({kind})"
 
 
 def one_of(first: str, second: str, both: bool) -> ParameterError:
@@ -52,9 +84,12 @@ def unknown(name: str, value: Any, known: Iterable[str], kind: str) -> Parameter
 
 def refuse_unknown(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
     """The names in ``values``, one or several; raises :func:`unknown` for the first that is none of the ``known``."""
-    names = tuple(values) if isinstance(values, Iterable) and not isinstance(values, str) else (values,)
+    try:
+        names = (values,) if isinstance(values, str) else tuple(values)
+    except TypeError:  # not several
+        names = (values,)
     for value in names:
-        if value not in known:
+        if not (isinstance(value, str) and value in known):
             raise unknown(name, value, known, kind)
     return names
 
@@ -92,9 +127,9 @@ class ConvergenceError(ViscorollError):
 
 
 class ModelWarning(UserWarning):
-    """The model is grossly at fault for a motion, a material was not measured at what a contact asks of it, or a file
-    of measurements gives no units.  Every call is looked at; Python says the same words once for each line of a
-    program, those on a material or a file are said once for each.
+    """The model is grossly at fault for a motion or a contact, a material was not measured at what a contact asks of
+    it, or a file of measurements gives no units.  Every call is looked at; Python says the same words once for each
+    line of a program, those on a material or a file are said once for each.
     """
 
 
@@ -117,9 +152,11 @@ class MotionStatus(IntEnum):
 
 _MESSAGES = (
     "reached the last output time",
-    "max(|V|, |omega|) fell below the rest threshold",
-    "the step limit was reached first: loosen rtol, raise max_steps or shorten the motion",
-    "the step size fell to rounding level: rtol is too tight for this start",
+    "|V| and R |omega| fell below the rest threshold",
+    "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed grows without bound,"
+    " loosen rtol",
+    "the step size fell to rounding level: the motion changes faster than time can be told there, by a gain, drag,"
+    " speed or friction of extreme size, or for a tight rtol",
     "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
     "too slow for the added mass, which came to 1 + j or to half of that below 0",
     "caught in the imprint of its rest, which takes seven tenths of its energy",

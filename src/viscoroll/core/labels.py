@@ -1,4 +1,4 @@
-"""Labels of xarray and pandas: taken off what comes in, and put back on what goes out."""
+"""Labels of xarray and pandas: taken off what comes in, with its units, and put back on what goes out."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .drive import Schedule
+from .drive import Schedule, in_units_of
 from .errors import ParameterError
+from .quantities import is_plain
+from .scale import HasUnits
 
 
 class Labels(NamedTuple):
@@ -48,20 +50,29 @@ class Labels(NamedTuple):
         }
 
 
-#: what bears no labels
-_BARE = frozenset((float, int, np.float64, type(None)))
+#: types that bear neither labels nor units
+BARE = frozenset((float, int, np.float64, type(None)))
 
 
-def unlabelled(given: dict[str, Any]) -> tuple[dict[str, Any], Labels | None]:
+def unlabelled(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
     """Plain arrays in place of labelled ones, and what gives a result their labels; None where nothing has any.
+
+    What carries a unit is converted to that of the argument.
+
+    Parameters
+    ----------
+    given : arguments by name; functions of time, schedules and feedbacks stay as they are.
+    units : what the arguments are counted in, a :class:`.scale.Scale`.
 
     Raises
     ------
     ParameterError
-        Arrays of xarray beside plain ones, series of pandas with unlike indices, both kinds at once.
+        A unit of another dimension, arrays of xarray beside plain ones, series of pandas with unlike indices, both
+        kinds at once.
     """
-    if _BARE.issuperset(map(type, given.values())):
+    if BARE.issuperset(map(type, given.values())) or all(map(is_plain, given.values())):
         return given, None
+    given = {name: in_units_of(name, value, units) for name, value in given.items()}
     xarray, pandas = sys.modules.get("xarray"), sys.modules.get("pandas")
     arrays = {name: value for name, value in given.items() if xarray and isinstance(value, xarray.DataArray)}
     series = {name: value for name, value in given.items() if pandas and isinstance(value, pandas.Series)}

@@ -6,16 +6,27 @@ A scene's numbers are over its units, a cylinder's are in SI units, and a materi
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
 from .errors import ParameterError
 
 #: quantity -> its dimension in radius R, time T, load P (N/m), mass m (kg/m), contact length at rest l0, modulus E';
-#: what is not here is a ratio
+#: what is not here is a ratio; temperatures and what belongs to them have no part in a scale
 DIMENSIONS = {
-    **dict.fromkeys(("t", "onset_time", "rest_time", "rested", "zeta"), "T"),
+    **dict.fromkeys(
+        ("t", "t0", "onset_time", "rest_time", "rested", "zeta", "resolve", "T_epsilon", "T_sigma", "T_ref"), "T"
+    ),
+    **dict.fromkeys(("R", "thickness"), "R"),
+    **dict.fromkeys(("E", "E0", "G", "G0", "G_inf", "bulk"), "E_prime"),
+    "load": "P",
+    **dict.fromkeys(("temperature", "T0"), "theta"),
+    "C2": "delta theta",
+    "energy": "molar energy",
+    "m": "m",
+    "g": "R/T2",
+    "density": "m/R2",
     **dict.fromkeys(("V", "V0", "rest", "speed"), "R/T"),
     **dict.fromkeys(("omega", "omega0"), "rad/T"),
     **dict.fromkeys(("angle", "slope"), "rad"),
@@ -39,6 +50,9 @@ KINDS = {
     "rad/T": ("rad s-1", " times T_epsilon"),
     "rad": ("rad", ", radians"),
     "R": ("m", " over R"),
+    "R/T2": ("m s-2", " times T_epsilon^2/R"),
+    "m": ("kg m-1", " over m"),
+    "m/R2": ("kg m-3", " over m/R^2"),
     "l0": ("m", " over l0"),
     "E_prime": ("Pa", " over E'"),
     "P": ("N m-1", " over load"),
@@ -50,6 +64,9 @@ KINDS = {
     "m R2/T2": ("J m-1", " over m (R/T_epsilon)^2"),
     "P R/T": ("W m-1", " over P R/T_epsilon"),
     "P T/m R": ("s-1", " over gamma"),
+    "theta": ("degC", ""),
+    "delta theta": ("K", ""),
+    "molar energy": ("J mol-1", ""),
 }
 
 
@@ -108,12 +125,24 @@ class Scale(dict[str, Any]):
         return found if found.ndim else float(found)
 
     def unit(self, name: str) -> str:
-        """The unit of a quantity, as "m s-1"; "1" of a ratio, and of all of a scene."""
-        return si_unit(name) if self.si else "1"
+        """The unit of a quantity, as "m s-1"; "1" of a ratio, and of all of a scene but its angles."""
+        return si_unit(name) if self.si or DIMENSIONS.get(name) == "rad" else "1"
 
+
+class HasUnits(Protocol):
+    """What has a unit for each quantity by name: a :class:`Scale`, a record of measurements."""
+
+    def unit(self, name: str) -> str:
+        """The unit of a quantity."""
+
+
+#: the unit of an argument, or what has one by the argument's name
+Units: TypeAlias = str | HasUnits
 
 #: of a scene
 DIMENSIONLESS = Scale(si=False)
+#: of SI units themselves: what takes and gives them without a cylinder
+SI = Scale()
 
 
 def si_unit(name: str) -> str:

@@ -59,9 +59,19 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
             problem = f"{'.'.join(words)} = {value!r:.40}: must be {kinds}"
         elif bounds := _BOUNDS.fullmatch(problem):
             problem = f"{words[-1]} = {value!r:.40}: must be {bounds[1]}"
+        elif words and (choices := _choices(kind, words)):
+            problem = f"{words[-1]} = {value!r:.40}: must be one of {choices}"
         elif words and not isinstance(value, dict):
             problem = f"{words[-1]} = {value!r:.40}: {problem}"
         raise fault(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error
+
+
+def _choices(kind: Any, words: list[str]) -> str:
+    """The texts that a key of a section may have, as ``'linear', 'log'``; "" where it is no choice of texts."""
+    for word in words:
+        sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
+        kind = next((get_type_hints(each)[word] for each in sections if word in get_type_hints(each)), None)
+    return ", ".join(repr(each) for each in get_args(kind) if isinstance(each, str))
 
 
 def _refuse_unknown_within(path: Any, name: str, content: Any, kind: Any) -> None:

@@ -37,6 +37,7 @@ SYMBOLS = {
     "angle": Symbol(r"\theta", "angle turned", "finite", "Eq. (22)"),
     "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)"),
     "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)"),
+    "delta_0": Symbol(r"\delta_0", "creep of free rolling by the strain that the pressure makes", "finite"),
     "lam": Symbol(r"\lambda", "contact length over contact length at rest", "[alpha^(-1/2), 1]", "Eq. (6)"),
     "epsilon": Symbol(r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)"),
     "zeta": Symbol(r"\zeta", "time to travel half the contact", "> 0", "Eq. (7)"),

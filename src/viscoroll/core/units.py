@@ -57,7 +57,7 @@ def factor(unit: str, wanted: str) -> tuple[float, float]:
 
     units = registry()
     try:
-        zero, one = (units.Quantity(value, _spelled(unit)).to(_spelled(wanted)).magnitude for value in (0.0, 1.0))
+        zero, one = (units.Quantity(value, spelled(unit)).to(spelled(wanted)).magnitude for value in (0.0, 1.0))
     except pint.DimensionalityError:
         raise ParameterError("unit", unit, f"a unit of the dimension of {wanted}") from None
     except Exception as error:  # pint raises errors of its parser and of Python's
@@ -69,7 +69,16 @@ def factor(unit: str, wanted: str) -> tuple[float, float]:
     return one, 0.0
 
 
-def _spelled(unit: str) -> str:
+def is_unit(text: str) -> bool:
+    """Whether pint reads a text as a unit of whatever dimension; degrees Celsius as "C" are coulombs to it."""
+    try:
+        registry().parse_units(spelled(text))
+    except Exception:  # pint raises errors of its parser and of Python's
+        return False
+    return True
+
+
+def spelled(unit: str) -> str:
     """A unit in pint's spelling: signs as words, and powers with ``**``."""
     text = unit.strip()
     for sign, word in _SIGNS.items():

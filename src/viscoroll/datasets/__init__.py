@@ -15,6 +15,8 @@ def path(name: str) -> Path:
     Parameters
     ----------
     name : ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5 % noise.
+        ``"dma_export.csv"``: storage modulus and tan delta as an instrument writes them, with semicolons and decimal
+        commas, 0.1 to 100 Hz.
 
     Returns
     -------

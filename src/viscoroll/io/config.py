@@ -138,7 +138,7 @@ def located(path: Any, content: Mapping[str, Any], error: ParameterError) -> Fil
 
 
 def read_bodies(path: str | PathLike[str]) -> Any:
-    """The pair, the series or bodies, or the alpha of a file: what has a contact law.
+    """The pair, the series or bodies, or the alpha of a file: what has a contact law; of a layer the cylinder.
 
     ``path`` : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
 
@@ -151,12 +151,13 @@ def read_bodies(path: str | PathLike[str]) -> Any:
     if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):
         body = read_body(path)
         if isinstance(body, Cylinder):
-            return body.pair
+            return body.pair if body.pair.covered is None else body
         return body.alpha if body.material is None else body.material
     found = read_materials(path)
     if "material" not in found:
         raise FileError(path, "section [material] is missing")
     try:
-        return Pair(found["material"], found.get("base"))
+        pair = Pair(found["material"], found.get("base"))
     except ParameterError as error:
         raise fault(path, "base", error.name, str(error)) from error
+    return read_body(path) if pair.covered is not None and "cylinder" in content else pair

@@ -84,7 +84,7 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
         drawn = {name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)}
     found = Sample()
     for name, value in quantities.items():
-        found[name] = drawn[name] if name in drawn else np.full(n, float(value))
+        found[name] = drawn[name] if name in drawn else np.full(n, number(name, value))
     found.seed, found.design = seed, design
     return found
 

@@ -20,7 +20,7 @@ from .law_store import is_law, read_law
 from .material import Material
 from .measured import Measured
 from .prony import Prony
-from .shift import WLF, Arrhenius
+from .shift import WLF, Arrhenius, relative
 from .store import SUFFIX
 
 SECTIONS = ("material", "base")
@@ -58,6 +58,7 @@ class MaterialSection(FileSection, kw_only=True):
     creep : in place of ``prony``: compliances over that at once, and times; perhaps alpha.
     wlf, arrhenius : how times shift with temperature.
     temperature : which they are wanted at, degrees Celsius.
+    reference : at which moduli and times are as they stand here, degrees Celsius; default: where the shift is 1.
     """
 
     file: None = None  # type: ignore[assignment]
@@ -71,6 +72,7 @@ class MaterialSection(FileSection, kw_only=True):
     name: str = ""
     density: float | None = None
     measured: Measured | None = None
+    reference: float | None = None
 
 
 def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
@@ -104,11 +106,8 @@ def materials_of(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
 def shifts_of(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
     """a_T of the materials of a file that was read, over temperature, 1 at that of the file, where it has a shift."""
     given = {name: _section(path, name, content[name]) for name in SECTIONS if name in content}
-    return {name: partial(_relative, *found) for name, each in given.items() if (found := _shift(path, name, each))}
-
-
-def _relative(shift: WLF | Arrhenius, own: float | None, temperature: float) -> float:
-    return shift(temperature) / (1.0 if own is None else shift(own))
+    found = {name: _shift(path, name, each) for name, each in given.items()}
+    return {name: partial(relative, shift[0], reference=shift[1]) for name, shift in found.items() if shift}
 
 
 def as_toml(material: Material, section: str = "material") -> str:
@@ -118,7 +117,7 @@ def as_toml(material: Material, section: str = "material") -> str:
         f"source = {_text(material.measured.source)} }}"
     )
     held = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
-    held = {"name": _text(material.name)} | held | {"measured": measured}
+    held = {"name": _text(material.name)} | held | {"reference": material.temperature, "measured": measured}
     lines = [f"{name} = {value}" for name, value in held.items() if value is not None]
     return "\n".join([f"[{section}]", *lines, series_as_toml(material.prony), ""])
 
@@ -188,6 +187,7 @@ def _of_law(path: Path) -> Material:
 
 def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
     more = {key: getattr(given, key) for key in ("name", "density", "thickness", "measured")}
+    more["temperature"] = given.reference
     series = series_of(path, name, msgspec.to_builtins({"prony": given.prony, "creep": given.creep}))
     if given.T_epsilon is not None or given.T_sigma is not None:
         if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:

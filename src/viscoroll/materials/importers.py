@@ -1,7 +1,8 @@
 """Materials as other programs state them: the constructors that :class:`Material` has from here.
 
-All of these programs relax the shear modulus, G(t).  Here Poisson's ratio is constant in time, so that
-E(t) = 2 (1 + nu) G(t) relaxes alike; what that takes for granted stands with each.
+All of these programs relax the shear modulus, G(t), and may relax the bulk modulus, K(t).  Where the bulk terms are not
+given, Poisson's ratio is taken constant in time, so that E(t) = 2 (1 + nu) G(t) relaxes alike.  Where they are given
+and differ from those of shear, nu changes with time; :func:`plane_strain` keeps what a contact in plane strain feels.
 """
 
 from __future__ import annotations
@@ -9,65 +10,102 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.checks import checked, number
-from ..core.errors import ParameterError, one_of
+from ..core.checks import checked, number, yes_or_no
+from ..core.errors import ParameterError, one_of, refuse_unknown
+from ..core.scale import SI
 from ..core.typed import Floats
 from .bodies import Bodies
 from .prony import Prony
+
+#: keywords that every constructor hands on to :class:`Material`
+_MORE = ("name", "density", "thickness", "measured", "temperature")
 
 
 class FromPrograms:
     """Constructors of :class:`Material`; times in s, so that T_ref = 1 s and they stay as they are given."""
 
     @classmethod
-    def abaqus(cls, E0: float, nu: float, g: ArrayLike, tau: ArrayLike, *, long_term: bool = False, **more: Any) -> Any:
+    def abaqus(
+        cls,
+        E0: float,
+        nu: float,
+        g: ArrayLike,
+        tau: ArrayLike | None = None,
+        *,
+        k: ArrayLike | None = None,
+        long_term: bool = False,
+        **more: Any,
+    ) -> Any:
         """The material of ``*VISCOELASTIC, TIME=PRONY`` under ``*ELASTIC``.
 
-        g_R(t) = G(t)/G0 = 1 - sum g_i (1 - exp(-t/tau_i)), so that E_i = g_i/(1 - sum g): Abaqus 2017,
-        Materials, "Time domain viscoelasticity" (abaqus-docs.mit.edu, simamat-c-timevisco).
+        g_R(t) = G(t)/G0 = 1 - sum g_i (1 - exp(-t/tau_i)), so that E_i = g_i/(1 - sum g), and k_R(t) = K(t)/K0 alike:
+        Abaqus 2017, Materials, "Time domain viscoelasticity" (abaqus-docs.mit.edu, simamat-c-timevisco).
 
         Parameters
         ----------
         E0 : modulus of ``*ELASTIC``, Pa: the instantaneous one, or the long-time one where
             ``long_term`` (``MODULI=LONG TERM``).
-        nu : Poisson's ratio, taken constant in time, as k_i = g_i would make it.  Without k_i Abaqus holds
-            the bulk modulus constant: its nu then rises to nearly 0.5.
-        g : g_i, shares of the instantaneous shear modulus, >= 0, of a sum below 1.
+        nu : Poisson's ratio of ``*ELASTIC``.  Without ``k`` it is taken constant in time, as k_i = g_i make it.
+        g : g_i, shares of the instantaneous shear modulus, >= 0, of a sum below 1; or the table (n, 3) of
+            ``*VISCOELASTIC``, a row (g_i, k_i, tau_i) each, without ``tau`` and ``k``.
         tau : relaxation times tau_i, s, > 0.
-        more : ``name`` and ``density`` of the material.
+        k : k_i, shares of the instantaneous bulk modulus, >= 0, of a sum below 1, at the same times; zeros are a
+            constant bulk modulus, which is also what Abaqus takes where they are left out.  Where they differ from g,
+            nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.
+        more : ``name``, ``density``, ``thickness``, ``measured``, ``temperature`` of the material.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths.
+            A value out of range, lists of different lengths, an unknown keyword.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.abaqus(10e6, 0.49, [[0.2, 0.2, 0.1], [0.3, 0.3, 10.0]]).E
+        5000000.0
         """
-        return cls._relative(E0, nu, "g", g, tau, long_term, more)
+        if tau is None:
+            table = checked("g", g, low=0.0)
+            if table.ndim != 2 or table.shape[1] != 3 or k is not None:
+                sentence = f"tau is not given: give tau, or rows (g_i, k_i, tau_i) for g, here of shape {table.shape}"
+                raise ParameterError("tau", None, "one time for each g", sentence)
+            g, k, tau = table.T
+        return cls._relative(E0, nu, "g", g, tau, k, yes_or_no("long_term", long_term), more)
 
     @classmethod
-    def ansys(cls, E0: float, nu: float, alpha: ArrayLike, tau: ArrayLike, **more: Any) -> Any:
-        """The material of ``TB,PRONY,,,,SHEAR`` under ``MP,EX`` and ``MP,PRXY``.
+    def ansys(
+        cls, E0: float, nu: float, alpha: ArrayLike, tau: ArrayLike, *, k: ArrayLike | None = None, **more: Any
+    ) -> Any:
+        """The material of ``TB,PRONY,,,,SHEAR`` (and ``BULK``) under ``MP,EX`` and ``MP,PRXY``.
 
-        G(t) = G0 (alpha_inf + sum alpha_i exp(-t/tau_i)), alpha_inf = 1 - sum alpha_i: Mechanical APDL,
+        G(t) = G0 (alpha_inf + sum alpha_i exp(-t/tau_i)), alpha_inf = 1 - sum alpha_i, K(t) alike: Mechanical APDL,
         Material Reference, "Viscoelasticity", whose elastic constants are those of t = 0.
 
         Parameters
         ----------
         E0 : instantaneous Young's modulus EX, Pa.
-        nu : Poisson's ratio PRXY, taken constant in time, as a bulk table equal to that of shear makes it.
-        alpha, tau : the pairs alpha_i (>= 0, of a sum below 1) and tau_i (s, > 0).
-        more : ``name`` and ``density`` of the material.
+        nu : Poisson's ratio PRXY.  Without ``k`` it is taken constant in time, as a bulk table equal to that of shear
+            makes it.
+        alpha, tau : the pairs alpha_i (>= 0, of a sum below 1) and tau_i (s, > 0) of the table ``SHEAR``.
+        k : alpha_i of the table ``BULK`` at the same times; of a table with times of its own list all times, and zeros
+            where one of the two has none.  As of :meth:`abaqus`.
+        more : as of :meth:`abaqus`.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths.
+            A value out of range, lists of different lengths, an unknown keyword.
         """
-        return cls._relative(E0, nu, "alpha", alpha, tau, False, more)
+        return cls._relative(E0, nu, "alpha", alpha, tau, k, False, more)
 
     @classmethod
-    def comsol(cls, E: float, nu: float, G: ArrayLike, tau: ArrayLike, **more: Any) -> Any:
+    def comsol(
+        cls, E: float, nu: float, G: ArrayLike, tau: ArrayLike, *, K: ArrayLike | None = None, **more: Any
+    ) -> Any:
         """The material of a generalized Maxwell node under Linear Elastic Material.
 
         G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural Mechanics
@@ -75,20 +113,23 @@ class FromPrograms:
 
         Parameters
         ----------
-        E, nu : of the elastic node, Pa: the long-time values (static stiffness "Long-term").  nu is taken
-            constant in time; where only deviatoric strains are viscoelastic, COMSOL's rises as G(t) falls.
+        E, nu : of the elastic node, Pa: the long-time values (static stiffness "Long-term").  Without ``K`` nu is
+            taken constant in time.
         G : shear moduli G_m of the branches, Pa, >= 0.
         tau : their relaxation times tau_m, s, > 0.
-        more : ``name`` and ``density`` of the material.
+        K : bulk moduli of the branches, Pa, >= 0, at the same times; zeros where only deviatoric strains are
+            viscoelastic.
+        more : as of :meth:`abaqus`.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths.
+            A value out of range, lists of different lengths, an unknown keyword.
         """
-        E, nu = number("E", E, low=0.0, strict=True), poisson(nu)
-        strengths, _ = pairs("G", G, "tau", tau)
-        return cls(E=E, nu=nu, prony=Prony(strengths * (2.0 * (1.0 + nu) / E), tau), **more)  # type: ignore[call-arg]
+        E, nu = number("E", E, unit=SI, low=0.0, strict=True), poisson(nu)
+        strengths, times = pairs("G", G, "tau", tau)
+        bulk = None if K is None else pairs("K", K, "tau", times)[0]
+        return cls._of_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
 
     @classmethod
     def lsdyna(
@@ -100,6 +141,7 @@ class FromPrograms:
         bulk: float | None = None,
         G0: float | None = None,
         G_inf: float | None = None,
+        K: ArrayLike | None = None,
         **more: Any,
     ) -> Any:
         """The material of ``*MAT_GENERAL_VISCOELASTIC`` (076), or of ``*MAT_VISCOELASTIC`` (006) as one pair.
@@ -112,43 +154,89 @@ class FromPrograms:
         ----------
         G : G_i, Pa, >= 0.
         beta : beta_i, 1/s, >= 0.
-        nu : Poisson's ratio, constant in time; this or ``bulk``.
-        bulk : constant bulk modulus, Pa.  Then nu(t) is not constant; what the contact feels in plane
-            strain, (1 - nu^2)/E = 1/(4 G) + 3/(4 (3 K + G)) of operators, is kept exactly, with modes of both
-            terms, and ``nu`` is the long-time one.
+        nu : Poisson's ratio, constant in time, with ``K`` that of long times; this or ``bulk``.
+        bulk : constant bulk modulus, Pa, with ``K`` that of long times.  Then nu(t) is not constant; what the contact
+            feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` is the long-time one.
         G0 : instantaneous shear modulus, Pa, from which the G_i take away; this, ``G_inf`` or a pair
             with beta = 0.
         G_inf : long-time shear modulus, Pa.
-        more : ``name`` and ``density`` of the material.
+        K : K_i, Pa, >= 0, at the same beta; that with beta = 0 is the long-time one, in place of ``nu`` and ``bulk``.
+        more : as of :meth:`abaqus`.
 
         Raises
         ------
         ParameterError
             A value out of range, lists of different lengths, no long-time modulus or several, both or
-            neither of nu and bulk.
+            neither of nu and bulk, an unknown keyword.
         """
         strengths, rates = pairs("G", G, "beta", beta, strict=False)
         resting = rates == 0.0
         rest = _long_time(strengths, G0, G_inf, strengths[resting])
         strengths, times = strengths[~resting], 1.0 / rates[~resting]
+        terms = None if K is None else pairs("K", K, "beta", rates, strict=False)[0]
+        if terms is not None:
+            if terms[resting].any():
+                if nu is not None or bulk is not None:
+                    raise one_of("nu or bulk", "K of beta = 0", both=True)
+                bulk = math.fsum(terms[resting])
+            terms = terms[~resting]
         if (nu is None) == (bulk is None):
             raise one_of("nu", "bulk", both=nu is not None)
-        if bulk is None:
-            nu, prony = poisson(nu), Prony(strengths / rest, times)
-        else:
-            nu, prony = plane_strain(rest, strengths, times, number("bulk", bulk, low=0.0, strict=True))
-        return cls(E=2.0 * (1.0 + nu) * rest, nu=nu, prony=prony, **more)  # type: ignore[call-arg]
+        if bulk is not None:
+            bulk = number("bulk", bulk, unit=SI, low=0.0, strict=True)
+            nu = (3.0 * bulk - 2.0 * rest) / (6.0 * bulk + 2.0 * rest)
+            terms = np.zeros_like(strengths) if terms is None else terms
+        return cls._of_moduli(rest, poisson(nu), strengths, times, terms, more, bulk)
 
     @classmethod
     def _relative(
-        cls, E: float, nu: float, name: str, shares: ArrayLike, tau: ArrayLike, long: bool, more: dict
+        cls,
+        E: float,
+        nu: float,
+        name: str,
+        shares: ArrayLike,
+        tau: ArrayLike,
+        bulk: ArrayLike | None,
+        long: bool,
+        more: dict[str, Any],
     ) -> Any:
-        """From shares of the instantaneous modulus; ``long``: E is the long-time modulus."""
-        E, values = number("E0", E, low=0.0, strict=True), pairs(name, shares, "tau", tau)[0]
-        left = 1.0 - math.fsum(values)
-        if not left > 0.0:
-            raise ParameterError(name, f"{values.tolist()}", "of a sum below 1: no long-time modulus would be left")
-        return cls(E=E if long else E * left, nu=nu, prony=Prony(values / left, tau), **more)  # type: ignore[call-arg]
+        """From shares of the instantaneous moduli; ``long``: E is the long-time modulus."""
+        E, nu = number("E0", E, unit=SI, low=0.0, strict=True), poisson(nu)
+        values, times = pairs(name, shares, "tau", tau)
+        left = _left(name, values)
+        if bulk is None:
+            return cls._made(more, E=E if long else E * left, nu=nu, prony=Prony(values / left, times))
+        others = pairs("k", bulk, "tau", times)[0]
+        left_of_bulk = _left("k", others)
+        G, K = E / (2.0 * (1.0 + nu)), E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
+        G, K = (G, K) if long else (G * left, K * left_of_bulk)
+        if nu < 0.5 and (values != others).any():  # nu of long times
+            nu = (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)
+        relaxing = others / left_of_bulk * (K if nu < 0.5 else 1.0)
+        return cls._of_moduli(G, nu, values / left * G, times, relaxing, more, K)
+
+    @classmethod
+    def _of_moduli(
+        cls, G_inf: float, nu: float, G: Floats, tau: Floats, K: Floats | None, more: dict[str, Any],
+        K_inf: float | None = None, E: float | None = None,
+    ) -> Any:  # fmt: skip
+        """From long-time shear modulus and Poisson's ratio, and the terms of G(t) and K(t), in one unit.
+
+        K : None where nu is constant in time.  K_inf : long-time bulk modulus, default by nu.  E : 2 (1 + nu) G_inf.
+        """
+        E = 2.0 * (1.0 + nu) * G_inf if E is None else E
+        prony = Prony(G / G_inf, tau)
+        if K is not None and nu < 0.5:  # an incompressible body has no bulk strain to relax
+            K_inf = E / (3.0 * (1.0 - 2.0 * nu)) if K_inf is None else K_inf
+            if not np.array_equal(K * G_inf, G * K_inf):
+                prony = plane_strain(G_inf, G, K_inf, K, tau)
+        return cls._made(more, E=E, nu=nu, prony=prony)
+
+    @classmethod
+    def _made(cls, more: dict[str, Any], **own: Any) -> Any:
+        """The material of these fields; raises ParameterError for a keyword that no material has."""
+        refuse_unknown("keyword", more, _MORE, "one of this constructor")
+        return cls(**own, **more)
 
 
 def poisson(nu: Any) -> float:
@@ -161,7 +249,8 @@ def poisson(nu: Any) -> float:
 
 def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True) -> tuple[Floats, Floats]:
     """Two lists of one length, the first >= 0, the second > 0 (>= 0 unless ``strict``); raises ParameterError."""
-    first, second = checked(name, values, low=0.0), checked(other, at, low=0.0, strict=strict)
+    first = checked(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
+    second = checked(other, at, unit="s" if other == "tau" else "s-1", low=0.0, strict=strict)
     if first.ndim != 1 or first.shape != second.shape:
         raise ParameterError(other, f"of shape {second.shape}", f"one for each {name}, of shape {first.shape}")
     return first, second
@@ -170,7 +259,7 @@ def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bo
 def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
     """The long-time shear modulus of LS-DYNA's three ways to give it."""
     ways = {
-        "G0": None if G0 is None else number("G0", G0) - math.fsum(strengths),
+        "G0": None if G0 is None else number("G0", G0, unit=SI) - math.fsum(strengths),
         "G_inf": G_inf,
         "beta = 0": math.fsum(resting) if resting.size else None,
     }
@@ -179,16 +268,35 @@ def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, restin
         found = " and ".join(given) or "nothing"
         raise ParameterError("long-time modulus by", found, "one of G_inf, G0 and a pair with beta = 0")
     (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G of beta = 0"}
-    return number(named.get(name, name), value, low=0.0, strict=True)
+    return number(named.get(name, name), value, unit="Pa", low=0.0, strict=True)
 
 
-def plane_strain(G_inf: float, G: NDArray, tau: NDArray, K: float) -> tuple[float, Prony]:
-    """(long-time nu, series of E/(1 - nu^2)) of a relaxing shear modulus and a constant bulk modulus K.
+def _left(name: str, shares: Floats) -> float:
+    """The share of the modulus that is left after long times; raises ParameterError where there is none."""
+    left = 1.0 - math.fsum(shares)
+    if not left > 0.0:
+        raise ParameterError(name, f"{shares.tolist()}", "of a sum below 1: no long-time modulus would be left")
+    return left
+
+
+def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArray) -> Prony:
+    """The series of E/(1 - nu^2), over its long-time value, of a shear and a bulk modulus that both relax.
 
     As operators (1 - nu^2)/E = (3 K + 4 G)/(4 G (3 K + G)) = 1/(4 G) + 3/(4 (3 K + G)): two materials in series,
-    whose creep terms add up.
+    whose creep terms add up (the correspondence principle of linear viscoelasticity).
+
+    Parameters
+    ----------
+    G_inf, K_inf : long-time moduli, Pa.
+    G, K : strengths of their terms, Pa, >= 0, shape (n,) each.
+    tau : relaxation times of both, s, shape (n,).
+
+    Returns
+    -------
+    Prony
+        Exact, in 1e-14 (``test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes``).
     """
-    first, second = Prony(G / G_inf, tau), Prony(G / (3.0 * K + G_inf), tau)
-    soft, hard = 0.25 / G_inf, 0.75 / (3.0 * K + G_inf)
-    nu = (3.0 * K - 2.0 * G_inf) / (6.0 * K + 2.0 * G_inf)
-    return nu, Bodies(first, second, soft / (soft + hard)).total
+    stiff = 3.0 * K_inf + G_inf
+    first, second = Prony(G / G_inf, tau), Prony((3.0 * K + G) / stiff, tau)
+    soft, hard = 0.25 / G_inf, 0.75 / stiff
+    return Bodies(first, second, soft / (soft + hard)).total

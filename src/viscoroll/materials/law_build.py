@@ -218,8 +218,9 @@ def added(N: Floats, e0: int, alpha: float) -> Floats:
     return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
 
 
-def arranged(table: Floats, e0: int, alpha: float, fast: Floats) -> Floats:
-    """The rows that kernels read (:mod:`..kernels.rows.law`): functions side by side, and L = lam (1 + epsilon).
+def arranged(table: Floats, e0: int, alpha: float, fast: Floats, given: Floats | None = None) -> Floats:
+    """The rows that kernels read (:mod:`..kernels.rows.law`): functions side by side, and L = lam (1 + epsilon), or
+    the rows ``given`` of L = 2 kappa delta_star/mu.
 
     ``fast``: W and C of the fast limit.  L^2 press(2 u/L) = 1, which Q loses digits by, holds to rounding.
     """
@@ -227,13 +228,15 @@ def arranged(table: Floats, e0: int, alpha: float, fast: Floats) -> Floats:
     lam, epsilon, half_space, cylinder, _, share, press = np.moveaxis(table, -1, 0)
     (one, shift), _ = rows.read(np.stack([lam, epsilon]), rows.x.ravel())
     L, u = one * (1.0 + shift), rows.x.ravel()
+    if given is not None:
+        L = rows.read(given[None], u)[0][0]
     for _ in range(2):
         v = 2.0 * u / L
         value, slope = _press(rows, press, v, alpha, fast)
         A = value - 0.5 * slope
         L, dL = L - 0.5 * (L * value - 1.0 / L) / A, -0.5 * L * slope / A
     lengths = rows.fit_slopes(L.reshape(rows.x.shape), dL.reshape(rows.x.shape))
-    lengths[0, 0] = 1.0
+    lengths[0, 0] = 1.0 if given is None else given[0, 0]
     pairs = [paired(*both) for both in ((lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder))]
     return np.concatenate([*pairs, press, share], axis=1)
 

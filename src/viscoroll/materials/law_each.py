@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 import threading
+from functools import lru_cache
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..core.typed import Floats, Integers
 from .bodies import Bodies
+from .cover import Cover
 from .law_axis import OCTAVES, tables_of, to_chebyshev
 from .law_build import octaves
 from .law_modes import refuse_far, series_of
+from .law_table import made
 from .prony import Block, Prony, read_only
 
 _lock = threading.Lock()
@@ -59,8 +62,12 @@ def _room(count: int) -> tuple[Floats, Integers]:
     return np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
 
 
-def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
-    """The record of a law by its kernels and what these know: numbers, and arrays by their addresses."""
+def _record(hold: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> Any:
+    """The record of a law by its kernels and what these know: numbers, and arrays by their addresses.
+
+    ``free``: room for what a cover has beside its rows, which its kernels know too.
+    """
+    known |= {} if free is None else {"free": free}
     from ..kernels.compile.intrinsics import function_address
     from ..kernels.rows.record import Law
 
@@ -71,7 +78,7 @@ def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
     held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
     addresses = function_address(hold, kind), function_address(make, kind), int(source.ctypes.data)
     rows, marks, added = map(read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
-    return Law(rows, marks, added, *addresses)
+    return Law(rows, marks, added, *addresses, None if free is None else read_only(free.view()))
 
 
 def _octave(octave: int) -> tuple[Floats, int]:
@@ -94,6 +101,8 @@ def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
 
     For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
     """
+    if isinstance(materials, Cover):
+        return _law_of_covers(materials, which)
     from ..kernels.rows.grid import FRONT, HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
     from ..kernels.rows.series import LANES, packed_size, room_size
 
@@ -132,3 +141,57 @@ def _numbers(block: Block) -> Floats:
     *vectors, Q = series_of(modes, weights)
     front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, first, rows, N]
     return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)
+
+
+def _law_of_covers(covers: Cover, which: Integers) -> Any:
+    """The record of states or motions that have the covers ``which``, for one thread."""
+    from ..kernels.numerics.nodes import to_chebyshev as to_terms
+    from ..kernels.rows.cover_axis import HELD, NODES, SOURCE, hold, make
+    from ..kernels.rows.record import E0
+
+    some, of = np.unique(which, return_inverse=True)
+    octave, place = np.floor(np.log2(covers.thickness[some])), np.log2(covers.thickness[some])
+    laws = {each: _octave_of_covers(covers.of_thickness(2.0**each)) for each in np.unique(octave).tolist()}
+    weights = np.polynomial.chebyshev.chebvander(2.0 * (place - octave) - 1.0, NODES - 1) @ to_terms(NODES)
+    octaves = np.array([(laws[each].numbers.ctypes.data, laws[each].rows) for each in octave.tolist()], np.int64)
+    most = max(law.rows for law in laws.values())
+    rows, marks = _room(most)
+    marks[HELD], marks[E0] = -1, next(iter(laws.values())).e0
+    free = np.zeros(max(law.beside for law in laws.values()))
+    return _record(
+        hold, make, SOURCE, free, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
+        weights=np.ascontiguousarray(weights), octaves=octaves, covers=some.size,
+    )  # fmt: skip
+
+
+class _CoverLaws(NamedTuple):
+    """Laws of covers at the nodes of an octave of thickness.
+
+    numbers : (nodes, numbers) of a law: those in front, its rows, and what a cover has beside them.
+    rows, e0 : how many rows each has, and the exponent of the first.  beside : how many of the numbers are beside them.
+    """
+
+    numbers: Floats
+    rows: int
+    e0: int
+    beside: int
+
+
+def _octave_of_covers(thinnest: Cover) -> _CoverLaws:
+    """Those of an octave of thickness, made once a process; ``thinnest``: its lower end."""
+    with _lock:
+        return _made_octave_of_covers(thinnest)
+
+
+@lru_cache(maxsize=32)
+def _made_octave_of_covers(thinnest: Cover) -> _CoverLaws:
+    from ..kernels.numerics.nodes import chebyshev, rounded
+    from ..kernels.rows.cover_axis import NODES
+    from ..kernels.rows.record import E0, WIDTH
+
+    numbers = []
+    for place in rounded(chebyshev(NODES)).tolist():
+        cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * place))
+        law = made(cover, cover=cover.rows(2.0 * thinnest.thickness)).record
+        numbers.append(np.concatenate([law.rows, law.free]))
+    return _CoverLaws(np.array(numbers), law.rows.size // WIDTH - 1, int(law.marks[E0]), law.free.size)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from numbers import Real
 from os import PathLike
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,11 +17,13 @@ import numpy as np
 from ..core.checks import checked, number
 from ..core.errors import FileError, ParameterError
 from .bodies import Bodies
+from .cover import Cover
+from .cover_rows import CoverRows
 from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_axis import LawAxis
 from .law_grid import load_grid
-from .law_store import AXIS, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
-from .law_table import Floats, LawTable, law_table
+from .law_store import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
+from .law_table import FUNCTIONS, Floats, LawTable, law_table, made
 from .material import Material
 from .pair import Pair
 from .prony import Prony
@@ -27,6 +31,10 @@ from .prony_forms import HIGHEST_ALPHA
 
 if TYPE_CHECKING:
     import xarray as xr
+
+#: columns of a table but N, and what a file says of a layer beside its series
+_NOT_N = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
+_OF_COVER = "nu", "thickness", "on", "part", "other_nu"
 
 
 def table_of(material: Any, base: Any = None) -> LawTable:
@@ -50,6 +58,12 @@ def as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Datas
     """All that a file holds; ``errors``: largest relative error by function."""
     if isinstance(law, LawAxis):
         return dataset_of(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
+    if law.cover is not None:
+        rows = np.concatenate([law.given_coefficients[..., _NOT_N], np.moveaxis(law.cover.creep, 0, -1)], axis=-1)
+        text = ("" if law.pair is None else f"{described(law.pair)}\n") + described(law.material)
+        numbers = SimpleNamespace(coefficients=rows, **{n: getattr(law, n) for n in ("e0", "alpha", "T_ref")})
+        numbers.limits = law.cover.limits
+        return dataset_of(numbers, COVER, name_of(law), errors, material=text)
     bodies, material = "unlike" if law.unlike else "alike", described(law.pair or law.material)
     return dataset_of(law, LAW, name_of(law), errors, bodies=bodies, material=material)
 
@@ -92,7 +106,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
         if (grid := load_grid(path, alpha)) is None:
             raise
         return grid
-    if content.attributes[KIND] == LAW:
+    if content.attributes[KIND] != AXIS:
         if alpha is not None:
             raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material")
         return law_of(content, path)
@@ -106,14 +120,26 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
 
 def law_of(content: Content, path: Any) -> LawTable:
     """The law of what was checked; raises FileError where it does not name its material."""
-    if content.attributes[KIND] != LAW:
+    if content.attributes[KIND] == AXIS:
         raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
     with _whole(path):
         given = _material_of(content.attributes["material"], path)
+        if content.attributes[KIND] == COVER:
+            return _of_cover(content, *given)
         pair = given if isinstance(given, Pair) else None
         found = law_table(given if pair is None else pair.law, coefficients=_stacked(content, LAW))
         numbers = content.numbers
         return replace(found, e0=int(numbers["e0"]), T_ref=float(numbers["T_ref"]), pair=pair)
+
+
+def _of_cover(content: Content, cover: Cover, pair: Pair | None) -> LawTable:
+    """The law of a layer from its numbers."""
+    numbers, e0 = content.numbers, int(content.numbers["e0"])
+    stacked = _stacked(content, COVER)
+    coefficients = np.full((*stacked.shape[:2], len(FUNCTIONS)), np.nan)
+    coefficients[..., _NOT_N] = stacked[..., :-2]
+    rows = CoverRows(e0, coefficients, np.moveaxis(stacked[..., -2:], -1, 0), numbers["limits"])
+    return replace(made(cover, cover=rows), T_ref=float(numbers["T_ref"]), pair=pair)
 
 
 def axis_of(content: Content, path: Any) -> LawAxis:
@@ -149,6 +175,9 @@ def described(given: Any) -> str:
         text = as_toml(given.cylinder)
         text += "" if given.base is None else f"\n{as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
+    if isinstance(given, Cover):
+        lines = (f"{name} = {json.dumps(getattr(given, name))}" for name in _OF_COVER)
+        return "\n".join(["[cover]", series_as_toml(given.layer), *lines, ""])
     if isinstance(given, Bodies):
         parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
         return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])
@@ -156,8 +185,13 @@ def described(given: Any) -> str:
 
 
 def _material_of(text: str, path: Any) -> Any:
-    """What :func:`described` wrote: a pair, Bodies, a Prony series or an alpha."""
+    """What :func:`described` wrote: a pair, Bodies, a series or an alpha; of a layer (Cover, its pair or None)."""
     content = tomllib.loads(text)
+    if "cover" in content:
+        given = content["cover"]
+        cover = Cover(series_of(path, "cover", given), **{name: given[name] for name in _OF_COVER})
+        bodies = materials_of(path, content) if "material" in content else None
+        return cover, None if bodies is None else Pair(bodies["material"], bodies.get("base"), content["plane"])
     if "material" in content:
         found = materials_of(path, content)
         return Pair(found["material"], found.get("base"), content["plane"])

@@ -28,8 +28,9 @@ CHECKSUM = "sha256_of_numbers"
 REMEDY = "write it again by `viscoroll tables law`"
 _MOST_BYTES = 1 << 27
 
-#: Attribute that names the kind of a file, and its values: one material or pair, or every alpha of one relaxation time.
-KIND, LAW, AXIS = "viscoroll_table", "law", "axis"
+#: Attribute that names the kind of a file, and its values: one material or pair, every alpha of one relaxation time,
+#: or a layer of finite thickness.
+KIND, LAW, AXIS, COVER = "viscoroll_table", "law", "axis", "cover"
 
 
 class Kind(NamedTuple):
@@ -47,6 +48,10 @@ class Kind(NamedTuple):
     comment: str
 
 
+_ROW = (
+    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
+    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. "
+)
 _E0 = (), "row 0 holds [0, 2^e0)"
 _LAW = Kind(
     "The contact law of one material or pair as polynomials, one an octave of speed: ",
@@ -76,9 +81,8 @@ _LAW = Kind(
         "retardation_time": (("mode",), "T_j over T_ref"),
         "half_space_weight": (("mode",), "part of J_j that is the half-space's"),
     },
-    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
-    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. u = kappa |V|; "
-    "L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; D >= L: full slip, |Q| = mu, beta = 0."
+    _ROW + "u = kappa |V|; L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; "
+    "D >= L: full slip, |Q| = mu, beta = 0."
     " Else w = L - D, v = 2 u/w: beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)); where D < L/8: "
     "|Q| = mu D ((2 L - D) press(v) - (2 u L/w) S), S the mean slope of press between 2 u/L and v. "
     "M_half_space = V m_half_space, M_cylinder = V m_cylinder, M their sum. Q has the sign of omega - V. Fast limit: "
@@ -86,8 +90,27 @@ _LAW = Kind(
     "m = (alpha z^2/2)(C - W ln z + W/4) with those of either body, N = (alpha - 1) z^2/4; y = 1/v: "
     "share = 1 - (alpha y/2)(C - W ln y), press = alpha share^2. At another temperature: look up u a_T, N times a_T^2.",
 )
+_OF_SPEED = ("lam", "epsilon", "m_half_space", "m_cylinder", "share", "press")
 KINDS = {
     LAW: _LAW,
+    COVER: Kind(
+        "The contact law of a layer of finite thickness at one l0/h as polynomials, one an octave of speed: ",
+        {name: _LAW.functions[name] for name in _OF_SPEED}
+        | {"limit": "2 kappa delta_star/mu, over kappa |V|", "free": "2 kappa delta_0, over kappa |V|"},
+        ("octave", "power"),
+        "powers of t",
+        {
+            "e0": _E0,
+            "alpha": _LAW.others["alpha"],
+            "T_ref": _LAW.others["T_ref"],
+            "limits": (("limit_number",), "u -> infinity: limit, lam, free, their factors of 1/u; epsilon u, m u^2"),
+        },
+        _ROW + "u = kappa |V|; L = limit(u); delta_star = mu L/(2 kappa); delta_0 = free/(2 kappa); "
+        "D = |2 kappa delta - free|/mu; D >= L: full slip, |Q| = mu, beta = 0. Else w = L - D, v = 2 u/w: "
+        "beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)). M_half_space = V m_half_space, M_cylinder = V m_cylinder. "
+        "Q has the sign of (delta - delta_0) V. Fast limit: the limits and their first order in 1/u; "
+        "press = 1/L^2 and share = lam/L at the u where v = 2 u/L.",
+    ),
     AXIS: Kind(
         "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",
         {
@@ -170,9 +193,9 @@ def errors_of(found: Any) -> dict[str, float]:
 
 
 def is_law(path: str | PathLike[str]) -> bool:
-    """Whether a file names itself the law of a material; raises FileError of one that cannot be read or is damaged."""
+    """Whether a file is the law of a material or a cover; raises FileError of one that cannot be read or is damaged."""
     try:
-        return content_at(path, "material or law of viscoroll", "write it again").attributes.get(KIND) == LAW
+        return content_at(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
     except OSError:  # the reader of materials says what it is not
         return False
 

@@ -14,11 +14,12 @@ from numpy.typing import ArrayLike
 from ..core.checks import checked, number
 from ..core.errors import ParameterError
 from ..core.results import Row, Shown
+from ..core.scale import SI
 from ..core.typed import Floats
 from .importers import FromPrograms, poisson
 from .measured import Measured
 from .prony import Prony
-from .shift import keep
+from .shift import celsius, keep, relative
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,8 +40,10 @@ class Material(FromPrograms):
     T_ref : what the times of ``prony`` are counted in, s.
     name : in words, for tables and figures.
     density : kg/m^3, to compare speeds with those of waves.
-    thickness : of the layer, on something rigid, m; the law is that of a half-space, and ``validity`` compares.
+    thickness : m; then the body is a layer of this thickness, bonded to a rigid core (of a covered roller) or bed (of a
+        belt or lining), and the other body is rigid or elastic.  None (default): a half-space.
     measured : the :class:`Measured` band that it was fitted in; beyond it contacts warn.
+    temperature : at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
 
     Raises
     ------
@@ -60,22 +63,27 @@ class Material(FromPrograms):
     density: float | None = None
     thickness: float | None = None
     measured: Measured | None = None
+    temperature: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
-        if isinstance(self.E, (int, float, np.floating)) and float(self.E) == math.inf:
+        if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
                 raise ParameterError("E", self.E, "finite where the material relaxes")
+            if self.thickness is not None:
+                raise ParameterError("thickness", self.thickness, "left out of a rigid body")
         else:
             keep(self, E=0.0)
         object.__setattr__(self, "nu", poisson(self.nu))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        keep(self, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
+        keep(self, SI, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
+        if self.temperature is not None:
+            object.__setattr__(self, "temperature", celsius("temperature", self.temperature))
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -93,8 +101,8 @@ class Material(FromPrograms):
         ParameterError
             A value out of range.
         """
-        T_epsilon = number("T_epsilon", T_epsilon, low=0.0, strict=True)
-        T_sigma = number("T_sigma", T_sigma, low=0.0, strict=True)
+        T_epsilon = number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
+        T_sigma = number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
         refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
         prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
@@ -137,19 +145,41 @@ class Material(FromPrograms):
         Parameters
         ----------
         temperature : degrees Celsius.
-        shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature that gives a_T; the material
-            as it is has the temperature where that is 1.
+        shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature that gives a_T.  Where the
+            material has a ``temperature``, times are multiplied by a_T(temperature)/a_T(its own), so that constants
+            that refer to another temperature (T0 of the glass transition, say) are converted; where it has none, it
+            is taken to be at the temperature where the shift is 1.
+
+        Returns
+        -------
+        Material
+            With the new ``temperature``.
 
         Raises
         ------
         ParameterError
             A temperature that the shift does not allow, a shift that is no function.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), temperature=20.0)
+        >>> rubber.at(20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=-10.0)) == rubber
+        True
         """
         if not callable(shift):
             raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
-        factor = number("a_T", shift(temperature), low=0.0, strict=True)
+        if np.ndim(temperature):
+            sentence = (
+                f"temperature is an array of shape {np.shape(temperature)}, and a material is at one temperature: make "
+                "one each, [rubber.at(T, shift) for T in temperatures], or give the temperatures to a run file as a "
+                "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
+            )
+            raise ParameterError("temperature", np.shape(temperature), "one number", sentence)
+        temperature = celsius("temperature", temperature)
+        factor = relative(shift, temperature, self.temperature)
         measured = None if self.measured is None else self.measured.shifted(factor)
-        return replace(self, T_ref=self.T_ref * factor, measured=measured)
+        return replace(self, T_ref=self.T_ref * factor, measured=measured, temperature=temperature)
 
     def storage(self, omega: ArrayLike) -> Any:
         """Storage modulus E', Pa, at angular frequencies >= 0, rad/s.
@@ -204,6 +234,8 @@ class Material(FromPrograms):
             rows.append(Row("density", f"{self.density:g}", "kg/m^3"))
         if self.thickness is not None:
             rows.append(Row("thickness", f"{self.thickness:g}", "m"))
+        if self.temperature is not None:
+            rows.append(Row("temperature", f"{self.temperature:g}", "degrees Celsius"))
         if self.measured is not None:
             rows.append(Row("measured", str(self.measured)))
         return self.name or "Material", rows
@@ -254,7 +286,7 @@ class Material(FromPrograms):
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Storage and loss modulus over E; omega times a relaxation time beyond the doubles is as good as infinite."""
         with np.errstate(over="ignore"):
-            product = checked("omega", omega, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+            product = checked("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
         fast = product > 1.0
         ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
         whole, E = 1.0 + ratio * ratio, self.prony.E
@@ -264,7 +296,7 @@ class Material(FromPrograms):
     def _over(self, t: ArrayLike, name: str, times: Floats) -> Floats:
         """t over each of the times."""
         with np.errstate(over="ignore"):
-            return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)
+            return checked(name, t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:

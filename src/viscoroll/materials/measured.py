@@ -31,7 +31,7 @@ class Measured:
     source: str = ""
 
     def __post_init__(self) -> None:
-        keep(self, low=0.0, high=0.0)
+        keep(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..core.errors import ParameterError
 from .bodies import Bodies
+from .cover import Cover
 from .material import Material
 from .prony import Prony
 
@@ -28,6 +29,7 @@ class Solid(NamedTuple):
     nu: Any
     prony: Prony
     T_ref: float
+    thickness: Any = None
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,8 @@ class Pair:
     Raises
     ------
     ParameterError
-        What is no :class:`Material`, or two bodies that are both rigid.
+        What is no :class:`Material`, or two bodies that are both rigid; two bodies with a thickness, one in plane
+        stress, or one against a body that relaxes.
     """
 
     cylinder: Any
@@ -58,6 +61,28 @@ class Pair:
                 raise ParameterError(named, f"{body!r:.60}", "a Material")
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
             raise ParameterError("base", "rigid", "a body that deforms: the cylinder is rigid")
+        if self.covered is not None:
+            self._refuse_covers()
+
+    def _refuse_covers(self) -> None:
+        """Raise ParameterError for what the law of a cover does not hold of; see the class."""
+        thick = [body for body in (self.cylinder, self.half_space) if getattr(body, "thickness", None) is not None]
+        other = self.half_space if self.covered == "cylinder" else self.cylinder
+        if len(thick) > 1:
+            allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
+            raise ParameterError("thickness", "of both bodies", allowed)
+        if self.plane != "strain":
+            raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
+        if other.prony.alpha > 1.0:
+            found = "of a layer against a body that relaxes"
+            raise ParameterError("thickness", found, "left out, or the other body rigid or elastic")
+
+    @property
+    def covered(self) -> Literal["cylinder", "base"] | None:
+        """Which body is a layer of finite thickness."""
+        if getattr(self.cylinder, "thickness", None) is not None:
+            return "cylinder"
+        return "base" if getattr(self.half_space, "thickness", None) is not None else None
 
     @property
     def half_space(self) -> Any:
@@ -102,11 +127,43 @@ class Pair:
 
     @cached_property
     def law(self) -> Prony | Bodies:
-        """A :class:`Prony` series for like bodies, else :class:`Bodies`, with times over ``T_ref``."""
+        """A :class:`Prony` series for like bodies, else :class:`Bodies`, with times over ``T_ref``.
+
+        Raises
+        ------
+        ParameterError
+            A body with a thickness: its law depends on the load and the radius too (:meth:`cover`).
+        """
+        if self.covered is not None:
+            allowed = "left out, or in a Cylinder: the law of a layer depends on its load and radius"
+            raise ParameterError("thickness", f"of the {self.covered}", allowed)
         if self.like:
             return self.cylinder.prony
         one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space))
         return Bodies(one, other, self.share)
+
+    def cover(self, l0: Any) -> Cover:
+        """The layer of finite thickness and its counterpart; of many its thickness over l0 is an array.
+
+        Parameters
+        ----------
+        l0 : contact length at rest as of half-spaces, m, a number or an array.
+
+        Raises
+        ------
+        ParameterError
+            Many series, Poisson's ratios or parts of the compliance.
+        """
+        on = self.covered
+        assert on is not None
+        layer, other = (self.cylinder, self.half_space) if on == "cylinder" else (self.half_space, self.cylinder)
+        parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
+        if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
+            allowed = "one series, nu and part of the compliance where a body has a thickness: only l0 and it may vary"
+            raise ParameterError(on, "of many materials", allowed)
+        part, series = float(np.max(parts)), layer.prony.slower(layer.T_ref / self.T_ref)
+        other_nu = other.nu if part < 1.0 else 0.5
+        return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, other_nu=other_nu)
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:

@@ -6,16 +6,23 @@ Every time of a material is a_T times that at the reference temperature T0.
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from ..core.checks import number
-from ..core.errors import ParameterError
+from ..core.errors import ModelWarning, ParameterError, outside
+from ..core.scale import SI, Units
 
 #: J/(mol K), exact since 2019
 GAS_CONSTANT = 8.31446261815324
 #: degrees Celsius
 ABSOLUTE_ZERO = -273.15
+#: degrees Celsius between which rubbers and polymers are measured and used.  300 K, room temperature in kelvin, lies
+#: above, and room temperature converted twice, 27 - 273 = -246, lies below; 200 K is below the glass transition of
+#: nearly every rubber, so that a number above 200 is one of kelvin more likely than one of degrees Celsius
+USUAL_RANGE = -150.0, 200.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +40,11 @@ class WLF:
     ParameterError
         A value that is not finite or out of range; when called, a temperature at or below the pole T0 - C2,
         or so near that no double holds a_T.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
     """
 
     T0: float
@@ -40,11 +52,12 @@ class WLF:
     C2: float = 51.6
 
     def __post_init__(self) -> None:
-        keep(self, T0=-math.inf, C1=0.0, C2=0.0)
+        keep(self, C1=0.0, C2=0.0)
+        object.__setattr__(self, "T0", celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
-        above = number("temperature", temperature) - self.T0
+        above = celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
             allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF, in degrees Celsius"
             raise ParameterError("temperature", temperature, allowed)
@@ -65,24 +78,82 @@ class Arrhenius:
     ParameterError
         A value that is not finite or out of range; when called, a temperature at or below -273.15,
         or so low that no double holds a_T.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
     """
 
     energy: float
     T0: float
 
     def __post_init__(self) -> None:
-        keep(self, energy=0.0, T0=ABSOLUTE_ZERO)
+        keep(self, energy=0.0)
+        object.__setattr__(self, "T0", celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
-        kelvin = number("temperature", temperature, low=ABSOLUTE_ZERO, strict=True) - ABSOLUTE_ZERO
+        kelvin = celsius("temperature", temperature) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
 
 
-def keep(given: Any, **lows: float) -> None:
-    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError."""
+def celsius(name: str, temperature: Any) -> float:
+    """A temperature in degrees Celsius, checked.
+
+    Parameters
+    ----------
+    name : of the parameter, for the error and the warning.
+    temperature : degrees Celsius, above absolute zero.
+
+    Raises
+    ------
+    ParameterError
+        What is no finite number above -273.15.
+
+    Warns
+    -----
+    ModelWarning
+        Outside :data:`USUAL_RANGE`.  The words hold no value, so that Python says them once for each line of a program.
+    """
+    found = number(name, temperature, unit="degC", low=ABSOLUTE_ZERO, strict=True)
+    if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
+        low, high = USUAL_RANGE
+        text = f"{name} is outside {low:g} to {high:g}: temperatures are in degrees Celsius, and this looks like kelvin"
+        warnings.warn(text, ModelWarning, stacklevel=outside())
+    return found
+
+
+def relative(shift: Callable[[float], float], temperature: float, reference: float | None) -> float:
+    """Times at a temperature over those at a reference, a_T(temperature)/a_T(reference).
+
+    The ratio is the same whatever temperature the constants of the shift refer to: WLF and Arrhenius keep their form
+    when they are moved to another (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
+
+    Parameters
+    ----------
+    shift : a_T over temperature in degrees Celsius.
+    temperature : degrees Celsius.
+    reference : degrees Celsius; None: where the shift is 1.
+
+    Raises
+    ------
+    ParameterError
+        A temperature that the shift does not allow; a shift that gives no positive number.
+    """
+    factor = number("a_T", shift(temperature), low=0.0, strict=True)
+    if reference is None:
+        return factor
+    return number("a_T", factor / number("a_T", shift(reference), low=0.0, strict=True), low=0.0, strict=True)
+
+
+def keep(given: Any, unit: Units = SI, **lows: float) -> None:
+    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError.
+
+    ``unit`` : of all of them, or what has units by name.
+    """
     for name, low in lows.items():
-        object.__setattr__(given, name, number(name, getattr(given, name), low=low, strict=low > -math.inf))
+        object.__setattr__(given, name, number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf))
 
 
 def _shift(temperature: float, exponent: float) -> float:

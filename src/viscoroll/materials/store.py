@@ -35,10 +35,12 @@ _MEANING = {
     "alpha": ("instantaneous over long-time modulus", "1"),
     "density": ("density", "kg m-3"),
     "thickness": ("thickness of the layer", "m"),
+    "temperature": ("temperature of moduli and times", "degC"),
     "measured_low": ("first angular frequency of the data", "rad s-1"),
     "measured_high": ("last angular frequency of the data", "rad s-1"),
     "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
 }
+_OPTIONAL = ("density", "thickness", "temperature")
 _BAND = ("low", "high", "misfit")
 
 
@@ -48,7 +50,7 @@ def as_dataset(material: Any) -> xr.Dataset:
 
     series, band = material.prony, material.measured
     held = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
-    held |= {name: getattr(material, name) for name in ("density", "thickness")}
+    held |= {name: getattr(material, name) for name in _OPTIONAL}
     held |= {f"measured_{name}": getattr(band, name, None) for name in _BAND}
     held |= {name: getattr(series, name) for names in _FORMS.values() for name in names}
     data = {
@@ -81,9 +83,7 @@ def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
             raise FileError(path, "is damaged, or no material of this package: there is no SHA-256 at its end")
         form = tuple(numbers[name] for name in _FORMS[about["given"]])
         series = Prony(*form) if about["given"] == "relaxation" else Prony.creep(*form, alpha=numbers["alpha"])
-        found: dict[str, Any] = {
-            name: numbers[name] for name in ("nu", "T_ref", "density", "thickness") if name in numbers
-        }
+        found: dict[str, Any] = {name: numbers[name] for name in ("nu", "T_ref", *_OPTIONAL) if name in numbers}
         if "measured_low" in numbers:
             band = {name: numbers[f"measured_{name}"] for name in _BAND}
             found["measured"] = Measured(**band, source=about["measured"])

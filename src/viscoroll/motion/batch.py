@@ -8,9 +8,9 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Parameters, Rolls
+from ..contact_law.parameters import Parameters, Rolls, scale_of
 from ..core.blocks import flattened, run_blocks, thread_count
-from ..core.checks import broadcast_shape, extent, number
+from ..core.checks import broadcast_shape, extent, number, one_name, yes_or_no
 from ..core.drive import Feedback, Schedule, over
 from ..core.errors import MotionStatus, ParameterError, refuse_unknown
 from ..core.scale import OF_TIME
@@ -22,7 +22,7 @@ from .checks import SPEED_RANGE, in_words, output_times
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, bare
 from .flow import FlowMap, FlowResult, flow_map, look_up_ensemble
 from .many import Ensemble
-from .rolling import Begun, begin, integrate
+from .rolling import Asked, Begun, begin, integrate
 from .warned import look
 
 #: a function of time of each motion
@@ -55,6 +55,7 @@ def ensemble(
     rested: bool | float = False,
     fields: Iterable[str] = ("V", "omega", "x"),
     max_steps: int = 100_000,
+    resolve: float | None = None,
     speed: float | None = None,
     threads: int | None = None,
     progress: bool = False,
@@ -76,8 +77,8 @@ def ensemble(
         where its stated error is at most ``rtol``, and only for the motions that it holds;
         all others are integrated.  The result says which, and the map's error.  Driven motions, and
         those of bodies that differ, are integrated: "flow" is refused.
-    rtol, rest, unsteady, rested, max_steps : as for :func:`roll`; ``V0`` and ``omega0`` of the result are what a rest
-        left of them.  With a material each an unsteady motion takes some milliseconds more, for its N.
+    rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of the result are
+        what a rest left of them.  With a material each an unsteady motion takes some milliseconds more, for its N.
     fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
         work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
         some rtol of the energy that moves.
@@ -109,11 +110,15 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
-    times, names = output_times(t), refuse_unknown("fields", fields, FIELDS, "a field")
-    if method not in ("auto", "flow", "integrate"):
-        raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
-    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V))
-    begun = begin(roller, starts, given, times[-1], (rtol, rest, max_steps), unsteady=unsteady, rested=rested)
+    units = scale_of(roller)
+    times, names = output_times(t, units), refuse_unknown("fields", fields, FIELDS, "a field")
+    one_name("method", method, "auto", "flow", "integrate")
+    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
+    progress = yes_or_no("progress", progress)
+    if speed is not None:
+        speed = number("speed", speed, unit=units, low=0.0, strict=True)
+    asked = Asked(rtol, rest, max_steps, resolve)
+    begun = begin(roller, starts, given, times[-1], asked, unsteady=unsteady, rested=rested)
     begun.roller.look_at_starts(*starts)
     inputs, count = _inputs(begun, given.numbers)
     look(begun)
@@ -202,7 +207,8 @@ def _inputs(begun: Begun, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray
     ready = begun.ready
     arrays = {name: np.asarray(value) for name, value in begun.scene.numbers.items()}
     arrays |= {"V0": np.asarray(ready.V0), "omega0": np.asarray(ready.omega0)}
-    counts = {"pieces": ready.pieces.shape[0], "gains": ready.gains.shape[1]}
+    own = 1 if ready.courses is None else ready.courses.motions
+    counts = {"pieces": own, "gains": ready.gains.shape[1]}
     shape = broadcast_shape(**arrays, **drives, **{name: np.zeros(n) for name, n in counts.items() if n > 1})
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
@@ -216,7 +222,7 @@ def _map_of(
     """The flow map for these starts; None where all are at rest."""
     if speed is None:
         speed = max((abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0)
-    elif not 0.0 < number("speed", speed) <= SPEED_RANGE[1]:
+    elif speed > SPEED_RANGE[1]:
         raise ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]")
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
@@ -238,7 +244,7 @@ def _integrate_others(answer: FlowResult, many: _Many) -> Integers:
 
     mapped = answer.status.max(initial=-1) >= 0
     block = _MAPPED_BLOCK if mapped else 1 if begun.unsteady and np.ndim(begun.scene.alpha) else _BLOCK
-    run_blocks(work, steps.size, block, threads=many.threads, progress=many.bar)
+    run_blocks(work, steps.size, begun.ready.block(block), threads=many.threads, progress=many.bar)
     return steps
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from typing import Any
 
 import numpy as np
@@ -9,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..core.checks import broadcast_shape, checked, extent, number, whole
 from ..core.errors import ParameterError
-from ..core.scale import Scale
+from ..core.scale import Scale, Units
 from ..core.typed import Floats
 
 RTOL_RANGE = (1e-12, 1e-2)
@@ -18,15 +20,15 @@ SPEED_RANGE = (1e-300, 1e100)
 MOST_STEPS = 10_000_000
 
 
-def output_times(t: ArrayLike) -> Floats:
-    """Output times as a vector: finite, >= 0, ascending, at least one.
+def output_times(t: ArrayLike, units: Units = "1") -> Floats:
+    """Output times as a vector: finite, >= 0, ascending, at least one; ``units`` that they are counted in.
 
     Raises
     ------
     ParameterError
         Otherwise.
     """
-    times = np.array(checked("t", t, low=0.0), ndmin=1)  # contiguous, and the result's own
+    times = np.array(checked("t", t, unit=units, low=0.0), ndmin=1)  # contiguous, and the result's own
     if times.ndim != 1 or times.size == 0:
         raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
     backward = times[1:] < times[:-1]
@@ -37,15 +39,26 @@ def output_times(t: ArrayLike) -> Floats:
     return times
 
 
+def refuse_end(end: float, T: float) -> None:
+    """Raise ParameterError for a last output time that is infinite over T_ref."""
+    if end / T == math.inf:
+        raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
+
+
 def refuse_many(**given: Any) -> None:
     """Raise ParameterError for an array where roll wants one number."""
     for name, each in given.items():
-        # a ragged list has a shape only as one of objects
-        if type(each) is not float and (
-            shape := np.shape(each if hasattr(each, "shape") else np.asarray(each, object))
-        ):
+        if type(each) is not float and (shape := _shape(each)):
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
             raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
+
+
+def _shape(given: Any) -> tuple[int, ...]:
+    """Shape of what a caller gave, of a ragged list as one of objects; () of what is no array."""
+    try:
+        return tuple(np.shape(given if hasattr(given, "shape") else np.asarray(given, object)))
+    except (TypeError, ValueError):
+        return ()
 
 
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:
@@ -73,8 +86,11 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     ParameterError
         Otherwise.
     """
-    if type(V0) is type(omega0) is float and SPEED_RANGE[0] <= max(abs(V0), abs(omega0)) <= SPEED_RANGE[1]:
-        return V0, omega0
+    low, high = SPEED_RANGE
+    # each by itself: max() of a NaN and another may be the other
+    if type(V0) is float and type(omega0) is float and -high <= V0 <= high and -high <= omega0 <= high:
+        if abs(V0) >= low or abs(omega0) >= low:
+            return V0, omega0
     V, omega = checked("V0", V0), checked("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):

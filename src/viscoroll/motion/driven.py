@@ -6,16 +6,17 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import broadcast_shape, checked
 from ..core.drive import Feedback, Schedule, over, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.labels import Labels, unlabelled
-from ..core.scale import Scale
+from ..core.scale import HasUnits, Scale
 from ..core.typed import Floats
+from ..kernels.motion.records import NEITHER
 from .checks import start_speeds
-from .schedule import Curve, at_start, curve, pieces_of, slope_of
+from .courses import SPEEDS, Courses
+from .schedule import Course, Curve, course
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
@@ -46,7 +47,7 @@ class Drive(NamedTuple):
     @property
     def acting(self) -> Drive:
         """The same without a force, torque, slope, brake or drag of 0."""
-        gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(each)}
+        gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(name, each)}
         return self._replace(**gone)
 
     @property
@@ -64,6 +65,11 @@ class Drive(NamedTuple):
         return Drive(*map(over, self._fields, self, (scale,) * len(self))) if scale.si and self.acts else self
 
     @property
+    def has_callable(self) -> bool:
+        """Whether one of them is a function of t, by itself or in a feedback."""
+        return any(callable(each.value if isinstance(each, Feedback) else each) for each in self.given.values())
+
+    @property
     def acts(self) -> bool:
         """Whether anything does."""
         return not (self.force is self.torque is self.slope is self.brake is self.drag is self.omega is self.V is None)
@@ -73,95 +79,145 @@ def _is_number(given: Any) -> bool:
     return not (callable(given) or isinstance(given, Feedback | Schedule))
 
 
-def _still(given: Any) -> bool:
-    """Whether it is 0 at all times."""
+def _still(name: str, given: Any) -> bool:
+    """Whether it is 0 at all times; raises ParameterError for what is no number and no function of time."""
     if isinstance(given, Feedback):
-        return not (np.any(given.V) or np.any(given.omega)) and _still(given.value)
-    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else given))
+        return not (np.any(given.V) or np.any(given.omega)) and _still(name, given.value)
+    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else checked(name, given)))
 
 
-def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, Labels | None]:
-    """Start speeds and drive of many motions without labels of xarray and pandas, and these."""
-    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()})
+def bare(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> tuple[tuple[Any, Any], Drive, Labels | None]:
+    """Start speeds and drive without units and labels of xarray and pandas, and these labels; raises ParameterError."""
+    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels
 
 
 class Prepared(NamedTuple):
-    """A drive for the kernel, in T_ref: pieces (m, k, columns), gains (4, m), which speed is prescribed; start speeds,
-    and the largest difference between a callable and its fit."""
+    """A drive for the kernel, in T_ref.
 
-    pieces: Floats
+    pieces : (1, k, columns) where all motions are driven alike; else None, and :meth:`for_kernel` makes those of some
+    motions at a time, so that measured schedules take little memory beside themselves.
+    gains : (4, 1 or m).  prescribed : which speed is.  V0, omega0 : start speeds.
+    error : the largest difference between a callable and its fit.
+    courses, end : what acts, and up to when; None without a drive.
+    """
+
+    pieces: Floats | None
     gains: Floats
     prescribed: int
     V0: Any
     omega0: Any
-    error: float
+    error: float = 0.0
+    courses: Courses | None = None
+    end: float = 0.0
 
-    def for_kernel(self, chosen: Any = slice(None)) -> tuple[NDArray, NDArray, int]:
+    @property
+    def motions(self) -> int:
+        """Number of motions that are driven each in its own way, by gains or over time; 1 if all are driven alike."""
+        return max(1 if self.courses is None else self.courses.motions, self.gains.shape[1])
+
+    def block(self, most: int) -> int:
+        """Number of motions, at most ``most``, that the kernel is to roll at a time."""
+        return most if self.courses is None else self.courses.block(most)
+
+    def for_kernel(self, chosen: Any = slice(None)) -> tuple[Floats, Floats, int]:
         """Pieces, of the ``chosen`` motions where each has its own, gains, and which speed is prescribed."""
-        pieces = self.pieces[chosen] if self.pieces.shape[0] > 1 else self.pieces
+        pieces = self.pieces
+        if pieces is None:
+            assert self.courses is not None
+            pieces = self.courses.some(chosen).pieces(self.end)
         gains = self.gains[:, chosen] if self.gains.shape[1] > 1 else self.gains
         return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), self.prescribed
+
+    @property
+    def drives_to_the_end(self) -> bool:
+        """Whether anything still acts at the end, on any motion."""
+        if self.prescribed or self.gains.any():
+            return True
+        if self.courses is None:
+            return False
+        count = self.courses.motions
+        step = self.block(max(count, 1))
+        blocks = (self.for_kernel(slice(first, first + step))[0] for first in range(0, count, step))
+        return any(block[:, -1, 2:].any() for block in blocks)
 
 
 @cache
 def undriven() -> tuple[Floats, Floats, int]:
     """Pieces and gains of nothing that drives, and which speed is prescribed."""
     from ..kernels.motion.load import FIRST, FUNCTIONS
-    from ..kernels.motion.records import NEITHER
 
     return np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER
 
 
-def _added(one: Curve, more: Any) -> Curve:
-    """A curve with a number, or one a motion, added."""
-    flat = np.zeros((np.size(more), 1, one.terms.shape[-1]))
-    flat[:, 0, 0] = more
-    return one._replace(terms=one.terms + flat)
-
-
-def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Prepared:
+def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None) -> Prepared:
     """A drive without dimension up to the time ``end``.
+
+    Parameters
+    ----------
+    drive : what was given, over its units.
+    V0, omega0 : start speeds; None where they are prescribed.
+    end : the last time.
+    rtol, resolve : as of :func:`viscoroll.roll`.
 
     Raises
     ------
     ParameterError
         What is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what is then found given as well;
-        a start that is not the prescribed one.
+        a start that is not the prescribed one; ``resolve`` without a callable.
     """
-    from ..kernels.motion.records import NEITHER, OMEGA, SPEED
-
+    if resolve is not None and not drive.has_callable:
+        sentence = f"resolve = {resolve!s:.60} is given, but nothing that drives is a function of t: leave it out"
+        raise ParameterError("resolve", resolve, "left out", sentence)
     if not drive.acts:
-        return Prepared(*undriven(), *start_speeds(V0, omega0), 0.0)
+        return Prepared(*undriven(), *start_speeds(V0, omega0))
     tangent = slope_factor(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
         raise one_of("V", "omega", both=True)
     for name, by, why in _BESIDE:
         if getattr(drive, by) is not None and (beside := getattr(drive, name)) is not None:
             raise ParameterError(name, beside, "left out", f"{name} is given beside {by}=: leave it out, {why}")
-    force = _added(curve("force", drive.force, end, rtol), tangent)
-    torque = curve("torque", drive.torque, end, rtol)
-    brake = curve("brake", drive.brake, end, rtol, low=0.0)
-    rate, prescribed, error = curve("rate", None, end, rtol), NEITHER, 0.0
+
+    def checked_course(name: str, low: float = -np.inf) -> Course:
+        return course(name, getattr(drive, name), end, rtol, low=low, resolve=resolve)
+
+    force, torque, brake = checked_course("force"), checked_course("torque"), checked_course("brake", low=0.0)
+    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NEITHER)
+    speed = checked_course(SPEEDS[prescribed]) if prescribed else None
+    if isinstance(speed, np.ndarray) and not speed.size:
+        raise ParameterError(SPEEDS[prescribed], "an empty array", "a number, one a motion, or a function of t")
+    courses = Courses(force, torque, brake, np.asarray(tangent), speed, prescribed)
     starts = {"omega": omega0, "V": V0}
-    for code, name in ((OMEGA, "omega"), (SPEED, "V")):
-        given = getattr(drive, name)
-        if given is not None:
-            speed = curve(name, given, end, rtol)
-            rate, prescribed, error = slope_of(name, speed), code, speed.error
-            # of a callable itself: its fit is off by rounding, and may be of the other sign
-            own = np.array([float(given(0.0))]) if callable(given) else at_start(speed.terms[:, 0])
-            starts[name] = _prescribed_start(f"{name}0", starts[name], speed, own)
-        if starts[name] is None:
+    if prescribed:
+        name = SPEEDS[prescribed]
+        starts[name] = _prescribed_start(f"{name}0", starts[name], courses, getattr(drive, name))
+    for name, start in starts.items():
+        if start is None:
             raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")
-    pieces = pieces_of((force, torque, rate, brake), end)
-    error = max(error, force.error, torque.error, brake.error)
-    return Prepared(pieces, _gains(drive), prescribed, *start_speeds(starts["V"], starts["omega"]), error)
+    pieces = courses.pieces(end) if courses.motions == 1 else None
+    error = max((one.error for one in courses.each.values() if isinstance(one, Curve)), default=0.0)
+    speeds = start_speeds(starts["V"], starts["omega"])
+    return Prepared(pieces, _gains(drive), prescribed, *speeds, error, courses, end)
 
 
-def _prescribed_start(name: str, given: Any, speed: Curve, start: Floats) -> Any:
-    """The start that a schedule prescribes, a number where it is one for all, of as many motions as were given one."""
-    scale = float(np.abs(speed.terms).sum(axis=-1).max(initial=0.0))
+def _prescribed_start(name: str, given: Any, courses: Courses, speed: Any) -> Any:
+    """The start that is prescribed, a number where it is one for all, of as many motions as were given one.
+
+    Parameters
+    ----------
+    name : "V0" or "omega0".
+    given : the start that the caller gave; None without.
+    courses : what acts.
+    speed : the prescribed speed as the caller gave it.
+
+    Raises
+    ------
+    ParameterError
+        Where ``given`` is another start, or where the speed jumps.
+    """
+    start, scale = courses.starts()
+    if callable(speed):  # its fit is off by rounding, and may be of the other sign
+        start = np.array([float(speed(0.0))])
     if given is not None and not (np.abs(checked(name, given) - start) <= _START * scale).all():
         raise ParameterError(name, given, f"None, or {float(start[0]):.12g} as prescribed")
     if start.size > 1:
@@ -183,7 +239,7 @@ def refuse_rest(rest: float, drives: Prepared) -> None:
 
     Where nothing does, speeds below the threshold stay there.
     """
-    if rest > 0.0 and (drives.prescribed or drives.gains.any() or drives.pieces[:, -1, 2:].any()):
+    if rest > 0.0 and drives.drives_to_the_end:
         sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
         sentence += " (what a brake stops and holds is at rest in finite time: switches say when)"
         raise ParameterError("rest", rest, "None", sentence)

@@ -15,6 +15,7 @@ from ..core.errors import MotionStatus
 from ..core.results import short
 from ..core.symbols import attributes
 from ..materials.bodies import Bodies
+from ..materials.cover import Cover
 from ..materials.prony import Prony
 from .driven import ROWS, STATES
 from .result import Rolled
@@ -60,6 +61,9 @@ def _dataset(
         attrs["drive_error"] = result.drive_error
     if series is not None:  # by which it counts time
         attrs |= {"relaxation_strengths": series.E, "relaxation_times": series.tau}
+    if (cover := result.scene.cover) is not None:
+        attrs |= {} if cover.shape else {"cover_thickness_over_l0": cover.thickness}
+        attrs |= {"cover_on": cover.on, "cover_nu": cover.nu}
     if result.scale.si:
         attrs |= {name: getattr(roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
     return xr.Dataset(data | more | drives, {"t": ("t", result.t, described("t"))}, attrs)
@@ -100,6 +104,10 @@ def _series(materials: Any, count: int) -> dict[str, Any]:
         return {}
     if not isinstance(materials, Bodies):
         return _modes(materials, count, "", "")
+    if isinstance(materials, Cover):
+        about = {"long_name": "thickness of the cover over l0", "units": "1"}
+        layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
+        return {"cover_thickness": ("motion", np.broadcast_to(materials.thickness, (count,)), about | layer)}
     share = {"long_name": "the cylinder's part of the long-time compliance", "units": "1"}
     return (
         _modes(materials.cylinder, count, "cylinder_", "cylinder: ")

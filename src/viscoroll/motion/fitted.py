@@ -1,7 +1,9 @@
 """A callable of time as polynomials: a piece is halved until it is good, and joined to the last one where one will do.
 
 A piece is good where the callable is met between its nodes, and at looks spread over the whole time, which find what is
-narrow.  It may be off by a share of the largest value so far, or of the foot, a small part of the largest of all: what
+narrow: a thousand, or as many as ``resolve`` asks for.
+
+It may be off by a share of the largest value so far, or of the foot, a small part of the largest of all: what
 rises from next to nothing, as a Gauss pulse does, would else never be met.  Before it has risen to that it is 0: the
 sign of what is off would set a motion from rest out the wrong way.
 
@@ -12,6 +14,7 @@ steep but smooth hardly changes.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -20,7 +23,7 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from ..core.checks import checked
+from ..core.checks import checked, number
 from ..core.errors import ParameterError
 from ..core.typed import Floats
 from ..kernels.numerics.nodes import powers_of_chebyshev
@@ -68,10 +71,12 @@ Cut = tuple[float, float]
 class _Given:
     """A callable up to ``end``, and what is known of it."""
 
-    def __init__(self, name: str, function: Callable[[float], Any], end: float, rtol: float, low: float) -> None:
+    def __init__(
+        self, name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, looks: int
+    ) -> None:
         self.name, self.function, self.low, self.taken = name, function, low, 0
         self.share = _SHARE * rtol
-        self.looks = end * (np.arange(LOOKS) + 0.5) / LOOKS
+        self.looks = end * (np.arange(looks) + 0.5) / looks
         self.seen = self.values(self.looks)
         self.largest = float(np.abs(self.seen).max())
 
@@ -143,16 +148,30 @@ class _Given:
 
 
 def fitted(
-    name: str, function: Callable[[float], Any], end: float, rtol: float, low: float
+    name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, resolve: float | None = None
 ) -> tuple[Floats, Floats, float]:
     """(Starts, terms (k, TERMS), largest difference seen) of a callable up to ``end``.
+
+    Parameters
+    ----------
+    name, function : the argument and the callable.
+    end, rtol, low : the last time, the tolerance of the motion, the least value allowed.
+    resolve : largest spacing of the samples; None: ``end`` over :data:`LOOKS`.
 
     Raises
     ------
     ParameterError
-        Values that are no finite numbers or below ``low``; a callable of which half a million values are not enough.
+        Values that are no finite numbers or below ``low``; a ``resolve`` that is not above 0 or asks for more than
+        :data:`MOST` samples; a callable of which half a million values beside these are not enough.
     """
-    given = _Given(name, function, end, rtol, low)
+    looks = LOOKS
+    if resolve is not None:
+        spacing = number("resolve", resolve, low=0.0, strict=True)
+        if spacing * MOST < end:
+            allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
+            raise ParameterError("resolve", spacing, allowed)
+        looks = max(math.ceil(end / spacing), LOOKS)
+    given = _Given(name, function, end, rtol, low, looks)
     pieces = _with_corners(_pieces(given, end), given)
     starts = np.array([one.start for one in pieces])
     starts[0] = 0.0  # a jump there leaves one value before it
@@ -176,7 +195,7 @@ def _pieces(given: _Given, end: float) -> list[Piece]:
             so_far = max(so_far, one.largest)
             continue
         failed.add((start, stop))
-        if given.taken > MOST or (cut is None and stop - start <= _NUMBERS * np.spacing(stop)):
+        if given.taken - given.looks.size > MOST or (cut is None and stop - start <= _NUMBERS * np.spacing(stop)):
             what = f"a callable that no polynomials follow near t = {start:.6g} ({given.taken} values of it were taken)"
             raise ParameterError(given.name, what, "smooth but for jumps and corners; give it as a Schedule")
         left, right = cut or (0.5 * (start + stop),) * 2

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..contact_law.assumptions import Validity
 from ..contact_law.judged import validity
 from ..contact_law.steadiness import Steadiness
 from ..core.checks import checked
-from ..core.errors import MotionStatus
+from ..core.errors import MotionStatus, ParameterError, described
 from ..core.labels import Labels
 from ..core.results import Row
 from ..core.typed import Booleans, Floats, Integers
@@ -91,11 +91,15 @@ class Ensemble(Rolled):
         Raises
         ------
         ParameterError
-            If there are no motions.
+            If there are no motions, or quantiles are none.
         """
         from .summaries import summary_of
 
-        return summary_of(self, tuple(checked("quantiles", tuple(quantiles), low=0.0, high=1.0).tolist()))
+        given: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
+        levels = checked("quantiles", given, low=0.0, high=1.0)
+        if levels.ndim != 1:
+            raise ParameterError("quantiles", described(quantiles), "a list of numbers")
+        return summary_of(self, tuple(levels.tolist()))
 
     def validity(self) -> Validity:
         """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
@@ -107,7 +111,7 @@ class Ensemble(Rolled):
         roller = self.roller.some(some, len(self))
         scene, scale = roller.scene(), roller.scale
         found = validity(roller, V, omega=omega)
-        if self.V is None or not some.size:
+        if self.V is None or not some.size or scene.cover is not None:
             return found
         speeds = np.vstack([self.V0[some], self.V[some].T])
         rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[some]) & ~np.isnan(speeds)
@@ -131,7 +135,7 @@ class Ensemble(Rolled):
             if (values := getattr(self, name)) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]
                 low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
-                text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
+                text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
                 rows.append(Row(name, text, self._unit(name)))
         rows.append(Row("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
         if self.flow.any():

@@ -147,7 +147,7 @@ class Motion(Rolled):
         reached = self.regime >= 0
         V = self.V[reached]
         found = validity(self.roller, V, omega=self.omega[reached])
-        if not reached.any():
+        if not reached.any() or self.scene.cover is not None:
             return found
         free, rolls = self.scene.freely(V / self.scale["V"]).scaled(self.scale), self.regime[reached] > 0
         return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))
@@ -156,7 +156,8 @@ class Motion(Rolled):
         rows = [self._times()]
         rows += [Row(name, _course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
         for name, given in self.drive.given.items():
-            rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
+            called = f"prescribed {name}" if name in ("V", "omega") else name  # which have a row of their own above
+            rows.append(Row(called, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
         if not np.isnan(self.onset_time):
             rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
         if self.switches:
@@ -166,7 +167,7 @@ class Motion(Rolled):
             rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{died}"))
         if self.reversals.size:
             rows.append(Row("reversals of V", str(self.reversals.size)))
-        return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} steps)")]
+        return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
 
     def at(self, t: ArrayLike) -> Motion:
         """The same motion at other times within [0, end]; by the continuous output of the methods.
@@ -185,9 +186,9 @@ class Motion(Rolled):
         ParameterError
             Times that are not ascending or lie beyond the end of the motion.
         """
-        times = output_times(t)
+        times = output_times(t, self.scale)
         end = self._begun.end * self.scale["t"]
-        if times[-1] > end and times[-1] / self.scale["t"] > self._begun.end:
+        if times[-1] > end and float(times[-1]) / self.scale["t"] > self._begun.end:
             raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
         return integrated(self._begun, times)
 

@@ -9,15 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.contact import contact
-from ..contact_law.parameters import Parameters, Rolls, framed
+from ..contact_law.parameters import Parameters, Rolls, framed, refuse_cover
 from ..contact_law.steadiness import CAUGHT
 from ..core.blocks import flattened, run_blocks
-from ..core.checks import checked
+from ..core.checks import checked, yes_or_no
 from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
+from ..core.scale import HasUnits
 from ..core.typed import Floats, Integers
 from ..materials.law_table import law_table
-from .checks import controls, in_words, refuse_many
+from .checks import controls, in_words, refuse_end, refuse_many
 from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
 
 _ALL = np.arange(len(ROWS))
@@ -28,6 +29,15 @@ _BLOCK = 40
 _INFO = 5
 #: no room for switches and ends of steps
 NO_NOTES = np.empty((0, 2)), np.empty(0)
+
+
+class Asked(NamedTuple):
+    """How motions are to be rolled: ``rtol``, ``rest``, ``max_steps`` and ``resolve`` of :func:`viscoroll.roll`."""
+
+    rtol: float
+    rest: float | None
+    max_steps: int
+    resolve: float | None = None
 
 
 class Begun(NamedTuple):
@@ -48,39 +58,47 @@ class Begun(NamedTuple):
 
 
 def begin(
-    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: tuple[float, float | None, int],
+    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: Asked,
     *, unsteady: bool, rested: bool | float, one: bool = False,
 ) -> Begun:  # fmt: skip
     """All that is refused of motions up to a time before any is rolled, or of ``one``.
 
-    ``asked`` : rtol, rest and max_steps.  Raises ParameterError.
+    Raises ParameterError.
     """
     acts = given.acts
     if one:
         refuse_many(V0=starts[0], omega0=starts[1], **(given.numbers if acts else {}))
-    drive, (rtol, rest, max_steps) = given.acting if acts else given, asked
+    drive, (rtol, rest, max_steps, resolve) = given.acting if acts else given, asked
     roller, scene, scale = framed(roller, "roll" if one else "ensemble", moves=True, slope=drive.slope)
     if one and scene.shape:
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+    unsteady = unsteady is not False and yes_or_no("unsteady", unsteady)
+    if unsteady:
+        refuse_cover(scene, "N is not known: leave unsteady=True out")
     if unsteady and not scene.like_bodies:
         sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     try:
-        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end / scale["t"])
+        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end) / scale["t"]
+        if last == math.inf:
+            refuse_end(float(end), scale["t"])
         own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
-        ready = prepared(drive.over(scale), *own, last, rtol)
+        spacing = None if resolve is None else over("resolve", resolve, scale)
+        ready = prepared(drive.over(scale), *own, last, rtol, spacing)
+        if ready.courses is not None:  # a step ends at every corner
+            limits = (*limits[:2], limits[2] + ready.courses.corners)
         refuse_rest(limits[1], ready)
-        ready, caught = _climbed(ready, scene, _time_of_rest(rested) / scale["t"])
+        ready, caught = _climbed(ready, scene, _time_of_rest(rested, scale) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
-    if one and (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
+    if one and ready.courses is not None and (many := ready.motions) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
-    return Begun(roller, scene, drive, ready, caught, last, limits, unsteady)
+    return Begun(roller, scene, drive, ready, caught, last, limits, bool(unsteady))
 
 
-def _time_of_rest(rested: bool | float) -> float:
+def _time_of_rest(rested: Any, units: HasUnits) -> float:
     """The time of the rest, infinite for a long one.
 
     Raises
@@ -88,11 +106,12 @@ def _time_of_rest(rested: bool | float) -> float:
     ParameterError
         What is not one number >= 0.
     """
-    if isinstance(rested, bool):
+    if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
-    if checked("rested", rested, low=0.0).ndim:
+    time = checked("rested", rested, unit=units, low=0.0)
+    if time.ndim:
         raise ParameterError("rested", rested, "one time >= 0, or True")
-    return float(rested)
+    return float(time)
 
 
 def _climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepared, Any]:
@@ -105,6 +124,7 @@ def _climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepare
     """
     if rested == 0.0:
         return ready, False
+    refuse_cover(scene, "what leaving the imprint of a rest costs is not known: leave rested out")
     V = np.asarray(ready.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     if ready.prescribed or np.any(np.abs(ready.omega0 - V) > limit):

@@ -18,6 +18,8 @@ from .fitted import fitted
 
 #: of the values of a piece, its first one where that is rounding
 _ROUNDING = 1e-14
+#: duration of a piece that counts as none: the scale of its time, 2 over it and over gamma, is to be finite
+_INSTANT = 1e-280
 #: the same of the slope of a piece
 _ROUNDING_OF_SLOPE = 1e-12
 
@@ -39,8 +41,31 @@ class Curve(NamedTuple):
         return _ends(self.starts)
 
 
-def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.inf) -> Curve:
-    """The function of time that is ``given``, up to ``end``.
+class Corners(NamedTuple):
+    """A function of time, linear between corners: times (k,) or (m, k), values (k,) or (m, k), of m motions."""
+
+    times: Floats
+    values: Floats
+
+
+#: What acts over time, checked: a number or one a motion, corners, or the polynomials that follow a callable.
+Course = Floats | Corners | Curve
+
+
+def course(
+    name: str, given: Any, end: float, rtol: float, *, low: float = -np.inf, resolve: float | None = None
+) -> Course:
+    """The function of time that is ``given``, checked, and if it is a callable fitted up to ``end``.
+
+    Parameters
+    ----------
+    name : of the argument, for refusals.
+    given : None (0), a number, one a motion, a Schedule, a callable of t, or a Feedback of one of these, of which the
+        gains are left aside.
+    end : the last time.
+    rtol : tolerance of the motion, of which the fit of a callable takes a tenth.
+    low : the least value allowed.
+    resolve : as of :func:`viscoroll.roll`.
 
     Raises
     ------
@@ -52,18 +77,45 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
         given = given.value
     if callable(given):
         refuse_more_than_t(name, given)
-        starts, terms, error = fitted(name, given, end, rtol, low)
+        starts, terms, error = fitted(name, given, end, rtol, low, resolve)
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         return Curve(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
     if isinstance(given, Schedule):
-        return _linear(given.times, checked(f"values of {name}", given.values, low=low))
+        return Corners(given.times, checked(f"values of {name}", given.values, low=low))
     values = checked(name, 0.0 if given is None else given, low=low)
     if values.ndim > 1:
         raise ParameterError(
             name, f"array of shape {values.shape}", "a number, one a motion, or a Schedule(times, values)"
         )
-    return Curve(np.zeros((1, 1)), values.reshape(-1, 1, 1))
+    return values
+
+
+def motions_of(given: Course) -> int:
+    """Number of motions that a course tells apart; 1 if it is the same for all."""
+    if isinstance(given, Curve):
+        return len(given.terms)
+    if isinstance(given, Corners):
+        return max(len(array) for array in map(np.atleast_2d, given))
+    return given.size
+
+
+def of_some(given: Course, chosen: Any) -> Course:
+    """The course of the ``chosen`` motions, an index of numpy; itself where it is the same for all."""
+    if isinstance(given, Curve) or motions_of(given) == 1:
+        return given
+    if isinstance(given, Corners):
+        return Corners(*(array[chosen] if array.ndim == 2 and len(array) > 1 else array for array in given))
+    return given[chosen]
+
+
+def curve(given: Course) -> Curve:
+    """A course as polynomials over pieces of time."""
+    if isinstance(given, Curve):
+        return given
+    if isinstance(given, Corners):
+        return _linear(*given)
+    return Curve(np.zeros((1, 1)), given.reshape(-1, 1, 1))
 
 
 def _linear(times: Floats, values: Floats) -> Curve:
@@ -87,7 +139,8 @@ def slope_of(name: str, speed: Curve) -> Curve:
     """The slope over t of a prescribed speed, which must not jump."""
     lengths = speed.ends - speed.starts
     first, last = at_start(speed.terms), speed.terms.sum(axis=-1)
-    scale = max(float(np.abs(speed.terms).max(initial=0.0)), 1e-300)
+    # of each motion: one that is slow beside the others must not jump either
+    scale = np.maximum(np.abs(speed.terms).max(axis=(1, 2), initial=0.0), 1e-300)[:, None]
     least = 1e-12 * scale + 4.0 * speed.error
     jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # of pieces without length
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
@@ -123,15 +176,15 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
     apart = max(len(each.starts) for each in curves)
     own = [np.broadcast_to(each.starts, (apart, each.starts.shape[1])) for each in curves]
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
-    starts = starts[:, (_ends(starts) > starts).any(axis=0)]
+    starts = starts[:, (_ends(starts) > starts + _INSTANT).any(axis=0)]
     kept = max(int((starts < end).any(axis=0).sum()), 1)
     starts, ends = starts[:, :kept], _ends(starts)[:, :kept]
     count, terms = max(len(each.terms) for each in curves), max(each.terms.shape[-1] for each in curves)
     rows, lengths = np.zeros((count, starts.shape[1], FIRST + len(curves) * terms)), ends - starts
     rows[..., START] = starts
-    rows[..., SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > 0.0)
+    rows[..., SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT)
     for n, (each, first) in enumerate(zip(curves, own, strict=True)):
-        which = (first[:, None, :] <= starts[:, :, None]).sum(axis=2) - 1
+        which = _piece_at(each.starts, starts)
         begin, last = (np.take_along_axis(np.broadcast_to(of, first.shape), which, 1) for of in (first, each.ends))
         which = np.broadcast_to(which, (max(apart, len(each.terms)), which.shape[1]))
         whole = np.take_along_axis(
@@ -147,6 +200,27 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
         acting = rows[np.arange(count), np.broadcast_to(at_end, count), FIRST:]
         rows[..., FIRST:] = np.where(late[..., None], acting[:, None], rows[..., FIRST:])
     return rows
+
+
+def _piece_at(begins: Floats, times: Floats) -> NDArray:
+    """Number of the piece that acts at each time: the last that begins by then.
+
+    Parameters
+    ----------
+    begins : (1 or m, k), when pieces begin, ascending, the first at 0.
+    times : (m, n), >= 0.
+
+    Returns
+    -------
+    ndarray
+        (m, n), in 0 ... k - 1.  Takes memory of the order of its input, and n log k steps.
+    """
+    if len(begins) == 1:
+        return np.searchsorted(begins[0], times, side="right") - 1
+    # complex numbers are sorted by their real parts first: one search through the pieces of all motions in a row
+    row = np.arange(len(begins))[:, None]
+    found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * times, side="right")
+    return found - row * begins.shape[1] - 1
 
 
 def _moved(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray) -> Floats:

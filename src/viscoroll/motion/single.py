@@ -7,11 +7,13 @@ from collections.abc import Callable
 
 from ..contact_law.parameters import Rolls
 from ..core.drive import Feedback, Schedule
+from ..core.labels import BARE
+from ..core.scale import DIMENSIONLESS
 from ..core.typed import Numbers
 from .checks import output_times
-from .driven import Drive
+from .driven import Drive, bare
 from .one import Motion, integrated
-from .rolling import begin
+from .rolling import Asked, begin
 from .warned import look
 
 #: a function of time
@@ -37,6 +39,7 @@ def roll(
     unsteady: bool = False,
     rested: bool | float = False,
     max_steps: int = 100_000,
+    resolve: float | None = None,
 ) -> Motion:
     """Motion of the cylinder from (V0, omega0), Eq. (22), through all regimes.
 
@@ -56,7 +59,7 @@ def roll(
         - ``vr.Schedule(times, values)``: linear between, constant outside, a time given twice is a jump;
         - a callable of t, smooth but for jumps and corners, fitted by polynomials to a tenth of ``rtol`` of its largest
           value so far, and of 1e-9 of its largest of all, below which it begins at 0 (``drive_error`` says how well).
-          It is looked at in a thousand places first: give what is narrower as a schedule;
+          It is sampled in a thousand places first, between which a pulse can be missed: ``resolve`` sets how many;
         - ``vr.Feedback(value, V=gain, omega=gain)``: any of these and more with the speeds.
     slope : angle in radians, > 0 pushes along +V: P sin(slope) is added to ``force``.  The load is P cos(slope)
         then, over which of a scene force, torque, Q and M are; ``scene`` of the result has kappa and gamma of it.
@@ -78,7 +81,10 @@ def roll(
     rested : whether the contact had rested long before it starts to roll, or the time that it had.
         Leaving its imprint takes energy (``validity(V0).steady.start``): V0 and omega0 become what is left of them; a
         motion that would lose seven tenths is caught there.  It tells of free rolling: with a force it is near.
-    max_steps : step limit, at most 10^7.
+    max_steps : step limit, at most 10^7; every corner of a schedule, at which a step ends, adds one to it.
+    resolve : largest spacing, a time, of the samples of a callable that drives; a pulse that lasts longer is seen.
+        Default, and at most: a thousandth of the motion.  Refused where it makes more than 5 10^5 samples, and where
+        nothing is a callable.
 
     Returns
     -------
@@ -112,8 +118,11 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    times, given = output_times(t), Drive(force, torque, slope, brake, drag, omega, V)
-    asked = rtol, rest, max_steps
+    units = roller.scale if isinstance(roller, Rolls) else DIMENSIONLESS  # begin() refuses what is no roller
+    times, given = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
+    if not BARE.issuperset(map(type, (V0, omega0, *given))):
+        (V0, omega0), given, _ = bare((V0, omega0), given, units)
+    asked = Asked(rtol, rest, max_steps, resolve)
     begun = begin(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
     begun.roller.look_at_starts(V0, omega0)
     look(begun)

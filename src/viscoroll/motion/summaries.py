@@ -213,8 +213,12 @@ def quantiles(one: Histogram, levels: tuple[float, ...]) -> Floats:
 
 
 def _in_order(one: Histogram, ranks: Integers) -> Floats:
-    """The values of these ranks (from 0), were those of each bin evenly spread."""
+    """The values of these ranks (from 0), if those of each bin were evenly spread.
+
+    The bin of zero is no interval of values: it holds 0 and what is below 1e-310, and all of it counts as 0.
+    """
     below, above = _edges(one.bins)
+    above = np.where(one.bins == 0, below, above)
     reached = np.cumsum(one.counts)
     at = np.searchsorted(reached, ranks, side="right")
     share = (ranks - (reached[at] - one.counts[at]) + 0.5) / one.counts[at]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from bisect import bisect
 from dataclasses import replace
 from functools import lru_cache
@@ -11,17 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from ..contact_law.assumptions import LEAST_KAPPA, NOT_SMALL
 from ..contact_law.free_rolling import curve
+from ..contact_law.known import say
 from ..contact_law.parameters import PARAMETERS, Parameters
 from ..contact_law.steadiness import STEADY_LIMIT
-from ..core.errors import ModelWarning, outside
-from ..kernels.compile.notice import is_worker
 from ..materials.bodies import Bodies
+from ..materials.cover import Cover
 from ..materials.prony import Prony
 from .rolling import Begun
 
-#: kappa at which the contact at rest reaches half a radius from the axis
-_LEAST_KAPPA = 1.0
 #: in full slip: of the axis' speed, and of mu, the share of M that is in doubt then
 _CREEP, _SHARE = 1.0, 0.1
 #: of kappa M over 1 - 1/alpha at any speed, to a fifth, for one relaxation time (docs/theory.md)
@@ -43,17 +41,10 @@ def look(begun: Begun) -> None:
     scene, start, driven = begun.scene, (begun.ready.V0, begun.ready.omega0), begun.drive.acts or begun.unsteady
     if type(start[0]) is type(start[1]) is float and not scene.shape:
         material = scene.alpha if scene.material is None else scene.material
-        say(_faults(material, scene.kappa, scene.mu, scene.gamma, scene.j, *start, driven))
+        faults = _faults(material, scene.kappa, scene.mu, scene.gamma, scene.j, *start, driven)
     else:
-        say(_faults_of_many(scene, *start, driven))
-
-
-def say(faults: list[str]) -> None:
-    """Warn of these.  No numbers: the same words are said once for each line of a program."""
-    if not faults or is_worker():
-        return
-    text = "the model is not good for this motion: " + "; ".join(faults) + ".  See validity() of scene or result"
-    warnings.warn(text, ModelWarning, stacklevel=outside())
+        faults = _faults_of_many(scene, *start, driven)
+    say(faults, "motion", "validity() of scene or result")
 
 
 def _faults(
@@ -63,8 +54,8 @@ def _faults(
     found: list[str] = []
     paper = type(material) is float
     part = 1.0 - 1.0 / (material if paper else material.alpha)
-    if kappa < _LEAST_KAPPA:
-        found.append("kappa = R/l0 is below 1: the contact at rest is longer than the radius")
+    if kappa < LEAST_KAPPA:
+        found.append(NOT_SMALL)
     if abs(omega0 - V0) >= _CREEP * abs(V0) and _LARGEST_M * part > _SHARE * mu * kappa:
         fastest = max(abs(V0), abs(omega0))
         if fastest > 0.0 and (not paper or part * fastest > _SHARE * mu):
@@ -74,7 +65,7 @@ def _faults(
             )
     # the speed at the start, or that at which it comes to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
-    if not driven and u > 0.0 and u * u * (1.0 + j) < _PLAIN * gamma * part:
+    if not driven and type(material) is not Cover and u > 0.0 and u * u * (1.0 + j) < _PLAIN * gamma * part:
         places, slow = _slow_starts(material, gamma, j)
         if slow[max(bisect(places, u) - 1, 0)]:
             found.append(

@@ -35,8 +35,7 @@ for reach, height in ((roller.validity(1.0).steady.ten_percent, 0.1),
 left.set(xlabel="speed, m/s", ylabel="unsteadiness", ylim=(1e-6, 1e3))
 left.legend(frameon=False, fontsize="small")
 
-# %%
-# What it does: from 1 m/s, without N and with it, gamma M dt = -(1 + j + gamma N) dV.
+# right: gamma M dt = -(1 + j + gamma N) dV from 1 m/s on, without N and with it
 start = np.searchsorted(V, 1.0)
 for inertia, style in ((0.0, "-"), (1.0, ":")):
     rate = (1.0 + inertia * unsteady) * (1.0 + scene.j) / (scene.gamma * c.M)
@@ -50,5 +49,6 @@ print(roller.validity(1.0).steady.sentence)
 print(cold.validity(1.0).steady.sentence)
 
 # %%
-# The dots are where V is right to 1 % and 10 %; rolling ends little behind.  A thousand
+# Left: the dots are where V is right to 1 % and 10 %.  Right: what N does to rolling from
+# 1 m/s down to the speed where V is right to 10 %; it ends soon after.  A thousand
 # times slower rubber is as right.  What is known of lower speeds: :doc:`/validity`.

@@ -16,10 +16,11 @@ Run = Callable[[Namespace], int | None]
 
 
 class Option(NamedTuple):
-    """An argument, as of ``ArgumentParser.add_argument``."""
+    """An argument, as of ``ArgumentParser.add_argument``; of those that are ``exclusive`` a command line has one."""
 
     names: tuple[str, ...]
     about: dict[str, Any]
+    exclusive: bool = False
 
 
 class Command(NamedTuple):
@@ -78,17 +79,22 @@ def body_of(text: str) -> Any:
     ParameterError
         An unknown preset.
     FileError
-        A file that cannot be read.
+        A file that cannot be read, or whose name does not end in .toml.
     """
     from ...io.config import preset, read_body
 
-    return read_body(text) if text.endswith(".toml") else preset(text)
+    if text.lower().endswith(".toml"):
+        return read_body(text)
+    if os.path.exists(text):
+        raise vr.FileError(text, "is no scene file: its name must end in .toml")
+    return preset(text)
 
 
 def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
     """-o FILE, or another option, with one of ``suffixes``; what cannot be written is refused before any work."""
 
     def path(text: str) -> Path:
+        text = text.rstrip("/") if text.endswith(".zarr/") else text  # as shells complete the name of a folder
         if Path(text).suffix.lower() not in suffixes:
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
         if not os.path.isdir(os.path.dirname(text) or "."):
@@ -107,6 +113,8 @@ FILE = option("file", metavar="FILE")
 SCENE = option("scene", metavar="SCENE", help="FILE.toml with [scene], [cylinder] (SI) or preset; or a preset")
 #: of a table of numbers
 TABLE = (
-    output(".txt", ".csv", ".nc", required=False, more="; without it: standard output"),
-    option("--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"),
+    output(".txt", ".csv", ".nc", required=False, more="; without it: standard output")._replace(exclusive=True),
+    option(
+        "--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"
+    )._replace(exclusive=True),
 )

@@ -56,7 +56,9 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
 
 
 def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
-    """Aligned columns; a single row stands as lines, with what each number means."""
+    """Aligned columns; a single row stands as lines, with what each number means; of no row the heading alone."""
+    if frame.empty:
+        return f"{heading}\n"
     if meanings is None or len(frame) != 1:
         return f"{heading}\n\n{frame.to_string(index=False, float_format='{:.10g}'.format, na_rep='')}\n"
     lines = []

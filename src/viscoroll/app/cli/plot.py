@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
@@ -41,8 +42,10 @@ def _of_file(path: str) -> Any:
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
             return vr.Material.from_netcdf(path).plot() if "schema" in data.attrs else draw(data)
     except OSError as error:
-        missing = "there is no such file" if not Path(path).exists() else f"cannot be read ({error.strerror or error})"
-        raise vr.FileError(path, missing) from error
+        if not Path(path).is_file():
+            raise vr.FileError(path, "there is no such file") from error
+        problem = "is damaged, or no netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+        raise vr.FileError(path, problem) from error
 
 
 def _of_toml(path: str) -> Any:

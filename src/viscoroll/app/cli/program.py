@@ -10,6 +10,7 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from typing import Any, NoReturn
 
@@ -42,9 +43,23 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
         for kind, words in ((float, "a number"), (int, "a whole number")):
             self.register("type", kind, partial(_read, kind, words))
+        self.register("action", None, _Once)
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message} (see {self.prog} --help)")
+
+
+class _Once(argparse.Action):
+    """Stores a value; an option that is given twice is an error, where argparse takes the last."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, name: str | None = None
+    ) -> None:
+        given = vars(namespace).setdefault("given", set())
+        if name is not None and self.dest in given:
+            raise argparse.ArgumentError(self, "is given twice")
+        given.add(self.dest)
+        setattr(namespace, self.dest, values)
 
 
 def _read(kind: type, words: str, text: str) -> Any:
@@ -74,8 +89,9 @@ def parser() -> Parser:
         text, _, example = (inspect.getdoc(run) or "").partition("\n\nexample:")
         short, epilog = text.partition(".\n")[0].rstrip("."), f"example:{example}" if example else None
         one = groups[group].add_parser(name, help=short, description=text, epilog=epilog)
-        for names, about in options:
-            one.add_argument(*names, **about)
+        either = one.add_mutually_exclusive_group() if any(each.exclusive for each in options) else one
+        for names, about, exclusive in options:
+            (either if exclusive else one).add_argument(*names, **about)
         one.set_defaults(run=run)
     return program
 
@@ -93,10 +109,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     except MemoryError as error:
         return _failed(f"not enough memory ({error})")
     except KeyboardInterrupt as end:
-        if isinstance(end, Interrupted) and sys.stderr is not None:
-            print("viscoroll:", end, file=sys.stderr, flush=True)
+        if isinstance(end, Interrupted):
+            _tell(end)
         return _INTERRUPTED
-    except OSError as error:  # files raise FileError and the like: this is standard output
+    except OSError as error:  # of files FileError is raised where they are known to fail: without a name, of output
+        if error.filename is not None:
+            return _failed(f"{error.filename}: {error.strerror}")
         # whatever is still buffered goes nowhere, or the interpreter would complain at its end
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE if isinstance(error, BrokenPipeError) else _failed(f"standard output: {error.strerror}")
@@ -105,6 +123,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(argv: Sequence[str]) -> int:
     try:
         given = parser().parse_args(argv)
+        from ...core.blocks import thread_count
+
+        thread_count()  # refuses a wrong $VISCOROLL_THREADS, whatever the command
         code = given.run(given) or 0
     except SystemExit as finished:  # argparse's own way to end after --help and --version
         code = int(finished.code or 0)
@@ -114,10 +135,17 @@ def _run(argv: Sequence[str]) -> int:
 
 def _told(message: Warning | str, *_: Any, **__: Any) -> None:
     """A warning in one line."""
-    if sys.stderr is not None:
-        print("viscoroll: warning:", " ".join(str(message).split()), file=sys.stderr)
+    _tell(f"warning: {message}")
 
 
 def _failed(error: object) -> int:
-    print("viscoroll: error:", " ".join(str(error).split()), file=sys.stderr)
+    """Tell an error in one line; returns the exit code of it."""
+    _tell(f"error: {error}")
     return 2
+
+
+def _tell(message: object) -> None:
+    """One line on standard error, if it is open and takes it."""
+    if sys.stderr is not None:
+        with suppress(OSError):
+            print("viscoroll:", " ".join(str(message).split()), file=sys.stderr, flush=True)

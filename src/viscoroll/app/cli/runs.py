@@ -23,7 +23,8 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
 def ensemble(given: Namespace) -> None:
     """Many motions with random starts and parameters, by a run file.
 
-    Rolls what is missing in the store and summarises it: the same command continues an interrupted run.
+    Rolls what is missing in the store and summarises it: the same command continues an interrupted run, or one whose
+    file has a larger n now.
     Without -o it states size, memory and time.
 
     example:
@@ -31,6 +32,8 @@ def ensemble(given: Namespace) -> None:
     """
     run = vr.runs.read_run(given.run_file)
     if given.output is None:
+        if given.cluster is not None:
+            raise vr.ParameterError("--cluster", given.cluster, "left out without -o: the trial is of this machine")
         print(vr.runs.estimate(run, given.threads))
         return
     made = vr.runs.run_ensemble(

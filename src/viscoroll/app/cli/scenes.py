@@ -7,6 +7,8 @@ from argparse import Namespace
 from collections.abc import Callable
 from typing import Any
 
+import viscoroll as vr
+
 from .arguments import SCENE, TABLE, Option, body_of, command, numbers, option
 from .output import show
 
@@ -107,6 +109,9 @@ def steady(given: Namespace) -> None:
     lines = [f"load {n}: {reason}" for n, reason in enumerate(found.reason) if reason]
     if len(lines) > _LINES:
         lines[_LINES:] = [f"{len(lines) - _LINES} more loads have none"]
+    if given.output is not None or given.format != "text":  # a table for programs has no heading that says it
+        for line in lines:
+            warnings.warn(line, vr.ModelWarning, stacklevel=2)
     show(given, found, "\n".join(lines))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from pathlib import Path
 
 import viscoroll as vr
@@ -13,7 +13,11 @@ _LAW, _GRID = (".nc", ".cdf", ".h", ".json"), (".nc", ".cdf", ".csv", ".txt", ".
 
 
 def _low_high(text: str) -> tuple[float, ...]:
-    return tuple(map(float, text.split(":")))
+    """The numbers of LOW:HIGH."""
+    try:
+        return tuple(map(float, text.split(":")))
+    except ValueError:
+        raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, as 1:4096") from None
 
 
 def _size(path: Path) -> None:
@@ -102,6 +106,9 @@ def export(given: Namespace) -> None:
       viscoroll export data/tables/rubber.nc -o rubber.h
     """
     if Path(given.file).is_dir():
+        if given.output.suffix.lower() != ".nc":
+            allowed = "a name that ends in .nc for the results of a run"
+            raise vr.ParameterError("-o", str(given.output), allowed)
         vr.runs.export_netcdf(given.file, given.output)
     else:
         vr.tables.export(vr.tables.load(given.file), given.output)

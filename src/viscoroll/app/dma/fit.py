@@ -1,180 +1,43 @@
-"""The fit of a master curve, :func:`fit_prony`, and what it holds, :class:`Fit`."""
+"""The fits of measured moduli: :func:`fit_prony` and :func:`fit_relaxation`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, Literal, overload
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from ...contact_law.assumptions import Assumption, measurement, passage
-from ...contact_law.contact import contact
-from ...core.checks import checked, number, whole
-from ...core.errors import ParameterError
-from ...core.plots.measured import fitted
-from ...core.results import Shown
-from ...core.typed import Booleans, Floats, Numbers
-from ...materials.material import Material
-from ...materials.measured import Measured
+from ...core.checks import number, whole
+from ...core.errors import ParameterError, unknown
+from ...core.typed import Numbers
 from ...materials.prony import Prony
 from ...materials.prony_forms import MOST_MODES, WIDEST
+from ...materials.shift import celsius
 from .choose import chosen
-from .curve import Curve, KramersKronig, curve_of, kramers_kronig
-from .report import card
-from .shift import Shifts, master_curve
-from .spectrum import FLOOR, Spectrum, misfits
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ...cylinder import Cylinder
+from .curve import Relaxation, curve_of, data_of, kramers_kronig, thinned
+from .record import DynamicModuli
+from .results import Fit, Misfit, Mode, RelaxationFit
+from .shift import master_curve
+from .spectrum import Data, Spectrum, misfits
 
 #: highest over lowest frequency; times reach a decade beyond on either side
 MOST_SPREAD = WIDEST / 100.0
+#: last over first relaxation modulus from which on it is none: noise on a plateau stays below
+_RISES = 1.1
 
 
-class Misfit(NamedTuple):
-    """Root mean square of the relative errors of storage and loss modulus."""
-
-    storage: float
-    loss: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Fit(Shown):
-    """A Prony series fitted to a master curve, and what the data say and do not say about it.
-
-    E : long-time modulus, in the unit of the data.
-    T_ref : the longest time, s; those of ``prony`` are counted in it.
-    prony : the material.
-    misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
-    target, reached : the misfit that was asked for, and whether both are within it.
-    kramers_kronig : measured over allowed loss modulus: ``.omega``, ``.ratio``, ``.median``.
-    outside : for each mode of ``prony`` whether its time lies outside the range of 1/omega.
-    shifts : shift factors of curves at several temperatures, else None.
-    omega, storage, loss : the data, sorted and shifted; rad/s and the unit given.
-    grid : shortest and longest time that the fit was allowed, s.
-    source : of the data, in words.
-    """
-
-    E: float
-    T_ref: float
-    prony: Prony
-    misfit: Misfit
-    target: float
-    reached: bool
-    kramers_kronig: KramersKronig
-    outside: Booleans
-    shifts: Shifts | None
-    omega: Floats
-    storage: Floats
-    loss: Floats
-    grid: tuple[float, float]
-    source: str = ""
-
-    @property
-    def alpha(self) -> float:
-        """Instantaneous over long-time modulus."""
-        return self.prony.alpha
-
-    @property
-    def plateau(self) -> bool:
-        """Whether E is what the data ask for, not the least that is allowed (1 % of the lowest storage modulus)."""
-        return self.E > 1.001 * FLOOR * float(self.storage.min())
-
-    def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
-        """Storage and loss modulus of the fit at angular frequencies in rad/s, in the unit of the data."""
-        own, given = Spectrum(self.E, self.prony.E * self.E, self.prony.tau * self.T_ref), np.asarray(omega, np.float64)
-        storage, loss = own.modulus(given.ravel())
-        return storage.reshape(given.shape), loss.reshape(given.shape)
-
-    @cached_property
-    def wider(self) -> tuple[Any, ...]:
-        """What grids of times one and two decades wider on either side would change, no time left out.
-
-        For each: ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose contacts are passed
-        in times that the data hold, ``M`` beside ``M_fit`` at the same load (see :class:`.wider.Wider`).
-        Computed when first asked for.
-        """
-        from .wider import wider
-
-        curve = Curve(self.omega, self.storage, self.loss)
-        return tuple(wider(curve, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2))
-
-    @property
-    def measured(self) -> Measured:
-        """The frequencies of the data, the larger misfit and the source: what a material keeps of them."""
-        source = self.source or f"{self.omega.size} points"
-        return Measured(float(self.omega[0]), float(self.omega[-1]), max(self.misfit), source)
-
-    def material(
-        self, nu: float = 0.49, *, name: str = "", density: float | None = None, thickness: float | None = None
-    ) -> Material:
-        """The fit as a :class:`viscoroll.Material`, ``measured`` with it; the data must have been in Pa.
-
-        Parameters
-        ----------
-        nu : Poisson's ratio, constant in time.
-        name, density, thickness : as there; density in kg/m^3, thickness in m.
-
-        Raises
-        ------
-        ParameterError
-            As there.
-        """
-        own = self.E, nu, self.prony, self.T_ref
-        return Material(*own, name=name, density=density, thickness=thickness, measured=self.measured)
-
-    def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
-        """Whether a contact with this material sees frequencies that the data hold, and the fit is near them.
-
-        A contact is passed in lam l0/V, which must lie within the times of the data; shifted to another temperature
-        (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer that is passed in
-        less: modes faster than the passage act there as far as they go.
-
-        Parameters
-        ----------
-        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any temperature.
-        V : speed of the axis, m/s, any sign.
-
-        Returns
-        -------
-        Assumption
-            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``, of the shape of V.
-
-        Raises
-        ------
-        ParameterError
-            A cylinder of another series; NaN or infinite V.
-        """
-        bodies = cylinder.pair.cylinder, cylinder.pair.half_space
-        body = next((body for body in bodies if body.prony == self.prony), None)
-        if body is None:
-            raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
-        speed = checked("V", V)
-        lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
-        seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
-        return measurement(seen, {"the material": self.measured})
-
-    def to_xarray(self) -> xr.Dataset:
-        """Data and fit over omega, the series over ``mode``, and the constants as attributes."""
-        import xarray as xr
-
-        fitted = zip(("storage_fit", "loss_fit"), self.modulus(self.omega), strict=True)
-        columns = {"storage": self.storage, "loss": self.loss, **dict(fitted)}
-        data = {name: ("omega", values, {"units": "unit of the data"}) for name, values in columns.items()}
-        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
-        data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
-        about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series"}
-        about |= {f"misfit_{name}": value for name, value in self.misfit._asdict().items()}
-        return xr.Dataset(data, {"omega": ("omega", self.omega, {"units": "rad s-1"})}, about)
-
-    _card, _figure = card, fitted
-
-
+@overload
+def fit_prony(
+    omega: DynamicModuli,
+    *,
+    modes: int | None = None,
+    misfit: float = 0.01,
+    temperature: Numbers | None = None,
+    reference: float | None = None,
+    shift: Numbers | Callable[[float], float] | None = None,
+    on: Literal["both", "storage"] = "both",
+    mode: Mode | None = None,
+    source: str = "",
+) -> Fit: ...
+@overload
 def fit_prony(
     omega: Numbers,
     storage: Numbers,
@@ -185,6 +48,22 @@ def fit_prony(
     temperature: Numbers | None = None,
     reference: float | None = None,
     shift: Numbers | Callable[[float], float] | None = None,
+    on: Literal["both", "storage"] = "both",
+    mode: Mode | None = None,
+    source: str = "",
+) -> Fit: ...
+def fit_prony(
+    omega: Numbers | DynamicModuli,
+    storage: Numbers | None = None,
+    loss: Numbers | None = None,
+    modes: int | None = None,
+    *,
+    misfit: float = 0.01,
+    temperature: Numbers | None = None,
+    reference: float | None = None,
+    shift: Numbers | Callable[[float], float] | None = None,
+    on: Literal["both", "storage"] = "both",
+    mode: Mode | None = None,
     source: str = "",
 ) -> Fit:
     """Fit a Prony series to storage and loss modulus.
@@ -194,16 +73,23 @@ def fit_prony(
 
     Parameters
     ----------
-    omega : angular frequencies, rad/s, in any order, repeated or not.
+    omega : angular frequencies, rad/s, in any order, repeated or not; or what :func:`viscoroll.read_dma` returns,
+        alone: its moduli, temperatures, mode and source are then taken.
     storage, loss : storage and loss modulus at them, > 0, both in one unit.
     modes : largest number of modes; fewer are returned only where non-negative strengths have no use for more.
         Default: as few as ``misfit`` needs, or, where it cannot be reached, as few as come within 5 % of the best.
     misfit : root mean square of the relative errors that E' and E'' may each have.
-    temperature : degrees Celsius, one a point (equal ones are a curve: round measured ones), or one a curve where
-        the columns are lists of curves.  The curves are shifted to ``reference`` first.
-    reference : temperature of the master curve; default the middle one of the curves.
-    shift : factors a_T, one a temperature in ascending order, or a function of the temperature; times are a_T times
-        those at the reference.  Default: found from the overlap of neighbouring curves.
+    temperature : degrees Celsius: one of all points, one a point as measured (those within 0.5 K of one another are one
+        curve), or one a curve where the columns are lists of curves.  The curves are shifted to ``reference`` first.
+    reference : temperature of the master curve, at which its times are.  Default: where a given shift is 1 (T0 of a
+        :class:`WLF`, the temperature of a factor of 1), if it is among the temperatures; else the middle one of the
+        curves.  With a list of factors it must be one of the curves' temperatures.
+    shift : factors a_T, one a curve in the order of the curves (of points: in the order in which the temperatures
+        come), or a function of the temperature.  They are divided by that of the reference, so that constants may be
+        those of another temperature.  Default: found from the overlap of neighbouring curves.
+    on : "both", or "storage" to find the shifts from the overlap of the storage modulus alone, where the loss modulus
+        is noisy or does not shift alike.
+    mode : "tension" (default) or "shear", where the moduli are G' and G''; :meth:`Fit.material` makes E of them.
     source : of the data, in words; it stays with the material.
 
     Returns
@@ -215,26 +101,143 @@ def fit_prony(
     ------
     ParameterError
         Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a curve that does
-        not level off at low frequencies; neighbouring curves that do not overlap.
+        not level off at low frequencies; neighbouring curves that do not overlap; factors that rise with the
+        temperature; a reference of which the factors say nothing.
+
+    Warns
+    -----
+    ModelWarning
+        Where the curves are so flat that their overlap does not fix the shifts; temperatures that look like kelvin.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+    >>> fit.reached, fit.mode
+    (True, 'tension')
+
+    Notes
+    -----
+    More than 1000 points are thinned to the means of 500 logarithmic bins; ``points`` and the report say so.
     """
-    target = number("misfit", misfit, low=0.0, strict=True)
-    modes = None if modes is None else whole("modes", modes, 1, MOST_MODES)
+    if isinstance(omega, DynamicModuli):
+        record = omega
+        for name, given in (("storage", storage), ("loss", loss)):
+            if given is not None:
+                raise ParameterError(name, "given", "left out: the record has it (modes=, if that is meant)")
+        if mode is not None and mode != record.mode:
+            raise ParameterError("mode", repr(mode), f"{record.mode!r}, as of {record.source or 'the record'}")
+        omega, storage, loss, mode = record.omega, record.storage, record.loss, _mode(record.mode)
+        temperature, source = record.temperature if temperature is None else temperature, source or record.source
+    elif storage is None or loss is None:
+        raise ParameterError("storage and loss", None, "given, as columns beside omega, or a record of read_dma alone")
+    if on not in ("both", "storage"):
+        raise unknown("on", on, ("both", "storage"), "what shifts are found from")
+    mode, shifts = _mode("tension" if mode is None else mode), None
     if temperature is None:
         for name, value in (("reference", reference), ("shift", shift)):
             if value is not None:
                 raise ParameterError(name, f"{value!r:.60}", "given with temperature only")
-        curve, shifts = curve_of(omega, storage, loss), None
+        curve = curve_of(omega, storage, loss)
     else:
-        curve, shifts = master_curve(omega, storage, loss, temperature, reference, shift)
-    if curve.omega[-1] > MOST_SPREAD * curve.omega[0]:
-        span = f"from {curve.omega[0]:g} to {curve.omega[-1]:g}"
-        raise ParameterError("omega", span, f"within a factor of {MOST_SPREAD:g}")
-    spectrum, grid, reached = chosen(curve, target, modes)
-    T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0
-    outside = (spectrum.tau < 1.0 / curve.omega[-1]) | (spectrum.tau > 1.0 / curve.omega[0])
+        curve, shifts = master_curve(omega, storage, loss, temperature, reference, shift, on)
+    data = thinned(curve)
+    series = _series(curve, data, modes, misfit)
     return Fit(
-        E=spectrum.E, T_ref=T_ref, prony=Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref),
-        misfit=Misfit(*misfits(curve, spectrum)), target=target, reached=reached,
-        kramers_kronig=kramers_kronig(curve), outside=outside, shifts=shifts,
-        omega=curve.omega, storage=curve.storage, loss=curve.loss, grid=grid, source=source,
+        **series, misfit=Misfit(*misfits(data, _spectrum(series))), kramers_kronig=kramers_kronig(data), shifts=shifts,
+        temperature=None if shifts is None else shifts.reference, mode=mode, source=source,
+        **data._asdict(),
     )  # fmt: skip
+
+
+def fit_relaxation(
+    t: Numbers,
+    relaxation: Numbers,
+    modes: int | None = None,
+    *,
+    misfit: float = 0.003,
+    temperature: float | None = None,
+    mode: Mode = "tension",
+    source: str = "",
+) -> RelaxationFit:
+    """Fit a Prony series to a relaxation modulus: what a test at constant strain gives.
+
+    Non-negative least squares of the relative errors, as of :func:`fit_prony`, on times from half the first of the data
+    to half a decade or a decade beyond the last.
+
+    Parameters
+    ----------
+    t : times since the strain was applied, s, > 0, in any order.  Leave out those of the ramp: E(t) is that of a step.
+    relaxation : relaxation modulus, stress over strain, > 0, in one unit.
+    modes, source : as of :func:`fit_prony`.
+    misfit : root mean square of the relative errors that E(t) may have.  Rolling resistance is made of E'', which
+        follows from the slope of E(t): of the usual slopes 1 % of E(t) leaves 10 to 30 % of E'' open, 0.3 % some 5 %.
+    temperature : of the test, degrees Celsius; it stays with the material.
+    mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
+
+    Returns
+    -------
+    RelaxationFit
+        ``print`` shows a report.  The material is taken as measured at rates between 1 over the last and 1 over the
+        first time.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a modulus that rises,
+        or does not level off at long times.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import viscoroll as vr
+    >>> t = np.geomspace(0.01, 100.0, 30)
+    >>> fit = vr.fit_relaxation(t, 1e6 * (1.0 + 2.0 * np.exp(-t / 0.5)))
+    >>> round(fit.T_ref, 6), fit.material(nu=0.49).measured.high
+    (0.5, 100.0)
+    """
+    whole_data = data_of(Relaxation, {"t": t, "relaxation": relaxation})
+    first, *_, last = whole_data.relaxation.tolist()
+    if last > _RISES * first:
+        found = f"from {first:g} to {last:g} as time goes on"
+        raise ParameterError("relaxation", found, "a modulus, which falls (a creep compliance rises)")
+    data = thinned(whole_data)
+    series = _series(whole_data, data, modes, misfit)
+    return RelaxationFit(
+        **series, misfit=misfits(data, _spectrum(series))[0], mode=_mode(mode), source=source,
+        temperature=None if temperature is None else celsius("temperature", temperature), **data._asdict(),
+    )  # fmt: skip
+
+
+def _mode(mode: Any) -> Mode:
+    """Which modulus; raises ParameterError."""
+    if mode not in ("tension", "shear"):
+        raise unknown("mode", mode, ("tension", "shear"), "a kind of modulus")
+    return mode
+
+
+def _series(whole_data: Data, data: Data, modes: int | None, misfit: float) -> dict[str, Any]:
+    """The fields of a fit that are those of its series; arguments and errors of :func:`fit_prony`.
+
+    whole_data, data : what was measured, and what stands for it in the fit.
+    """
+    target = number("misfit", misfit, low=0.0, strict=True)
+    modes = None if modes is None else whole("modes", modes, 1, MOST_MODES)
+    low, high = whole_data.band
+    if high > MOST_SPREAD * low:
+        first = data._fields[0]
+        span = f"from {data[0][0]:g} to {data[0][-1]:g}"
+        raise ParameterError(first, span, f"within a factor of {MOST_SPREAD:g}")
+    spectrum, grid, reached = chosen(data, target, modes)
+    T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0
+    return {
+        "E": spectrum.E, "T_ref": T_ref, "prony": Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref),
+        "target": target, "reached": reached, "grid": grid, "band": (low, high), "points": whole_data[0].size,
+        "outside": (spectrum.tau < 1.0 / high) | (spectrum.tau > 1.0 / low),
+    }  # fmt: skip
+
+
+def _spectrum(series: dict[str, Any]) -> Spectrum:
+    """The spectrum of these fields, in the unit of the data."""
+    prony = series["prony"]
+    return Spectrum(series["E"], prony.E * series["E"], prony.tau * series["T_ref"])

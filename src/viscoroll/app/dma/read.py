@@ -1,137 +1,251 @@
-"""Columns of frequency, storage and loss modulus from a text file: :func:`read_dma`."""
+"""Storage and loss modulus over frequency from a text file: :func:`read_dma`."""
 
 from __future__ import annotations
 
-import math
-import re
 import warnings
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from ...core.errors import FileError, ModelWarning, ParameterError
-from ...core.typed import Floats
+from ...core.errors import FileError, ModelWarning, ParameterError, outside, refuse_unknown
+from ...io.measurements import Numbers, Table, conversion, read_table
+from .columns import Column, columns_of, numbers_of
+from .names import OF_SHEAR, UNITS, meanings
+from .record import SAME_TEMPERATURE, DynamicModuli
+from .solve import AVERAGED, PAIRS, refuse, storage_and_loss
 
-_FREQUENCY = {"hz": 2.0 * math.pi, "khz": 2e3 * math.pi, "rad/s": 1.0, "1/s": 1.0, "s^-1": 1.0}
-_MODULUS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
-#: names of the three columns, in lower case without blanks and underscores, with what may follow them
-_NAMES = (
-    r"(f|freq\w*|omega|ω|w)$|(frequency|angularfrequency)",
-    r"[eg](stor|sto|')?$|.*storage",
-    r"[eg](loss|''|\"|’’)$|.*loss",
-)
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+#: 2 pi as people write it, 6.28, is off by 5e-4
+_ROUND_PI = 1e-3
+#: frequencies that differ by less are one: instruments keep theirs to this
+_ONE_FREQUENCY = 1e-3
+#: moduli at one frequency and one temperature repeat within this factor; beyond, something else was varied
+_REPEATED = 1.25
 
 
-def read_dma(path: str | PathLike[str], *, units: tuple[str, str] | None = None) -> tuple[Floats, Floats, Floats]:
-    """Read a master curve: columns of frequency, storage modulus, loss modulus.
+def read_dma(
+    path: str | PathLike[str], *, columns: Mapping[str, str] | None = None,
+    units: tuple[str, str] | Mapping[str, str] | None = None, decimal: str | None = None, encoding: str | None = None,
+) -> DynamicModuli:  # fmt: skip
+    """Read storage and loss modulus over frequency, as instruments and spreadsheets write them.
 
-    Columns are parted by blanks, tabs, commas or semicolons.  Lines before the numbers are headings, as are those
-    that begin with ``#``: they may name the columns (``f``, ``omega``, ``E_stor``, ``E'``, ``G''``, ``loss modulus``
-    ...; by default the first three in this order) and give units, behind a name or in a row of their own (Hz or
-    rad/s; Pa, kPa, MPa or GPa).  The CSV of pyvisco is such a file.
+    The headings say which column is which, in any order: frequency or angular frequency (reduced ones first), and two
+    of storage, loss, tan delta or phase angle, and magnitude of the complex modulus, or the same of compliances.  A
+    third is compared with what the two give.  Units are behind the names or in a row of their own.  Other columns are
+    left aside and told in ``notes``.  Columns are parted by tabs, semicolons, commas or blanks; there may be lines
+    before the headings, and comments that begin with ``#``.
 
     Parameters
     ----------
-    path : a text file in UTF-8.
-    units : of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for.  Without, ``f`` is
-        taken as Hz, other frequencies as rad/s, and moduli as Pa, with a warning.
+    path : a text file in UTF-8, UTF-16 or Latin-1.
+    columns : meaning -> heading, as ``{"storage": "Module 1"}``, of columns whose names are not understood; meanings
+        are frequency, angular frequency, storage, loss, tan delta, phase angle, modulus (the magnitude), storage
+        compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
+        file without headings are called "column 0", "column 1" ...; three of them are frequency, storage and loss.
+    units : of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning -> unit,
+        in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in Pa, with a
+        warning.
+    decimal : "." or ","; default: the one that the numbers have.
+    encoding : of the file; default: by its first bytes.
 
     Returns
     -------
-    omega, storage, loss
-        rad/s, Pa, Pa; in the order of the file.
+    DynamicModuli
+        In the order of the file; ``print`` shows in three lines what was understood.  It unpacks as before:
+        ``omega, storage, loss = read_dma(path)``.
 
     Raises
     ------
     FileError
-        If the file cannot be read, a row has no numbers where it must, columns are missing, or a unit is unknown.
+        A file that cannot be read, columns that are missing, ambiguous or contradict each other, units that are
+        unknown or of another dimension, gaps and separators of thousands; rows of several temperatures without them.
     ParameterError
-        ``units`` that are no two of these.
+        ``columns``, ``units``, ``decimal`` or ``encoding`` that are none.
 
     Warns
     -----
     ModelWarning
         Where neither the file nor ``units`` says what a column is in.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
-    kinds = _FREQUENCY, _MODULUS, _MODULUS
-    if units is not None and not (
-        isinstance(units, tuple) and len(units) == 2 and all(str(u).lower() in k for u, k in zip(units, kinds))
-    ):
-        allowed = f"(frequency, moduli), of {', '.join(_FREQUENCY)} and of {', '.join(_MODULUS)}"
+    named = dict(columns or {})
+    refuse_unknown("columns", named, UNITS, "a meaning")
+    given, fills = _units_given(units)
+    table = read_table(path, lambda cells: _known(cells, named), decimal=decimal, encoding=encoding)
+    if table.bare and not named:
+        if len(table.headings) != 3:
+            problem = (
+                f"has {len(table.headings)} columns, and no heading that names frequency, storage and loss modulus"
+            )
+            raise FileError(path, f"{problem}: give columns=")
+        named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
+    found, aside = columns_of(table, named, given, fills)
+    mode, pair, kind = _pair(table, found, aside)
+    notes = [f"{table.parts} tables"] * (table.parts > 1)
+    if not mode:
+        mode = _assumed_mode(aside, notes)
+    kept = _kept(found, aside, mode, kind)
+    numbers = {name: _agreeing(table, name, alike, aside) for name, alike in kept.items()}
+    warm = numbers.get("temperature")
+    if warm and "reduced frequency" in kept and np.ptp(warm.values) > SAME_TEMPERATURE:
+        warm = None
+        aside[kept.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
+    omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
+    refuse(table, omega > 0.0, "the frequency is not > 0")
+    of_moduli = {
+        name.removesuffix(kind): each for name, each in numbers.items() if name.removesuffix(kind) in _OF_PAIRS
+    }
+    storage, loss = storage_and_loss(table, pair, of_moduli)
+    if kind:
+        square = storage**2 + loss**2
+        storage, loss = storage / square, loss / square
+    if kind or pair != ("storage", "loss"):
+        notes.append(f"moduli are from {' and '.join(kept[_full(name, kind)][0].meaning.name for name in pair)}")
+    notes += [f"{name} agrees with them" for name in of_moduli.keys() - set(pair)]
+    taken = [alike[0] for alike in kept.values()]
+    notes += [f"{column.heading!r} is log10" for column in taken if column.meaning.log]
+    notes += ["left aside: " + ", ".join(f"{of!r}" + f" ({why})" * bool(why) for of, why in aside.items())] * bool(
+        aside
+    )
+    _warn_assumed(table, taken, fills)
+    record = DynamicModuli(
+        omega, storage, loss, warm and warm.values, mode, Path(path).name, {c.meaning.name: c.heading for c in taken},
+        {c.meaning.name: c.unit for c in taken}, tuple(notes),
+    )  # fmt: skip
+    _refuse_mixed(table, record)
+    return record
+
+
+#: what pairs are of
+_OF_PAIRS = {name for pair in PAIRS for name in pair}
+
+
+def _units_given(units: Any) -> tuple[dict[str, str], dict[str, str]]:
+    """Units by meaning that overrule the file, and those of columns that have none, by that of :data:`UNITS`."""
+    by_name = isinstance(units, Mapping)
+    allowed = "(frequency, moduli), as ('Hz', 'MPa'), or meaning -> unit"
+    if units is not None and not by_name and not (isinstance(units, (tuple, list)) and len(units) == 2):
         raise ParameterError("units", f"{units!r:.60}", allowed)
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(path, f"cannot be read ({error})") from error
-    headings, rows = _parted(path, lines)
-    columns, below = _columns(path, headings, len(rows[0]))
-    values = np.array([[row[n] for n in columns] for row in rows]).T
-    names = [" ".join(line[n] for line in headings if n < len(line)) for n in columns]
-    names = [name + "".join(f" [{line[n]}]" for line in below) for name, n in zip(names, columns, strict=True)]
-    written = [_unit(path, name, kind) for name, kind in zip(names, kinds, strict=True)]
-    if units is None:
-        units = "Hz" if re.match(r"f(req|$|\W)", names[0].lower()) else "rad/s", "Pa"
-        if None in written:
-            text = f"{path}: columns without a unit are taken in {units[0]} (frequency) and {units[1]} (moduli)"
-            warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=2)
-    wanted = zip(written, kinds, (units[0], units[1], units[1]), strict=True)
-    omega, storage, loss = values * np.array([[kind[unit or other.lower()]] for unit, kind, other in wanted])
-    return omega, storage, loss
+    pairs = dict(units or {}) if by_name or not units else dict(zip(("frequency", "storage"), units, strict=True))
+    refuse_unknown("units", pairs, UNITS, "a meaning")
+    for name, unit in pairs.items():
+        try:
+            conversion(str(unit), UNITS[name])
+        except ParameterError as error:
+            raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is none of {name}") from error
+    return (pairs, {}) if by_name else ({}, {UNITS[name]: unit for name, unit in pairs.items()})
 
 
-def _parted(path: str | PathLike[str], lines: list[str]) -> tuple[list[list[str]], list[list[float]]]:
-    """Cells of the headings, and the rows of numbers."""
-    headings: list[list[str]] = []
-    rows: list[list[float]] = []
-    for number, line in enumerate(lines, 1):
-        text = line.strip()
-        cells = _cells(text.lstrip("#").strip())
-        if not cells or (text.startswith("#") and rows):
-            continue
-        if not text.startswith("#") and all(_NUMBER.match(cell) for cell in cells):
-            rows.append([float(cell) for cell in cells])
-            if len(cells) != len(rows[0]):
-                raise FileError(path, f"line {number} has {len(cells)} columns, those before it {len(rows[0])}")
-        elif rows:
-            raise FileError(path, f"line {number} is no row of numbers: {text[:60]!r}")
+def _known(cells: list[str], named: Mapping[str, str]) -> bool:
+    """Whether a line of texts is one of headings: two of its cells have a meaning, or one was named by the user."""
+    found = {said[0].name for cell in cells if cell and (said := meanings(cell))}
+    return len(found) > 1 or any(cell in named.values() for cell in cells if cell)
+
+
+def _full(name: str, kind: str) -> str:
+    """The quantity of a member of a pair, of moduli or compliances."""
+    return name if name == "tan delta" else name + kind
+
+
+def _pair(table: Table, found: list[Column], aside: dict[str, str]) -> tuple[str, tuple[str, str], str]:
+    """Mode ("": no heading says), the pair that gives the moduli, and its kind: "" of moduli, or " compliance".
+
+    Raises
+    ------
+    FileError
+        There is none; its message lists the headings.
+    """
+    modes = [mode for mode in ("tension", "shear") if any(column.meaning.mode == mode for column in found)]
+    everything = {column.quantity for column in found}
+    missing = "two of storage, loss, tan delta and modulus"
+    if not everything & {"frequency", "reduced frequency"}:
+        missing = "frequency" + ": a sweep of temperature is none of frequency" * ("temperature" in everything)
+    else:
+        for mode in modes or [""]:
+            names = {column.quantity for column in found if column.meaning.mode in ("", mode)}
+            for kind in ("", " compliance"):
+                pair = next((pair for pair in PAIRS if names.issuperset(_full(name, kind) for name in pair)), None)
+                if pair:
+                    return mode, pair, kind
+    problems = "".join(f"; {heading!r}: {why}" for heading, why in aside.items() if why)
+    headings = ", ".join(map(repr, filter(None, table.headings)))
+    raise FileError(table.path, f"no column is named {missing}{problems}; headings: {headings}; give columns=")
+
+
+def _assumed_mode(aside: dict[str, str], notes: list[str]) -> str:
+    """Mode of moduli that no heading says: shear beside a column of it, as rheometers write, else tension; noted."""
+    beside = next((heading for heading in aside if OF_SHEAR.search(heading)), None)
+    reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
+    notes.append(f"{'shear' if beside else 'tension'} is assumed, since {reason}")
+    return "shear" if beside else "tension"
+
+
+def _kept(found: list[Column], aside: dict[str, str], mode: str, kind: str) -> dict[str, list[Column]]:
+    """Quantity -> its columns; those of the other mode or kind, and measured beside reduced frequencies, go aside."""
+    reduced = any(column.quantity == "reduced frequency" for column in found)
+    kept: dict[str, list[Column]] = {}
+    for column in found:
+        other = UNITS[column.meaning.name] == ("Pa" if kind else "1/Pa") or column.meaning.mode not in ("", mode)
+        if other:
+            aside[column.heading] = "not needed"
+        elif reduced and column.quantity == "frequency":
+            aside[column.heading] = "the reduced frequency is taken"
         else:
-            headings.append(cells)
-    if not rows:
-        raise FileError(path, "has no row of numbers")
-    return headings, rows
+            kept.setdefault(column.quantity, []).append(column)
+    return kept
 
 
-def _cells(text: str) -> list[str]:
-    if re.search(r"[,;]", text):
-        return [cell.strip() for cell in re.split(r"[,;]", text)]
-    # a unit in brackets belongs to the name before it, and so does the word behind storage, loss or angular
-    text = re.sub(r"\s+(?=[\[(])", "", text)
-    text = re.sub(r"(?i)\b(storage|loss|angular)\s+(?=(modulus|frequency))", r"\1", text)
-    return text.split()
+def _agreeing(table: Table, name: str, alike: list[Column], aside: dict[str, str]) -> Numbers:
+    """The numbers of the first column of a quantity; others of the same quantity must agree with it."""
+    first = numbers_of(table, alike[0])
+    for column in alike[1:]:
+        second = numbers_of(table, column)
+        relative = 0.0 if name == "temperature" else (_ROUND_PI if name.endswith("frequency") else AVERAGED)
+        allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (name == "temperature")
+        agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
+        both = f"{alike[0].heading!r} and {column.heading!r}"
+        refuse(table, agrees, f"{both} contradict each other: choose by columns={{{name!r}: ...}}")
+        aside[column.heading] = f"agrees with {alike[0].heading!r}"
+    return first
 
 
-def _columns(path: str | PathLike[str], headings: list[list[str]], width: int) -> tuple[list[int], list[list[str]]]:
-    """Which columns are frequency, storage and loss modulus, and the rows below their names, which give units."""
-    if width < len(_NAMES):
-        raise FileError(path, f"has {width} columns: must be frequency, storage and loss modulus")
-    for row, line in enumerate(headings):
-        bare = [re.sub(r"[\s_*]|[\[(].*", "", cell.lower()) for cell in line[:width]]
-        found = [[n for n, cell in enumerate(bare) if re.match(pattern, cell)] for pattern in _NAMES]
-        if all(len(hits) == 1 for hits in found) and len({hits[0] for hits in found}) == len(_NAMES):
-            below = headings.pop(row + 1) if len(headings) > row + 1 and len(headings[row + 1]) == width else None
-            return [hits[0] for hits in found], [] if below is None else [[c.strip("[()] ") for c in below]]
-    if width > len(_NAMES):
-        raise FileError(path, f"has {width} columns, and no heading that names frequency, storage and loss modulus")
-    return [0, 1, 2], []
+def _warn_assumed(table: Table, taken: list[Column], fills: Mapping[str, str]) -> None:
+    """Warn of units that neither the file nor the user says; refuse a modulus without one beside one that has it."""
+    words = {"frequency": "rad/s", "moduli": "Pa"}
+    assumed = []
+    for word, unit in words.items():
+        alike = [column for column in taken if UNITS[column.meaning.name] == unit]
+        without = [column for column in alike if not column.stated and unit not in fills]
+        if without and len(without) < len(alike):
+            raise FileError(table.path, f"column {without[0].heading!r} has no unit, but others do: give units=")
+        assumed += [f"{column.unit} ({word})" for column in without[:1]]
+    if assumed:
+        text = f"{table.path}: columns without a unit are taken in {' and '.join(assumed)}"
+        warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=outside())
 
 
-def _unit(path: str | PathLike[str], name: str, units: dict[str, float]) -> str | None:
-    """The unit that a heading gives, None if it gives none."""
-    words = re.findall(r"[A-Za-zµ]*(?:rad/s|1/s|s\^-1|hz|pa)\b", name, re.IGNORECASE)
-    bracketed = re.findall(r"[\[(]([^\])]+)[\])]", name)
-    found = {word.strip().lower() for word in [*words, *bracketed]}
-    if len(found) > 1 or not found <= units.keys():
-        raise FileError(path, f"unit {', '.join(sorted(found))!r} of a column: must be one of {', '.join(units)}")
-    return found.pop() if found else None
+def _refuse_mixed(table: Table, record: DynamicModuli) -> None:
+    """Raise FileError for rows of one frequency, and for several sweeps without the temperature of each."""
+    omega, n = record.omega, record.omega.size
+    if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():
+        raise FileError(
+            table.path, f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is no frequency sweep"
+        )
+    if record.temperature is None and table.parts > 1:
+        raise FileError(table.path, f"has {table.parts} tables, and no column has their temperature: keep one of them")
+    if record.isothermal:
+        order = np.argsort(omega, kind="stable")
+        same = np.diff(omega[order]) <= _ONE_FREQUENCY * omega[order][1:]
+        jumps = np.abs(np.diff(np.log(np.abs(record.storage[order])))) > np.log(_REPEATED)
+        if (same & jumps).any():
+            line = table.lines[int(order[1:][np.argmax(same & jumps)])]
+            problem = f"line {line}: the same frequency has another modulus in a row before"
+            raise FileError(
+                table.path, f"{problem}: rows of several temperatures or strains need a column of temperature"
+            )

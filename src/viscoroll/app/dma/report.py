@@ -8,56 +8,100 @@ from typing import Any
 import numpy as np
 
 from ...core.results import Row
+from .shift import loose_pairs
 
 #: medians of the Kramers-Kronig ratio outside of which storage and loss are said not to go together
 _SOUND = (0.8, 1.25)
+#: Poisson's ratio of the factor that the report gives of shear: the default of material()
+_NU = 0.49
 
 
 def card(fit: Any) -> tuple[str, list[Row]]:
-    """What ``print(fit)`` shows, of a :class:`viscoroll.app.dma.Fit`."""
-    span = f"omega = {fit.omega[0]:.3g} to {fit.omega[-1]:.3g} rad/s"
-    return f"Prony series of {fit.prony.E.size} modes for {fit.omega.size} points, {span}", [*_rows(fit)]
+    """What ``print(fit)`` shows, of a :class:`viscoroll.app.dma.SeriesFit`."""
+    low, high = fit.band
+    of_time = fit.data._fields[0] == "t"
+    span = f"t = {1.0 / high:.3g} to {1.0 / low:.3g} s" if of_time else f"omega = {low:.3g} to {high:.3g} rad/s"
+    return f"Prony series of {fit.prony.E.size} modes for {fit.points} points, {span}", [*_rows(fit)]
 
 
 def _rows(fit: Any) -> Iterator[Row]:
-    prony, reached = fit.prony, "" if fit.reached else " and not reached"
+    prony, symbol = fit.prony, symbol_of(fit)
     floor = "" if fit.plateau else "; the least that is allowed: the data do not determine it"
-    yield Row("E", f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
+    yield Row(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
+    if fit.mode == "shear":
+        factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
+        yield Row("shear", f"the data are of shear: material(nu=) takes E = 2 (1 + nu) G, {factor}")
     yield Row("alpha", f"{prony.alpha:.6g} (instantaneous over long-time modulus)")
     yield Row("T_ref", f"{fit.T_ref:.6g} s (the longest time)")
-    misfit = f"{fit.misfit.storage:.2%} in E', {fit.misfit.loss:.2%} in E'' (rms, relative)"
-    yield Row("misfit", f"{misfit}; {fit.target:.2%} was asked for{reached}")
-    yield Row("E''", _together(fit.kramers_kronig.median))
+    if fit.temperature is not None:
+        yield Row("temperature", f"{fit.temperature:g} C, at which these times are")
+    if fit.points > fit.data[0].size:
+        yield Row("thinned", f"the means of {fit.data[0].size} logarithmic bins stand for the points here and below")
+    yield from fit._rows()
     yield Row("outside", _outside(fit))
-    if fit.shifts is not None:
-        held = zip(fit.shifts.temperature, fit.shifts.a_T, strict=True)
-        factors = ", ".join(f"{T:g} C {np.log10(a):+.3f}" for T, a in held)
-        yield Row("shifts", f"to {fit.shifts.reference:g} C, log10 a_T: {factors}")
-        if np.isfinite(fit.shifts.mismatch).any():
-            most = np.nanmax(fit.shifts.mismatch)
-            yield Row("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)")
     yield Row("wider", "with a grid of times wider on either side beside these, two a decade, none left out:")
     for other in fit.wider:
-        ratios = f"E times {other.E / fit.E:.4g}, alpha times {other.alpha / prony.alpha:.4g}"
+        ratios = f"{symbol} times {other.E / fit.E:.4g}, alpha times {other.alpha / prony.alpha:.4g}"
         change = f"M changes by up to {other.M_change:.2%} at speeds inside the data"
         yield Row("", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}")
-    yield Row("modes", "E_i/E      tau_i, s")
+    yield Row("modes", f"{symbol}_i/{symbol}      tau_i, s")
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
         yield Row("", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}")
 
 
-def _together(median: float) -> str:
+def symbol_of(fit: Any) -> str:
+    """E, or G where the data are of shear."""
+    return "G" if fit.mode == "shear" else "E"
+
+
+def of_dynamic(fit: Any) -> list[Row]:
+    """The lines on misfit, Kramers-Kronig and shifts, of a :class:`viscoroll.Fit`."""
+    symbol = symbol_of(fit)
+    misfit = f"{fit.misfit.storage:.2%} in {symbol}', {fit.misfit.loss:.2%} in {symbol}'' (rms, relative)"
+    rows = [Row("misfit", misfit + _asked(fit)), Row(f"{symbol}''", _together(fit.kramers_kronig.median, symbol))]
+    if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
+        return rows
+    factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
+    rows.append(Row("shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"))
+    if shifts.distinct > shifts.temperature.size:
+        text = f"{shifts.distinct} temperatures, within 0.5 K of one another, were taken for {shifts.temperature.size}"
+        rows.append(Row("", text))
+    if np.isfinite(shifts.mismatch).any():
+        most = np.nanmax(shifts.mismatch)
+        rows.append(Row("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"))
+    open_ones = (
+        f"the overlap does not fix the shift {pair}: the curves are flat there" for pair in loose_pairs(shifts)
+    )
+    return rows + [Row("", text) for text in open_ones]
+
+
+def of_relaxation(fit: Any) -> list[Row]:
+    """The lines on the misfit, of a :class:`viscoroll.RelaxationFit`."""
+    symbol = symbol_of(fit)
+    misfit = f"{fit.misfit:.2%} in {symbol}(t) (rms, relative){_asked(fit)}"
+    return [
+        Row("misfit", misfit),
+        Row("", f"{symbol}'' follows from the slope of {symbol}(t), with ten times this error or more"),
+    ]
+
+
+def _asked(fit: Any) -> str:
+    return f"; {fit.target:.2%} was asked for{'' if fit.reached else ' and not reached'}"
+
+
+def _together(median: float, symbol: str) -> str:
     """One sentence on storage and loss."""
     if np.isnan(median):
-        return "cannot be held against E': too few different frequencies (Kramers-Kronig)"
-    text = f"is {median:.2f} times what the slope of E' allows (Kramers-Kronig, median)"
+        return f"cannot be held against {symbol}': too few different frequencies (Kramers-Kronig)"
+    text = f"is {median:.2f} times what the slope of {symbol}' allows (Kramers-Kronig, median)"
     sound = _SOUND[0] <= median <= _SOUND[1]
     return text + ("" if sound else ": storage and loss do not go together, or the spectrum is of few narrow modes")
 
 
 def _outside(fit: Any) -> str:
+    range_of = "the data's range of times" if fit.data._fields[0] == "t" else "the data's range of 1/omega"
     if not (count := int(fit.outside.sum())):
-        return "no mode lies outside the data's range of 1/omega"
+        return f"no mode lies outside {range_of}"
     share = float(fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0))
     which = f"{count} of {fit.prony.E.size} modes, {share:.1%} of the sum of strengths"
-    return f"{which}, lie outside the data's range of 1/omega"
+    return f"{which}, lie outside {range_of}"

@@ -3,40 +3,53 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked, number
-from ...core.errors import ParameterError
+from ...core.checks import checked
+from ...core.errors import ModelWarning, ParameterError, outside
 from ...core.typed import Floats
-from .curve import Curve, curve_of
+from ...materials.shift import USUAL_RANGE, celsius, relative
+from .curve import Curve, curve_of, thinned
+from .sweeps import default_reference, listed_factors, nearest, points_of, sets_of
 
 #: points of both curves that must lie in the overlap, and share of the shorter range
 _POINTS, _SHARE = 3, 0.15
 #: step in ln a_T of the search, and the rms mismatch of ln E', ln E'' from which on curves do not overlap
-_STEP, _APART = 0.05, 0.3
+_STEP, _TOO_FAR = 0.05, 0.3
 #: mean square mismatch that stands for no overlap at all
 _NONE = 1e6
+#: rms mismatch by which two shifts count as equally good: the accuracy of usual DMA
+_AS_GOOD = 0.01
+#: decades over which all shifts are as good, from which on a plateau is said to leave the shift open: a factor of
+#: three either way
+LOOSE = 1.0
 
 
 class Shifts(NamedTuple):
     """Shift factors of the curves.
 
-    temperature : of each curve, ascending, degrees Celsius.
+    temperature : of each curve, ascending, degrees Celsius; the median of those of its points.
     a_T : times at this temperature over those at the reference.
-    reference : degrees Celsius.
+    reference : degrees Celsius; a_T is 1 there.
     mismatch : between each curve and its warmer neighbour, rms of the difference of ln E' and ln E''; NaN where
         they do not overlap or the factors were given.
+    freedom : between the same, decades over which the shift may be moved before the mismatch rises by 1 %: large where
+        the curves are flat (a plateau fixes no shift); NaN where the factors were given.
+    distinct : number of different temperatures that were given.
     """
 
     temperature: Floats
     a_T: Floats
     reference: float
     mismatch: Floats
+    freedom: Floats
+    distinct: int
 
 
 def master_curve(
@@ -46,81 +59,105 @@ def master_curve(
     temperature: ArrayLike,
     reference: float | None,
     shift: ArrayLike | Callable[[float], float] | None,
+    on: Literal["both", "storage"] = "both",
 ) -> tuple[Curve, Shifts]:
     """All points at the reference temperature, frequencies times a_T.
+
+    Parameters
+    ----------
+    omega, storage, loss : columns of one length, or lists of curves; rad/s, and one unit of moduli.
+    temperature : degrees Celsius, one of all points, one a point, or one a curve.
+    reference : degrees Celsius; default: where a given shift is 1, else the middle one of the curves.
+    shift : factors in the order of the curves, a function of the temperature, or None: by the overlap of neighbours.
+    on : the moduli by whose overlap shifts are found.
 
     Raises
     ------
     ParameterError
-        As for curves; a temperature for each point or curve is missing; the reference lies outside the
-        temperatures; neighbouring curves that do not overlap; shift factors that do not fit.
+        As for curves; a temperature for each point or curve is missing; temperatures that cannot be told apart; a
+        reference that the shift says nothing of; neighbouring curves that do not overlap; shift factors that do not
+        fit, or rise with the temperature.
+
+    Warns
+    -----
+    ModelWarning
+        Curves so flat that their overlap does not fix the shift; temperatures that look like kelvin.
     """
-    at, columns = _points(temperature, omega, storage, loss)
+    at, columns, first = points_of(temperature, omega, storage, loss)
     whole = [checked(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)]
-    temperatures, which = np.unique(at, return_inverse=True)
-    middle = float(temperatures[temperatures.size // 2])
-    base = middle if reference is None else number("reference", reference)
-    if not callable(shift) and not temperatures[0] <= base <= temperatures[-1]:
-        raise ParameterError("reference", base, f"within [{temperatures[0]:g}, {temperatures[-1]:g}]")
-    if shift is None:
-        parts = (Curve(*(column[at == T] for column in whole)) for T in temperatures)
-        curves = (curve_of(part.omega, part.storage, part.loss, fewest=2) for part in parts)
-        logs, mismatch = _by_overlap([_Smooth(curve) for curve in curves], temperatures)
-        factor = np.exp(logs - np.interp(base, temperatures, logs))
+    sets = sets_of(at, first)
+    temperatures = sets.temperature
+    celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
+    base = None if reference is None else celsius("reference", reference)
+    unknown = np.full(temperatures.size - 1, math.nan)
+    mismatch = freedom = unknown
+    if callable(shift):
+        base = default_reference(temperatures, [getattr(shift, "T0", math.nan)]) if base is None else base
+        factor = np.array([relative(shift, T, base) for T in temperatures.tolist()])
+    elif shift is not None:
+        factor, base = listed_factors(shift, sets, base)
     else:
-        values = [float(shift(T)) for T in temperatures.tolist()] if callable(shift) else shift
-        factor, mismatch = checked("shift", values, low=0.0, strict=True), np.full(temperatures.size - 1, math.nan)
-        if factor.shape != temperatures.shape:
-            allowed = f"a factor each of {temperatures.size} temperatures"
-            raise ParameterError("shift", f"of shape {factor.shape}", allowed)
-    return curve_of(whole[0] * factor[which], whole[1], whole[2]), Shifts(temperatures, factor, base, mismatch)
+        base = default_reference(temperatures, []) if base is None else base
+        nearest(base, temperatures, "reference")
+        parts = (Curve(*(column[sets.which == n] for column in whole)) for n in range(temperatures.size))
+        curves = (thinned(curve_of(*part, fewest=2)) for part in parts)
+        logs, mismatch, freedom = _by_overlap([_Smooth(curve, on) for curve in curves], temperatures)
+        factor = np.exp(logs - np.interp(base, temperatures, logs))
+    if shift is not None and factor[-1] > factor[0]:
+        ends = f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at {temperatures[-1]:g} C"
+        allowed = "a_T, times over those at the reference, which fall as it gets warmer, in the order of the curves"
+        raise ParameterError("shift", ends, allowed)
+    shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(at).size)
+    if loose := loose_pairs(shifts):
+        text = f"overlap does not fix the shift {'; '.join(loose)}: curves on a plateau; give shift="
+        warnings.warn(text + (', or try on="storage"' if on == "both" else ""), ModelWarning, stacklevel=outside())
+    return curve_of(whole[0] * factor[sets.which], whole[1], whole[2]), shifts
 
 
-def _points(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats]]:
-    """A temperature each point, and the columns; of lists of curves as well."""
-    given = checked("temperature", temperature)
-    if given.ndim != 1:
-        raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one a curve")
-    if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
-        sizes, *others = ([np.size(curve) for curve in column] for column in columns)
-        if others != [sizes, sizes] or len(sizes) != given.size:
-            found = f"{given.size} temperatures"
-            raise ParameterError("temperature", found, f"one a curve, here {len(sizes)} curves")
-        return np.repeat(given, sizes), [np.concatenate(column) for column in columns]
-    flat = [np.asarray(column) for column in columns]
-    for name, column in zip(Curve._fields, flat, strict=True):
-        if column.shape != given.shape:
-            raise ParameterError(name, f"of shape {column.shape}", f"one a temperature, of shape {given.shape}")
-    return given, flat
+def loose_pairs(shifts: Shifts) -> list[str]:
+    """For each pair of neighbours whose shift their overlap leaves open, both temperatures and how far, in words."""
+    pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
+    return [f"from {cold:g} to {warm:g} C (within {free:.1f} decades)" for (cold, warm), free in pairs if free > LOOSE]
 
 
-def _by_overlap(curves: list[_Smooth], temperatures: Floats) -> tuple[Floats, Floats]:
-    """ln a_T from the coldest on, and the mismatch of neighbours."""
+def _by_overlap(curves: list[_Smooth], temperatures: Floats) -> tuple[Floats, Floats, Floats]:
+    """ln a_T from the coldest on; of neighbours the mismatch and the decades of freedom."""
     found = [_aligned(*both) for both in pairwise(curves)]
-    for (_, error), pair in zip(found, pairwise(temperatures), strict=True):
-        if not error <= _APART:
+    for one, pair in zip(found, pairwise(temperatures), strict=True):
+        if not one.mismatch <= _TOO_FAR:
             allowed = "those of neighbouring curves that overlap when shifted"
             raise ParameterError("temperature", "{:g} and {:g}".format(*pair), allowed)
-    steps, mismatch = np.reshape(found, (-1, 2)).T
-    return np.append(0.0, np.cumsum(steps)), mismatch
+    steps, mismatch, freedom = np.reshape(found, (-1, 3)).T
+    return np.append(0.0, np.cumsum(steps)), mismatch, freedom
 
 
 class _Smooth:
-    """ln E' and ln E'' over ln omega: the points, repeated frequencies averaged, and an interpolant."""
+    """ln E' and, unless ``on`` is "storage", ln E'' over ln omega: the points, repeated frequencies averaged, and an
+    interpolant.
+    """
 
-    def __init__(self, curve: Curve) -> None:
+    def __init__(self, curve: Curve, on: str) -> None:
         from scipy.interpolate import CubicSpline, PchipInterpolator
 
         self.x, which = np.unique(np.log(curve.omega), return_inverse=True)
         count = np.bincount(which)
-        self.y = np.stack([np.bincount(which, np.log(column)) / count for column in curve[1:]], axis=1)
+        columns = curve[1:2] if on == "storage" else curve[1:]
+        self.y = np.stack([np.bincount(which, np.log(column)) / count for column in columns], axis=1)
         if self.x.size < 2:
             raise ParameterError("omega", f"{self.x.size} frequency at a temperature", "at least 2 at each")
         self.at = CubicSpline(self.x, self.y) if self.x.size > 3 else PchipInterpolator(self.x, self.y)
 
 
-def _aligned(cold: _Smooth, warm: _Smooth) -> tuple[float, float]:
-    """The shift of ln omega that lays the warm curve on the cold one, and the rms mismatch then."""
+class _Aligned(NamedTuple):
+    """The shift of ln omega that lays the warm curve on the cold one, the rms mismatch then, and decades of freedom."""
+
+    step: float
+    mismatch: float
+    freedom: float
+
+
+def _aligned(cold: _Smooth, warm: _Smooth) -> _Aligned:
+    """By a search over all shifts that leave an overlap; NaN where there is none."""
     from scipy.optimize import minimize_scalar
 
     low, high = cold.x[0] - warm.x[-1], cold.x[-1] - warm.x[0]
@@ -128,11 +165,14 @@ def _aligned(cold: _Smooth, warm: _Smooth) -> tuple[float, float]:
     errors = np.array([_mismatch(step, cold, warm) for step in steps])
     best = int(np.argmin(errors))
     if errors[best] >= _NONE:
-        return math.nan, math.nan
+        return _Aligned(math.nan, math.nan, math.nan)
     around = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
     done = minimize_scalar(_mismatch, bounds=around, args=(cold, warm), method="bounded", options={"xatol": 1e-9})
     error, step = min((done.fun, done.x), (errors[best], steps[best]))
-    return float(step), math.sqrt(error)
+    worse = np.flatnonzero(np.sqrt(errors) > math.sqrt(error) + _AS_GOOD)
+    before, behind = worse[worse < best], worse[worse > best]
+    ends = before[-1] if before.size else 0, behind[0] if behind.size else steps.size - 1
+    return _Aligned(float(step), math.sqrt(error), (steps[ends[1]] - steps[ends[0]]) / math.log(10.0))
 
 
 def _mismatch(step: float, cold: _Smooth, warm: _Smooth) -> float:

@@ -1,8 +1,8 @@
-"""Least squares of a master curve by a discrete spectrum: strengths on given times, and times that move.
+"""Least squares of measured moduli by a discrete spectrum: strengths on given times, and times that move.
 
-The residuals are the relative errors of E' and of E'', all points alike.  On given times the strengths are those of
-non-negative least squares (as in M. Baumgaertel and H. H. Winter, Rheologica Acta 28, 511-519, 1989,
-doi:10.1007/BF01332922, few modes do once their times are free to move).
+The residuals are the relative errors of every measured modulus (E' and E'', or E(t)), all points alike.  On given times
+the strengths are those of non-negative least squares (as in M. Baumgaertel and H. H. Winter, Rheologica Acta 28,
+511-519, 1989, doi:10.1007/BF01332922, few modes do once their times are free to move).
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.typed import Floats
-from .curve import Curve
+from .curve import Curve, Relaxation
 
 #: modes whose part of the curve is smaller, relative to it, are left out
 _NOTHING = 1e-12
-#: the long-time modulus is at least this share of the lowest storage modulus
+#: the long-time modulus is at least this share of the lowest storage or relaxation modulus
 FLOOR = 0.01
+
+Data = Curve | Relaxation
 
 
 class Spectrum(NamedTuple):
@@ -27,45 +29,39 @@ class Spectrum(NamedTuple):
     strength: Floats
     tau: Floats
 
-    def modulus(self, omega: Floats) -> tuple[Floats, Floats]:
-        """Storage and loss modulus."""
-        storage, loss = responses(omega, self.tau)
-        return self.E + storage @ self.strength, loss @ self.strength
+    def modulus(self, data: Data) -> Floats:
+        """The moduli at the places of the data, shape of ``data.values``."""
+        return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
 
 
-def responses(omega: Floats, tau: Floats) -> tuple[Floats, Floats]:
-    """Storage and loss modulus of modes of strength 1, a column each: z^2/(1 + z^2), z/(1 + z^2), z = omega tau."""
-    z = omega[:, None] * tau
-    loss = 1.0 / (z + 1.0 / z)
-    return z * loss, loss
+def _relative(data: Data, constant: float, modes: Floats) -> Floats:
+    """Columns of a constant and of modes over the data: shape (rows n, 1 + modes).
+
+    modes : what they add to each row, shape (rows, n, modes).
+    """
+    found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
+    found[..., 0], found[..., 1:] = np.multiply(constant, data.constant)[:, None], modes
+    found /= data.values[..., None]
+    return found.reshape(-1, found.shape[2])
 
 
-def _relative(curve: Curve, constant: float, storage: Floats, loss: Floats) -> Floats:
-    """Columns of a constant and of modes: parts of E' and, below, of E'', over those of the curve."""
-    found = np.zeros((2, curve.omega.size, 1 + storage.shape[1]))
-    found[0, :, 0], found[0, :, 1:], found[1, :, 1:] = constant, storage, loss
-    found /= np.array(curve[1:])[..., None]
-    return found.reshape(2 * curve.omega.size, -1)
-
-
-def _residuals(curve: Curve, values: Floats) -> Floats:
-    """Relative errors of E' and, behind them, of E'', by long-time modulus, strengths and times."""
+def _residuals(data: Data, values: Floats) -> Floats:
+    """Relative errors, row behind row, by long-time modulus, strengths and times."""
     count = values.size // 2
-    return _relative(curve, 1.0, *responses(curve.omega, values[1 + count :])) @ values[: 1 + count] - 1.0
+    return _relative(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
 
 
-def misfits(curve: Curve, spectrum: Spectrum) -> tuple[float, float]:
-    """Root mean square of the relative error of E' and of E''."""
-    errors = _residuals(curve, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(2, -1)
-    storage, loss = np.sqrt(np.mean(errors * errors, axis=1)).tolist()
-    return storage, loss
+def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
+    """Root mean square of the relative error of each row."""
+    errors = _residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(len(data.constant), -1)
+    return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
 
 
-def on_times(curve: Curve, tau: Floats) -> Spectrum:
+def on_times(data: Data, tau: Floats) -> Spectrum:
     """The least squares with non-negative strengths on given times; modes without strength are left out."""
     from scipy.optimize import nnls
 
-    columns, floor = _relative(curve, 1.0, *responses(curve.omega, tau)), _floor(curve)
+    columns, floor = _relative(data, 1.0, data.responses(tau)), _floor(data)
     size = np.sqrt((columns * columns).sum(axis=0))
     found, _ = nnls(columns / size, 1.0 - floor * columns[:, 0], maxiter=100 * size.size)
     order = np.argsort(-tau, kind="stable")
@@ -74,21 +70,21 @@ def on_times(curve: Curve, tau: Floats) -> Spectrum:
     return Spectrum(floor + float(found[0]), found[1:][order], tau[order])
 
 
-def has_plateau(curve: Curve, spectrum: Spectrum) -> bool:
+def has_plateau(data: Data, spectrum: Spectrum) -> bool:
     """Whether the curve asks for a long-time modulus by itself."""
-    return spectrum.E > 1.0001 * _floor(curve)
+    return spectrum.E > 1.0001 * _floor(data)
 
 
-def polished(curve: Curve, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
+def polished(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
     """The spectrum with its times moved too, between ``ends``, in at most so many calls of the residuals."""
     count = spectrum.tau.size
     if not count:
         return spectrum
     start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
     low, high = start - _RANGE, start + _RANGE
-    low[0], high[0] = np.log(_floor(curve)), np.inf
+    low[0], high[0] = np.log(_floor(data)), np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
-    return on_times(curve, np.exp(_descended(curve, start, low, high, calls)[1 + count :]))
+    return on_times(data, np.exp(_descended(data, start, low, high, calls)[1 + count :]))
 
 
 #: a strength may change by a factor of exp(_RANGE); and where the iteration stops
@@ -99,14 +95,14 @@ _DAMPING, _LEAST_DAMPING = 1e-3, 1e-12
 _ALONE = 1 << 17
 
 
-def _descended(curve: Curve, logs: Floats, low: Floats, high: Floats, calls: int) -> Floats:
+def _descended(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -> Floats:
     """Levenberg's and Marquardt's iteration between bounds.
 
     On the normal equations: a SVD of some hundred rows takes ten times as long on several threads as on one, and the
     MINPACK of SciPy 1.17 gives other last digits from call to call.
     """
     logs = np.clip(logs, low, high)
-    errors, slopes = _residuals(curve, np.exp(logs)), _slopes(logs, curve)
+    errors, slopes = _residuals(data, np.exp(logs)), _slopes(logs, data)
     damping = _DAMPING
     for _ in range(calls - 1):
         downhill = -(slopes.T @ errors)
@@ -116,11 +112,11 @@ def _descended(curve: Curve, logs: Floats, low: Floats, high: Floats, calls: int
         way = np.zeros_like(logs)
         way[free] = np.linalg.solve(normal, downhill[free])
         way = np.clip(logs + way, low, high) - logs
-        found = _residuals(curve, np.exp(logs + way))
+        found = _residuals(data, np.exp(logs + way))
         before, gain = errors @ errors, errors @ errors - found @ found
         if gain > 0.0:
             damping, logs = max(damping / 3.0, _LEAST_DAMPING), logs + way
-            errors, slopes = found, _slopes(logs, curve)
+            errors, slopes = found, _slopes(logs, data)
         else:
             damping *= 4.0
         if abs(gain) <= _STILL * before:
@@ -135,15 +131,15 @@ def _squared(slopes: Floats) -> Floats:
     return sum((part.T @ part for part in parts), np.zeros(2 * (slopes.shape[1],)))
 
 
-def _slopes(logs: Floats, curve: Curve) -> Floats:
+def _slopes(logs: Floats, data: Data) -> Floats:
     """Of the residuals over the logarithms of long-time modulus, strengths and times."""
     values, count = np.exp(logs), logs.size // 2
-    strength = values[1 : 1 + count]
-    storage, loss = responses(curve.omega, values[1 + count :])
-    of_times = 2.0 * loss * loss * strength, loss * (1.0 - 2.0 * storage) * strength
-    upper, lower = (np.hstack([each * strength, by]) for each, by in zip((storage, loss), of_times, strict=True))
-    return _relative(curve, values[0], upper, lower)
+    strength, tau = values[1 : 1 + count], values[1 + count :]
+    responses = data.responses(tau)
+    by_times = data.slopes(tau, responses) * strength
+    return _relative(data, values[0], np.concatenate([responses * strength, by_times], axis=2))
 
 
-def _floor(curve: Curve) -> float:
-    return FLOOR * float(curve.storage.min())
+def _floor(data: Data) -> float:
+    """The least long-time modulus that is allowed: a share of the lowest modulus of the row that it adds to."""
+    return FLOOR * float(data.values[0].min())

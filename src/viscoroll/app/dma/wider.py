@@ -13,8 +13,7 @@ from ...core.typed import Floats
 from ...materials.prony import Prony
 from ...scene import Scene
 from .choose import grid_of_times
-from .curve import Curve
-from .spectrum import on_times
+from .spectrum import Data, on_times
 
 #: times and speeds, a decade
 _TIMES, _SPEEDS = 2.0, 4
@@ -44,27 +43,27 @@ class Wider:
         return float(np.abs(self.M / self.M_fit - 1.0).max()) if self.V.size else float("nan")
 
 
-def wider(curve: Curve, prony: Prony, E: float, T_ref: float, grid: tuple[float, float], decades: float) -> Wider:
+def wider(data: Data, prony: Prony, E: float, T_ref: float, grid: tuple[float, float], decades: float) -> Wider:
     """Strengths on the times of the fit and on a grid that many decades wider on either side, none left out.
 
     With as few modes as possible those outside the data would be the first to go, though the data allow them.
     """
     reach = 10.0**decades
-    times = grid_of_times((grid[0] / reach, grid[1] * reach), _TIMES)
-    found = on_times(curve, np.concatenate([times, prony.tau * T_ref]))
+    times = grid_of_times((max(grid[0] / reach, data.shortest), grid[1] * reach), _TIMES)
+    found = on_times(data, np.concatenate([times, prony.tau * T_ref]))
     other = Prony(found.strength / found.E, found.tau / T_ref)
-    V, M_fit = _seen(prony, curve.omega * T_ref)
+    V, M_fit = _seen(prony, *(rate * T_ref for rate in data.band))
     M = _state(other, float(np.sqrt(found.E / E)), V).M
     return Wider(decades, found.E, other.alpha, other, V, M, M_fit)
 
 
-def _seen(prony: Prony, omega: Floats) -> tuple[Floats, Floats]:
-    """kappa V and kappa M where the contact is passed, lam l0/V, in a time between 1/omega of both ends."""
-    low, high = np.log10(omega[0] / np.sqrt(prony.alpha)), np.log10(omega[-1])
+def _seen(prony: Prony, slow: float, fast: float) -> tuple[Floats, Floats]:
+    """kappa V and kappa M where the contact is passed, V/(lam l0), at a rate between two, over T_ref."""
+    low, high = np.log10(slow / np.sqrt(prony.alpha)), np.log10(fast)
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))
     state = _state(prony, 1.0, V)
     passed = passage(V, state.lam)
-    held = (passed >= omega[0]) & (passed <= omega[-1])
+    held = (passed >= slow) & (passed <= fast)
     return V[held], state.M[held]
 
 

@@ -8,11 +8,18 @@ from ... import __version__
 from ...core.scale import powers
 from .variables import MODELS, UNITS, Model, Variable
 
-#: what a model can do: attributes of ModelExchange and CoSimulation of both, and of either version
-_DERIVATIVES = {
-    2: {"providesDirectionalDerivative": "true"},
-    3: {"providesDirectionalDerivatives": "true", "providesAdjointDerivatives": "true"},
-}
+#: what both models can do, in either version: attributes of ModelExchange and CoSimulation
+_ABILITIES = {
+    2: {
+        "providesDirectionalDerivative": "true", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
+    },
+    3: {
+        "providesDirectionalDerivatives": "true", "providesAdjointDerivatives": "true",
+        "canGetAndSetFMUState": "true", "canSerializeFMUState": "true",
+    },
+}  # fmt: skip
+#: relative tolerance that a tool's solver takes where its user gives none
+_TOLERANCE = "1e-5"
 
 
 def described(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
@@ -31,7 +38,7 @@ def described(version: int, name: str, starts: dict[str, float], token: str, tit
     for unit, base in UNITS.items():
         one = SubElement(units, "Unit", name=unit)
         SubElement(one, "BaseUnit", {each: str(power) for each, power in powers(base).items()})
-    SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", stepSize="0.01")
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", tolerance=_TOLERANCE, stepSize="0.01")
     variables = SubElement(root, "ModelVariables")
     references = {each.name: str(n) for n, each in enumerate(model.variables, start=1)}
     if version == 3:
@@ -54,7 +61,7 @@ def _add_kinds(root: Element, version: int, name: str, model: Model) -> None:
     if model.states:
         kinds["CoSimulation"] = {"canHandleVariableCommunicationStepSize": "true"}
     for kind, can in kinds.items():
-        one = SubElement(root, kind, {"modelIdentifier": name} | _DERIVATIVES[version] | can)
+        one = SubElement(root, kind, {"modelIdentifier": name} | _ABILITIES[version] | can)
         if version == 2:
             SubElement(SubElement(one, "SourceFiles"), "File", name="fmu.c")
 

@@ -1,10 +1,9 @@
-/* A cylinder by the table of its contact law, as an FMU.  model.h, which build.py writes,
-    says of which model and version.
+/* A cylinder by the table of its contact law, as an FMU.  model.h, which build.py writes, says of which model and
+ * version.
  *
  * ContactElement: v, omega, load -> force, torque, moments.  No states: for model exchange, with all slopes.
- * Roller: drive force and torque -> v, omega, x.  States v, slip,
-     x for model exchange; for co-simulation it takes its own
- * steps (vr_roll.h), so no communication step is too long.
+ * Roller: drive force and torque -> v, omega, x.  States v, slip, x for model exchange; for co-simulation it takes its
+ * own steps (vr_roll.h), so no communication step is too long.
  */
 #include <math.h>
 #include <stdio.h>
@@ -32,7 +31,7 @@ enum { STATES = 0, FIRST_STATE = 0, FIRST_RATE = 0 };
 typedef struct {
   double x[COUNT], d[4][3]; /* slopes of the rates, or of force, torque and moments */
   double step;              /* for vr_roll to try next */
-  int stale;
+  int exchange, stale;      /* whether the tool integrates; whether x has changed since d and the outputs were found */
   char name[128];
   void *environment;
   logger log;
@@ -40,11 +39,11 @@ typedef struct {
 
 static void reset(instance *m) { memcpy(m->x, START, sizeof START), m->step = 0.0, m->stale = 1; }
 
-static instance *create(const char *name, const char *token, void *environment, logger log) {
+static instance *create(const char *name, const char *token, void *environment, logger log, int exchange) {
   instance *m = strcmp(token, TOKEN) ? NULL : (instance *)calloc(1, sizeof *m);
   if (!m) return NULL;
   snprintf(m->name, sizeof m->name, "%s", name ? name : "");
-  m->environment = environment, m->log = log;
+  m->environment = environment, m->log = log, m->exchange = exchange;
   reset(m);
   return m;
 }
@@ -65,6 +64,8 @@ static int in_range(const instance *m) {
     if (KINDS[n] && !isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
     if (KINDS[n] == 2 && !(m->x[n] > 0.0)) return refuse(m, NAMES[n], m->x[n], "> 0");
   }
+  for (int n = FIRST_STATE; n < FIRST_STATE + STATES; n++)
+    if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
   return OK;
 }
 
@@ -72,12 +73,12 @@ static int in_range(const instance *m) {
 static double kappa_of(const double *x) { return sqrt(x[n_E_prime] * x[n_R] * x[n_width] / (32.0 * x[n_load])); }
 
 #if ROLLER
-static vr_roller roller(const instance *m) { /* dimensionless; its time is T_ref */
-  const double *x = m->x, P = x[n_load], T = x[n_T_ref], R = x[n_R], unit = T / R, rest = x[n_v_min] * unit;
+/* dimensionless; its time is T_ref */
+static vr_roller roller(const instance *m) {
+  const double *x = m->x, P = x[n_load], T = x[n_T_ref], R = x[n_R], unit = T / R;
+  double rest = x[m->exchange ? n_v_smooth : n_v_min] * unit;
   vr_roller r = {&law, kappa_of(x), x[n_mu], P * T * T / (x[n_mass] * R), x[n_inertia], x[n_drive_force] / P,
                  x[n_drive_torque] / (P * R), rest, x[n_v] * unit, x[n_slip] * unit, x[n_x] / R, m->step, 0, 0};
-  /* the law has no slopes at rest: a start as good as rest */
-  if (r.V == 0.0 && r.slip == 0.0) r.V = copysign(1e-6 * rest, r.force + r.torque);
   return r;
 }
 
@@ -86,7 +87,9 @@ static int evaluate(instance *m) {
   vr_roller r = roller(m);
   const double y[2] = {r.V, r.slip}, J_axis = x[n_inertia] * x[n_mass] * R * R;
   vr_rates(&r, y, f, J);
-  vr_state s = vr_contact(&law, r.kappa, r.mu, r.V, r.slip);
+  vr_state s;
+  vr_slopes d;
+  vr_contact_near_rest(&law, r.kappa, r.mu, r.V, r.slip, r.rest, &s, &d);
   x[n_der_v] = f[0] * R * per * per, x[n_der_slip] = f[1] * R * per * per, x[n_der_x] = x[n_v];
   x[n_omega] = (x[n_v] + x[n_slip]) / R, x[n_traction] = s.Q * P, x[n_rolling_moment] = s.M * P * R;
   x[n_stick_share] = s.beta;
@@ -119,14 +122,21 @@ static int advance(instance *m, double h) {
   if (in_range(m)) return ERROR;
   double *x = m->x, unit = x[n_R] / x[n_T_ref];
   vr_roller r = roller(m);
-  if (vr_roll(&r, h / x[n_T_ref], x[n_rtol])) return refuse(m, "rtol", x[n_rtol], "larger: its steps fell to rounding");
+  if (x[n_rtol] >= 1.0) return refuse(m, "rtol", x[n_rtol], "below 1");
+  switch (vr_roll(&r, h / x[n_T_ref], x[n_rtol])) {
+  case VR_STUCK: return refuse(m, "rtol", x[n_rtol], "larger: its steps fell to rounding");
+  case VR_REFUSED: return refuse(m, "communicationStepSize", h, "such that the motion stays in the range of doubles");
+  }
   x[n_v] = r.V * unit, x[n_slip] = r.slip * unit, x[n_x] = r.x * x[n_R], m->step = r.step, m->stale = 1;
   return OK;
 }
 
+/* What the tool's tolerances count by: of v the speed at the start, or that of which friction takes the energy on a
+ * radius of way; of the slip the creep of full slip at v_smooth, below which creep does not count from v. */
 static double nominal(const instance *m, size_t state) {
-  const double *x = m->x, speed = fmax(fmax(fabs(x[n_v0]), fabs(x[n_omega0] * x[n_R])), x[n_v_min]);
-  return state == 0 ? speed : state == 1 ? 1e-3 * speed : x[n_R];
+  const double *x = m->x, own = sqrt(x[n_mu] * x[n_load] * x[n_R] / x[n_mass]);
+  if (state == 0) return fmax(fmax(fabs(x[n_v0]), fabs(x[n_omega0] * x[n_R])), own);
+  return state == 1 ? 0.5 * x[n_mu] / kappa_of(x) * x[n_v_smooth] : x[n_R];
 }
 #else
 /* Below v_min the law is that at v_min with the slip kept, and its moments in proportion: finite slopes,
@@ -203,7 +213,7 @@ static int slopes(instance *m, const unsigned u[], size_t nu, const unsigned k[]
   for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nk; j++) {
       double d = slope(m, u[i], k[j]);
-      if (!isfinite(d)) return refuse(m, "slope", d, "of a rate or output by a state or input, at v other than 0");
+      if (!isfinite(d)) return refuse(m, "slope", d, "of a rate or output by a state or input");
       s[adjoint ? j : i] += d * seed[adjoint ? i : j];
     }
   return OK;
@@ -221,19 +231,61 @@ static int nominals(const instance *m, double y[], size_t n) {
   return OK;
 }
 static int at(instance *m, double t) { return m->x[n_time] = t, OK; }
-static int step(instance *m, double t, double h) { return advance(m, h) ? ERROR : at(m, t + h); }
+/* A step from t, which is the end of the last one but for rounding: a part of the step, and of the time, is that. */
+static int step(instance *m, double t, double h) {
+  const double now = m->x[n_time], part = 1e-3 * h + 1e-9 * fmax(fabs(t), fabs(now));
+  char text[80];
+  if (!(h >= 0.0 && h < HUGE_VAL)) return refuse(m, "communicationStepSize", h, "finite and >= 0");
+  snprintf(text, sizeof text, "%g, the end of the last step", now);
+  if (!(fabs(t - now) <= part)) return refuse(m, "currentCommunicationPoint", t, text);
+  return advance(m, h) ? ERROR : at(m, t + h);
+}
+
+/* The state of an instance, which is all that its future depends on: time, parameters, inputs, states and the step to
+ * try.  token: of the FMU, for its variables are those of no other. */
+typedef struct {
+  char token[64];
+  double x[COUNT], step;
+} snapshot;
+
+static int save(instance *m, void **state) {
+  snapshot *s = *state ? (snapshot *)*state : (snapshot *)calloc(1, sizeof *s);
+  if (!s) return refuse(m, "memory for a state, in bytes", sizeof *s, "there");
+  snprintf(s->token, sizeof s->token, "%s", TOKEN);
+  memcpy(s->x, m->x, sizeof s->x), s->step = m->step, *state = s;
+  return OK;
+}
+static int restore(instance *m, const void *state) {
+  if (!state) return refuse(m, "FMU state", 0.0, "one that was taken or deserialized");
+  memcpy(m->x, ((const snapshot *)state)->x, sizeof m->x), m->step = ((const snapshot *)state)->step, m->stale = 1;
+  return OK;
+}
+static int release(void **state) {
+  if (state) free(*state), *state = NULL;
+  return OK;
+}
+static int serialize(instance *m, const void *state, char bytes[], size_t size) {
+  if (!state || size < sizeof(snapshot)) return refuse(m, "bytes of a state", size, "as many as the size function says");
+  return memcpy(bytes, state, sizeof(snapshot)), OK;
+}
+static int deserialize(instance *m, const char bytes[], size_t size, void **state) {
+  if (size != sizeof(snapshot) || strncmp(bytes, TOKEN, sizeof((snapshot *)0)->token))
+    return refuse(m, "bytes of a state", size, "those that this FMU has serialized");
+  snapshot *s = (snapshot *)malloc(sizeof *s);
+  if (!s) return refuse(m, "memory for a state, in bytes", size, "there");
+  return memcpy(s, bytes, sizeof *s), *state = s, OK;
+}
 
 #include "stubs.h" /* all other functions of the standard */
 #if FMI_VERSION == 3
 typedef fmi3ValueReference ref;
 const char *fmi3GetVersion(void) { return "3.0"; }
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String path, fmi3Boolean visible,
-    fmi3Boolean on, fmi3InstanceEnvironment e, fmi3LogMessageCallback log) { return create(name, token, e, log); }
+    fmi3Boolean on, fmi3InstanceEnvironment e, fmi3LogMessageCallback log) { return create(name, token, e, log, 1); }
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String path, fmi3Boolean visible,
     fmi3Boolean on, fmi3Boolean events, fmi3Boolean early, const ref r[], size_t n, fmi3InstanceEnvironment e,
     fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update) {
-  return (void)update,
-      ROLLER ? create(name, token, e, log) : NULL;
+  return (void)update, ROLLER ? create(name, token, e, log, 0) : NULL;
 }
 void fmi3FreeInstance(fmi3Instance c) { free(c); }
 fmi3Status fmi3Reset(fmi3Instance c) { return reset(c), fmi3OK; }
@@ -270,7 +322,18 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean no_state, fmi
 }
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean no_state, fmi3Boolean *event,
     fmi3Boolean *ends, fmi3Boolean *early, fmi3Float64 *last) {
-  return *event = *ends = *early = 0, *last = t + h, step(c, t, h);
+  int status = step(c, t, h);
+  return *event = *ends = *early = 0, *last = ((instance *)c)->x[n_time], status;
+}
+fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *s) { return save(c, s); }
+fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState s) { return restore(c, s); }
+fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *s) { return release(s); }
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState s, size_t *n) { return *n = sizeof(snapshot), fmi3OK; }
+fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState s, fmi3Byte bytes[], size_t n) {
+  return serialize(c, s, (char *)bytes, n);
+}
+fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t n, fmi3FMUState *s) {
+  return deserialize(c, (const char *)bytes, n, s);
 }
 #else
 typedef fmi2ValueReference ref;
@@ -279,7 +342,7 @@ const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, fmi2String path,
     const fmi2CallbackFunctions *f, fmi2Boolean visible, fmi2Boolean on) {
   if (!ROLLER && type == fmi2CoSimulation) return NULL;
-  return create(name, token, f ? f->componentEnvironment : NULL, f ? f->logger : NULL);
+  return create(name, token, f ? f->componentEnvironment : NULL, f ? f->logger : NULL, type == fmi2ModelExchange);
 }
 void fmi2FreeInstance(fmi2Component c) { free(c); }
 fmi2Status fmi2Reset(fmi2Component c) { return reset(c), fmi2OK; }
@@ -300,4 +363,14 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_state, fm
   return *event = *ends = 0, fmi2OK;
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_state) { return step(c, t, h); }
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *s) { return save(c, s); }
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate s) { return restore(c, s); }
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *s) { return release(s); }
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate s, size_t *n) { return *n = sizeof(snapshot), fmi2OK; }
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate s, fmi2Byte bytes[], size_t n) {
+  return serialize(c, s, bytes, n);
+}
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t n, fmi2FMUstate *s) {
+  return deserialize(c, bytes, n, s);
+}
 #endif

@@ -63,11 +63,19 @@ ROLLER = Model(
         _set("drive_torque", "N.m", "about the axis, along omega", 0.0, "input"),
         _set("load", "N", _LOAD_TEXT, _LOAD),
         *_BODY,
-        _set("v_min", "m/s", "below this speed errors count as at it; a thousandth of it is rest", 1e-6),
+        _set(
+            "v_min",
+            "m/s",
+            "co-simulation: below it creep counts from it and errors as at it; a thousandth is rest",
+            1e-6,
+        ),
+        _set(
+            "v_smooth", "m/s", "model exchange: below it creep counts from it, so that solvers pass through rest", 1e-3
+        ),
         _set("mass", "kg", "of the cylinder", 35.0),
         _set("inertia", "1", "j, moment of inertia over m R^2", 0.5),
         _set("rtol", "1", "tolerance of its own steps in co-simulation", 1e-8),
-        Variable("v0", "parameter", "m/s", "speed at the start", 1.0),
+        Variable("v0", "parameter", "m/s", "speed at the start", 0.0),
         Variable("omega0", "parameter", "rad/s", "angular velocity at the start", 0.0),
         Variable("v", "output", "m/s", "speed of the axis"),
         Variable("slip", "output", "m/s", "omega R - v"),

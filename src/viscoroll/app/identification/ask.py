@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from ...core.checks import whole
+from ...core.checks import whole, yes_or_no
 from ...core.errors import ParameterError, refuse_unknown
 from ...core.typed import Floats
 from ...cylinder import Cylinder
@@ -78,13 +78,13 @@ def identify(
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
-    problem = Problem(cylinder, unknowns, records, bool(robust), shifts)
+    problem = Problem(cylinder, unknowns, records, yes_or_no("robust", robust), shifts)
     most = problem.points - any(one.estimated for one in problem.columns)
     if len(unknowns) > most:
         allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
         raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
     planned = not any(record.measured for record in records.values())
-    return Identification(problem, _minima(problem, 1 if planned else count, seed, progress))
+    return Identification(problem, _minima(problem, 1 if planned else count, seed, yes_or_no("progress", progress)))
 
 
 def _called(data: Iterable[Record]) -> dict[str, Record]:

@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import re
+import warnings
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import msgspec
-import numpy as np
 
-from ...core.errors import FileError, ParameterError
-from ...core.scale import refuse_other_unit
-from ...core.sections import as_struct, fault, hint, read, refuse_unknown
+from ...core.errors import FileError, ModelWarning, ParameterError, outside
+from ...core.sections import as_struct, fault, read, refuse_unknown
 from ...cylinder import Cylinder
 from ...io.config import read_body
+from ...io.measurements import find, is_heading, missing, quantity, read_table
 from ...materials.file import shifts_of
 from .records import Coastdown, Record, Resistance, Traction
 
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}
 _KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}
 #: keys of [[data]] beside those that its kind of record has
-_SECTION: list[Any] = [("kind", str), ("file", str), ("columns", dict[str, str], msgspec.field(default_factory=dict))]
+_SECTION: list[Any] = [
+    ("kind", str), ("file", str), ("decimal", str, ""), ("encoding", str, ""),
+    *((name, dict[str, str], msgspec.field(default_factory=dict)) for name in ("columns", "units")),
+]  # fmt: skip
 #: in place of a start speed, what Python gives None for
 _UNKNOWN = "unknown"
-_HEADING = re.compile(r"(.*?)\s*(?:[\[(](.*)[\])])?$")
 
 
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
@@ -57,33 +58,54 @@ def _record(path: Path, given: Any) -> Record:
     columns = (*kind.PLACES, *kind.KINDS)
     own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
     section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
-    refuse_unknown(path, "data.columns", section.columns, columns)
+    for name in ("columns", "units"):
+        refuse_unknown(path, f"data.{name}", getattr(section, name), columns)
     values = {name: getattr(section, name) for name, *_ in own}
     more: Any = {name: None if value == _UNKNOWN else value for name, value in values.items()}
     try:
-        return kind(**more, **_columns(path.parent / section.file, kind, section.columns))
+        return kind(**more, **_columns(path.parent / section.file, kind, section))
     except ParameterError as error:
         raise FileError(path, f"[[data]] {section.file}: {error}") from error
 
 
-def _columns(path: Path, kind: type[Record], called: dict[str, str]) -> dict[str, Any]:
-    """Places and quantities of a CSV file, by the names given to its columns, or their own."""
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-        head, *rows = [line for line in lines if line.strip() and not line.startswith("#")] or [""]
-    except (OSError, ValueError) as error:
-        raise FileError(path, f"cannot be read ({error})") from error
-    names, units = zip(*(_HEADING.findall(cell.strip())[0] for cell in next(csv.reader([head]))), strict=True)
+def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
+    """Places and quantities of a file of data, in SI units, by the names given to its columns, or their own.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read; a column that is missing, or of a unit of another dimension; columns that are not
+        understood where nothing measured is.
+
+    Warns
+    -----
+    ModelWarning
+        Columns that are left aside.
+    """
+    among = (*kind.PLACES, *kind.KINDS)
+    called = {name: section.columns.get(name, name) for name in among}
+    table = read_table(
+        path, partial(is_heading, called.values()), decimal=section.decimal or None, encoding=section.encoding or None
+    )
     where = {}
-    for quantity in (*kind.PLACES, *kind.KINDS):
-        name = called.get(quantity, quantity)
-        if name in names:
-            where[quantity] = names.index(name)
-            refuse_other_unit(quantity, units[where[quantity]] or None, kind.unit(quantity))
-        elif quantity in kind.PLACES or quantity in called:
-            raise FileError(path, f"has no column {name!r}, but {', '.join(names)}{hint(name, names)}")
-    try:
-        values = np.loadtxt(rows, delimiter=",", usecols=list(where.values()), ndmin=2, quotechar='"')
-    except ValueError as error:
-        raise FileError(path, f"is no table of numbers ({error})") from error
-    return dict(zip(where, values.T, strict=True))
+    for name in among:
+        if (column := find(table, called[name])) is not None:
+            where[name] = column
+        elif name in kind.PLACES or name in section.columns:
+            raise missing(table, called[name])
+    others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in where.values()]
+    if others and not set(where) & set(kind.KINDS):
+        problem = f"has no column {' or '.join(kind.KINDS)}, but {', '.join(others)}: name it in columns = {{...}}"
+        raise FileError(path, f"{problem}; a plan has no other columns")
+    if others:
+        text = f"{path.name}: columns that are left aside: {', '.join(others)}"
+        warnings.warn(text, ModelWarning, stacklevel=outside())
+    found = {}
+    for name in where:
+        unit = kind.unit(name)
+        try:
+            found[name] = quantity(table, called[name], unit, section.units.get(name, ""))
+        except ParameterError as error:
+            per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
+            raise ParameterError(name, f"in {error.value}", f"in a unit of {unit}{per}") from error
+    return found

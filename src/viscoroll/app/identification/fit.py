@@ -58,9 +58,10 @@ class Identification(Shown):
     does_not_act : names of unknowns that do not change what was measured.
     undetermined : names of those whose interval tells little, wider than a factor of e^2 or than half their range, and
         of what is correlated with these beyond 0.95; :meth:`products` says what of them is determined.
-    noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation.
-    misfit : names of those whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1.  Intervals
-        mean nothing then.
+    noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation; of
+        robust fits both as a tenth of outliers changes them little.
+    misfit : names of those whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or, of robust
+        fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     records : the data by name.
     planned : whether the records hold no values: standard deviations and intervals are what to expect.
     """

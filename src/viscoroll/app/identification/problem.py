@@ -28,6 +28,13 @@ _STIFF = 1e6
 #: a standard deviation that was not given, over that of the values, to begin with; rounds in which it settles, to what
 #: share
 _GUESS, _ROUNDS, _SETTLED = 1e-3, 20, 1e-3
+#: median of |x| of the normal law of standard deviation 1
+_MEDIAN = 0.6745
+#: outliers are up to a tenth of the points: the median of |x| of all is then that of the noise at 0.5/0.9, which is so
+#: many times its own
+_BY_OUTLIERS = 1.134
+#: three standard deviations of the median of |x|, over that median, times sqrt(points)
+_BY_CHANCE = 3.5
 #: norm of a column of slopes that counts as none: a factor of e moves all residuals by so small a part of sigma
 _NONE = 1e-2
 #: of a range, how near to an end counts as at it
@@ -48,6 +55,9 @@ class Column(NamedTuple):
 
 class Noise(NamedTuple):
     """Residuals of a column: rms over sigma, lag-1 correlation in the order of its places, what noise allows of it.
+
+    Of a robust fit ``rms`` is the median of the absolute residuals over that of normal noise, and ``lag`` is the
+    correlation of the weighted residuals, which are below 1: few outliers change neither much.
 
     is_noise : both within three standard deviations of what noise does; what is far below sigma may go together.
     """
@@ -193,7 +203,7 @@ class Problem:
             share = 1.0 - min(len(self.live) / r.size, 0.9)
             for one in estimated:
                 own = r[one.at]
-                size = np.median(np.abs(own)) / 0.6745 if self.robust else np.sqrt(np.mean(own**2) / share)
+                size = np.median(np.abs(own)) / _MEDIAN if self.robust else np.sqrt(np.mean(own**2) / share)
                 self.sigma[one.at] *= max(float(size), 1e-12)
             best = self.least(best.u)
             if np.abs(self.sigma / before - 1.0).max() < _SETTLED:
@@ -206,9 +216,14 @@ class Problem:
         for one in self.columns:
             record = self.records[one.record]
             part = r[one.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.PLACES)])]
-            rms, allowed = math.sqrt(np.mean(part**2)), 3.0 / math.sqrt(part.size)
+            allowed = 3.0 / math.sqrt(part.size)
+            if self.robust:
+                rms, most = float(np.median(np.abs(part))) / _MEDIAN, _BY_OUTLIERS + _BY_CHANCE / math.sqrt(part.size)
+                part = part / np.sqrt(1.0 + part**2)
+            else:
+                rms, most = math.sqrt(np.mean(part**2)), 1.0 + allowed / math.sqrt(2.0)
             lag = float(part[1:] @ part[:-1]) / max(float(part @ part), 1e-300)
-            large = not one.estimated and rms > 1.0 + allowed / math.sqrt(2.0)
+            large = not one.estimated and rms > most
             found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
         return found
 

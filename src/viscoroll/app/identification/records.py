@@ -15,7 +15,8 @@ import numpy as np
 from ...core.checks import broadcast_shape, checked, number
 from ...core.errors import ParameterError, refuse_unknown
 from ...core.labels import Labels, unlabelled
-from ...core.scale import refuse_other_unit, si_unit
+from ...core.quantities import in_unit
+from ...core.scale import DIMENSIONLESS, si_unit
 from ...core.typed import Floats, Numbers
 from ...cylinder import Cylinder
 
@@ -51,12 +52,13 @@ class Record:
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
         given = {name: getattr(self, name) for name in (*self.PLACES, *self.measured)}
-        for name, value in given.items():
-            refuse_other_unit(self.of(name), value, self.unit(name))
-        plain, labels = unlabelled(given)
+        given = {name: in_unit(self.of(name), value, self.unit(name)) for name, value in given.items()}
+        plain, labels = unlabelled(given, DIMENSIONLESS)
         arrays = {name: np.atleast_1d(checked(self.of(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
-            arrays[f"sigma of {name}"] = checked(self.of(f"sigma of {name}"), value, low=0.0, strict=True)
+            arrays[f"sigma of {name}"] = checked(
+                self.of(f"sigma of {name}"), value, unit=self.unit(name), low=0.0, strict=True
+            )
         shape = broadcast_shape(**{self.of(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.PLACES}) != shape:
             raise ParameterError(self.of(self.KINDS[0]), f"of shape {shape}", "a value a place")
@@ -68,7 +70,7 @@ class Record:
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
             if value is not None and not (name == "omega0" and isinstance(value, str) and value == ROLLING):
-                vars(self)[name] = number(self.of(name), value, low=low, strict=True)
+                vars(self)[name] = number(self.of(name), value, unit=self.unit(name), low=low, strict=True)
 
     @staticmethod
     def unit(name: str) -> str:
@@ -207,12 +209,16 @@ class Coastdown(Record):
     def __post_init__(self) -> None:
         super().__post_init__()
         t: Any = self.t
-        if t.ndim > 1 or (np.diff(t) < 0.0).any():
+        if t.ndim > 1:
+            raise ParameterError(self.of("t"), f"an array of shape {t.shape}", "a vector, in ascending order")
+        if (np.diff(t) < 0.0).any():
             n = int(np.argmax(np.diff(t.ravel()) < 0.0))
             at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"
             raise ParameterError(self.of("t"), at, "a vector, in ascending order")
-        if np.shape(checked(self.of("t0"), self.t0)) not in ((), (2,)):
+        t0 = checked(self.of("t0"), self.t0, unit="s")
+        if t0.shape not in ((), (2,)):
             raise ParameterError(self.of("t0"), self.t0, "a number, or (low, high)")
+        vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)
 
     def starts(self, R: float) -> Starts:
         ends: Any = np.ravel(self.t0)

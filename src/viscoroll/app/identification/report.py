@@ -49,9 +49,10 @@ def _noise(fit: Any) -> Iterator[str]:
     """Residuals that are no noise."""
     for name in fit.misfit:
         rms, lag, allowed, _ = fit.noise[name]
+        size = f"{rms:.2f} sigma" + " by their median" * fit._problem.robust
         yield (
-            f"residuals of {name} are no noise (lag-1 correlation {lag:.2f}, noise allows {allowed:.2f}; rms {rms:.2f} "
-            "sigma): the model misses something, and intervals mean nothing"
+            f"residuals of {name} are no noise (lag-1 correlation {lag:.2f}, noise allows {allowed:.2f}; rms {size}): "
+            "the model misses something, and intervals mean nothing"
         )
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...core.checks import checked, number
 from ...core.errors import ParameterError, refuse_unknown
+from ...core.scale import si_unit
 from ...cylinder import Cylinder
 from ...materials.material import Material
 from ...materials.prony import Prony
@@ -52,7 +53,11 @@ class Unknown(NamedTuple):
     def bounds(name: str) -> dict[str, Any]:
         """What its values have to be, as of :func:`checked`."""
         kind = name.split(":")[0]
-        return {"low": _LINEAR.get(kind, 0.0), "strict": kind not in _LINEAR}
+        return {
+            "unit": si_unit(kind.removeprefix(_PREFIX["base"])),
+            "low": _LINEAR.get(kind, 0.0),
+            "strict": kind not in _LINEAR,
+        }
 
     def to_u(self, value: Any) -> Any:
         """The coordinate of a value."""
@@ -108,7 +113,10 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
 
 def _pair(what: str, name: str, given: Any, allowed: str) -> list[float]:
     """Two numbers, each a value that the unknown may have."""
-    pair = checked(f"{what} {name}", given, **Unknown.bounds(name))
+    bounds = Unknown.bounds(name)
+    if what == "prior":  # the standard deviation is of a logarithm: one unit is none of both
+        del bounds["unit"]
+    pair = checked(f"{what} {name}", given, **bounds)
     if pair.shape != (2,):
         raise ParameterError(f"{what} {name}", f"{given!r:.60}", allowed)
     return pair.tolist()

@@ -76,22 +76,24 @@ class States(NamedTuple):
         return cls(load, rows)
 
     @classmethod
-    def at_rest(cls, loads: Loads, load: NDArray, T_mean: float) -> States:
+    def at_rest(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
         """States of V = omega = 0, the limit of slow rolling: Carter's contact, and V' = -rate V with omega in step.
 
-        loads : the loads.  load : index of the load of each state.  T_mean : mean retardation time of the material.
+        loads : the loads.  load : index of the load of each state.  law : rows of the material.
         """
+        # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
+        limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
         Q, kappa, mu, j = (values[load] for values in (loads.torque, loads.kappa, loads.mu, loads.j))
         if loads.given == "force":
             Q = -loads.force[load]
         part, rows = np.abs(Q) / mu, np.zeros((Field.IMAGINARY + 1, load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
-        delta = 0.5 * mu / kappa * part / (1.0 + beta)
-        rows[Field.OMEGA], rows[Field.DELTA], rows[Field.Q] = 0.0 * beta, np.sign(Q) * delta, Q
+        delta, free = 0.5 * limit * mu / kappa * part / (1.0 + beta), 0.5 * free / kappa
+        rows[Field.OMEGA], rows[Field.DELTA], rows[Field.Q] = 0.0 * beta, np.sign(Q) * delta + free, Q
         rows[Field.FAST] = rows[Field.SLOW] = -np.inf
         gains = loads.gains
-        for creep in (delta, -delta):  # to either side omega = V (1 + delta) or V (1 - delta)
-            rate = T_mean - gains.V - (gains.force_omega + gains.torque_omega) * (1.0 + creep)
+        for creep in (free + delta, free - delta):  # to either side omega = V (1 + delta) or V (1 - delta)
+            rate = law.T_mean - gains.V - (gains.force_omega + gains.torque_omega) * (1.0 + creep)
             rows[Field.SLOW] = np.maximum(rows[Field.SLOW], -rate / (1.0 + j * (1.0 + creep)))
         return cls(load, rows)
 
@@ -184,7 +186,8 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V
-    free = contact_fields_at(law, kappa, mu, V, 0.0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
+    delta_0: Any = 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
+    free = contact_fields_at(law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
     M = free[0] + free[1]
     share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
     if loads.given is None:
@@ -197,7 +200,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     root, (star, lam, rise) = np.sqrt(np.where(exists, 1.0 - part, 1.0)), free[2:]
     less_star, less_lam = contact_fields_at(law, kappa, mu, V / root, 0.0, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
-    rows = state_rows(law, kappa, mu, V, np.copysign(size, Q))
+    rows = state_rows(law, kappa, mu, V, np.copysign(size, Q) + delta_0)
     # the answers do not see this
     rows[Field.DELTA] -= np.divide(
         rows[Field.Q] - Q, V * rows[Field.DQ_DOMEGA], out=0.0 * V, where=part < _CORRECTED_TRACTION

@@ -15,7 +15,7 @@ from ...core.errors import ParameterError
 from ...core.labels import unlabelled
 from ...core.typed import Integers, Numbers
 from ...materials.law_table import LawTable
-from ..parameters import Rolls, framed
+from ..parameters import Rolls, framed, scale_of
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import Diagnosis, Steady, pack_result
@@ -74,7 +74,8 @@ def steady(
     Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
     to that over ``grip`` (``tests/test_steady.py``).
     """
-    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
+    units = scale_of(roller)
+    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
     roller, scene, scale = framed(roller, "steady", slope=slope)
     force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
@@ -87,6 +88,9 @@ def steady(
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
+    elif loads.gains.omega and law.cover is not None:
+        allowed = "a feedback on V alone: with one on omega equilibria on covers are not searched for"
+        raise ParameterError("omega", "fed back", allowed)
     elif loads.gains.omega:
         rolling = scan_states(law, loads)
     else:
@@ -94,7 +98,7 @@ def steady(
     neutral = elastic and loads.given is None and not gained
     resting = _loads_at_rest(loads, neutral)
     if resting.size:
-        rolling = States.joined(rolling, States.at_rest(loads, resting, law.T_mean))
+        rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
     count = np.bincount(existing.load, minlength=loads.mu.size)
     maximum = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).maximum
@@ -121,7 +125,8 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
 
     law : rows of the material.  loads : the loads.  Raises ParameterError for loads outside the range of the nodes.
     """
-    gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)
+    with np.errstate(over="ignore"):  # what is infinite is refused
+        gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():

@@ -50,16 +50,26 @@ def master_curve(material: Any) -> Figure:
 
 def fitted(fit: Any) -> Figure:
     """Storage and loss modulus of a :class:`viscoroll.Fit`: the data and the curves of the series."""
-    omega = np.geomspace(fit.omega[0], fit.omega[-1], _POINTS)
-    misfit = f"misfit {fit.misfit.storage:.1%} in E', {fit.misfit.loss:.1%} in E''"
-    title = f"Prony series of {fit.prony.E.size} modes: {misfit}"
-    figure, axes = new_figure(title)
-    for values, curve, name, line in zip(
-        (fit.storage, fit.loss), fit.modulus(omega), ("E'", "E''"), LINES, strict=False
-    ):
-        axes.loglog(fit.omega, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=name)
-        axes.loglog(omega, curve, **line, label=f"{name} of the fit")
-    axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, unit of the data")
+    symbol = "G" if fit.mode == "shear" else "E"
+    misfit = f"misfit {fit.misfit.storage:.1%} in {symbol}', {fit.misfit.loss:.1%} in {symbol}''"
+    columns = {f"{symbol}'": fit.storage, f"{symbol}''": fit.loss}
+    return _with_data(fit, misfit, fit.omega, columns, fit.modulus, "angular frequency, rad/s")
+
+
+def relaxed(fit: Any) -> Figure:
+    """Relaxation modulus of a :class:`viscoroll.RelaxationFit`: the data and the curve of the series."""
+    columns = {"G(t)" if fit.mode == "shear" else "E(t)": fit.relaxation}
+    return _with_data(fit, f"misfit {fit.misfit:.1%}", fit.t, columns, lambda t: (fit.modulus(t),), "time, s")
+
+
+def _with_data(fit: Any, misfit: str, x: Any, columns: dict[str, Any], modulus: Any, label: str) -> Figure:
+    """Columns over x, and the moduli of the fit there, a tuple of them."""
+    fine = np.geomspace(x[0], x[-1], _POINTS)
+    figure, axes = new_figure(f"Prony series of {fit.prony.E.size} modes: {misfit}")
+    for (name, values), curve, line in zip(columns.items(), modulus(fine), LINES, strict=False):
+        axes.loglog(x, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=name)
+        axes.loglog(fine, curve, **line, label=f"{name} of the fit")
+    axes.set(xlabel=label, ylabel="modulus, unit of the data")
     axes.legend(frameon=False, fontsize="small", ncols=2)
     return figure
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ...core.blocks import heed, thread_count
+from ...core.checks import yes_or_no
 from ...core.errors import FileError, Interrupted, ParameterError, ViscorollError
 from ...core.extras import imported
 from .evaluate import look_at_materials
@@ -48,7 +49,9 @@ def run_ensemble(
     """Work on all blocks that the store does not hold yet, then write the summaries.
 
     After an end of any kind (a kill, a full disk, a damaged file) the same call goes on: blocks
-    that are there are read and compared with their SHA-256, the others are made again.
+    that are there are read and compared with their SHA-256, the others are made again.  So does a call with a larger
+    ``n`` in a run that is otherwise the same ("random"; "sobol" to powers of two): the store becomes that of the larger
+    run, byte for byte.
 
     Parameters
     ----------
@@ -82,6 +85,8 @@ def run_ensemble(
     The files are the same, byte for byte, for any number of threads or workers and after any number
     of kills (``tests/runs/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
     """
+    if progress != "lines":
+        progress = yes_or_no("progress", progress)
     store = Store(Path(path).absolute(), run)
     imported("zarr", "zarr", "runs")
     store.refuse_other()

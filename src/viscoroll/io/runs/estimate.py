@@ -48,8 +48,8 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     They are rolled twice, and the second time counts: what a process does once, as to compile, to import and to fill
     tables, would be scaled up with them.
     """
-    look_at_materials(run)
     workers = min(thread_count(threads), run.blocks)
+    look_at_materials(run)
     trial = min(run.block, _TRIAL[run.method])
     few = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
     made(few, 0)

@@ -7,6 +7,7 @@ work is done exactly where its record is whole and every file that it names has 
 from __future__ import annotations
 
 import hashlib
+import os
 import zlib
 from pathlib import Path
 from typing import Any
@@ -18,20 +19,25 @@ from ...core.errors import FileError
 from ...core.files import seal, seal_holds, write_bytes
 from ...motion.summaries import Summary
 
+#: folder of the records in a store
+RECORDS = "records"
+
 
 class Record(msgspec.Struct):
     """What was done.
 
     Attributes
     ----------
-    run : digest of the run that it is a part of.
+    run : digest of the run that it is a part of, whatever its number of motions.
     files : path below the store -> SHA-256.
+    motions : of the block, or, in the records "start" and "end", of the run.
     about : what the run is, in the record "start".
     summary : of the motions, in the record of a block.
     """
 
     run: str
     files: dict[str, str]
+    motions: int = 0
     about: dict[str, str | int] = {}
     summary: Summary | None = None
 
@@ -89,6 +95,13 @@ def put(root: Path, files: dict[str, bytes]) -> dict[str, str]:
             make_folder((root / name).parent)
             write_bytes(root / name, content)
     return digests
+
+
+def refuse_unreadable(root: Path) -> None:
+    """Raise FileError where the folder of a store, or that of its records, may not be read."""
+    for folder in (root, root / RECORDS):
+        if folder.is_dir() and not os.access(folder, os.R_OK | os.X_OK):
+            raise FileError(folder, "cannot be read (Permission denied)")
 
 
 def make_folder(path: Path) -> None:

@@ -93,8 +93,8 @@ class RunResults(Shown):
         ]
         for name in self.names:
             mean, std = (np.atleast_1d(data[f"{name}_{part}"].values)[-1] for part in ("mean", "std"))
-            at = " at the end" if data[f"{name}_mean"].ndim else ""
-            rows.append(Row(name, f"mean {mean:.6g}, std {std:.3g}{at}", unit_of(data[f"{name}_mean"].attrs)))
+            at = "at the end: " if data[f"{name}_mean"].ndim else ""
+            rows.append(Row(name, f"{at}mean {mean:.6g}, std {std:.3g}", unit_of(data[f"{name}_mean"].attrs)))
         ended = zip(data["status"].values, data["ended"].values, strict=True)
         rows += [Row("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
         kept = "every motion" if (self.path / MOTIONS).is_dir() else "summaries"
@@ -124,6 +124,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
 
     imported("zarr", "zarr", "runs")
     root = Path(path)
-    if found := problems(root, "end", start_of(root).run):
+    start = start_of(root)
+    if found := problems(root, "end", start.run, start.motions):
         raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
     return RunResults(root, xr.open_zarr(root, chunks=None))

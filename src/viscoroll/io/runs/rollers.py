@@ -15,9 +15,10 @@ from ...core.checks import checked
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
-from ...cylinder import Cylinder, scene_of
+from ...cylinder import Cylinder, contact_length, scene_of
 from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
+from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
 from ..config import body_of
 
@@ -27,8 +28,9 @@ class Rollers(Rolls):
     """Cylinders each of a material of its own, in SI units.
 
     like : their numbers, with one of their materials.
-    law, E_prime, T : what they deform by, times over T.  Where each has a T of its own times are counted in s: gamma
-        does nothing but scale time (Eq. (22)), so that gamma/T in its place makes it seconds, the same for all.
+    law, E_prime, T : what they deform by, or bodies of which one has a thickness; times over T.  Where each has a T of
+        its own times are counted in s: gamma does nothing but scale time (Eq. (22)), so that gamma/T in its place makes
+        it seconds, the same for all.
     """
 
     like: Cylinder
@@ -44,7 +46,10 @@ class Rollers(Rolls):
     @cached_property
     def _scene(self) -> Parameters:
         one = self.like
-        found = scene_of(one.R, one.m, one.load, self.E_prime, self.T, self.law, one.mu, one.j)
+        law = self.law
+        if isinstance(law, Pair):
+            law = law.cover(contact_length(one.R, one.load, self.E_prime))
+        found = scene_of(one.R, one.m, one.load, self.E_prime, self.T, law, one.mu, one.j)
         return found.replace(gamma=found.gamma / self.T) if self.seconds else found
 
     def scene(self) -> Parameters:
@@ -70,7 +75,7 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
     each = {name: body for name, (_, body) in bodies.items()}
     if any(isinstance(body, Solid) for body in each.values()):
         pair = Pair(each.get("material") or one.pair.cylinder, each.get("base"), one.plane)
-        return Rollers(one, pair.law, pair.E_prime, pair.T_ref)
+        return Rollers(one, pair.law if pair.covered is None else pair, pair.E_prime, pair.T_ref)
     if np.ndim(one.T_epsilon):
         return Rollers(one, one.T_epsilon / one.T_sigma, one.E_prime, one.T_epsilon)
     return one
@@ -103,10 +108,40 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid
         shift = shifts_of(path, {name: first})[name]
         series = series.slower([shift(each) for each in given["temperature"]])
     E, nu = given.get("E", typical.E), given.get("nu", typical.nu)
-    if not (series.shape or np.ndim(E) or np.ndim(nu)):
+    thickness = given.get("thickness", typical.thickness)
+    if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical, typical
+    if thickness is not None:
+        thickness = checked("thickness", thickness, low=0.0, strict=True)
     E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
-    return typical, Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref)
+    return typical, Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref, thickness)
+
+
+def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
+    """Angular frequencies between which the data of each body hold, at the temperature of each motion.
+
+    Parameters
+    ----------
+    path : of the run file.
+    content : its sections with the inputs of some motions.
+
+    Returns
+    -------
+    dict
+        What was measured of a body -> lowest and highest frequency, rad/s, numbers or one a motion; of bodies that
+        tell.
+    """
+    found = {}
+    for name in SECTIONS:
+        given = content.get(name)
+        if given is None or (record := _body(path, name, given)[0].measured) is None:
+            continue
+        factor: Any = 1.0
+        if isinstance(given, dict) and np.ndim(given.get("temperature", 0.0)):  # the record is at the first of them
+            shift = shifts_of(path, {name: _first(given)})[name]
+            factor = np.array([shift(each) for each in given["temperature"]])
+        found[record] = record.low / factor, record.high / factor
+    return found
 
 
 def _first(part: Any) -> Any:

@@ -32,7 +32,7 @@ from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
 from ...core.typed import Floats
 from ...materials.file import as_toml, materials_of
-from ...motion.batch import FIELDS, FLOW_PAYS, begin
+from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
 from ...motion.checks import output_times
 from ...motion.driven import Drive
 from ...motion.summaries import QUANTITIES
@@ -46,6 +46,8 @@ from .uncertain import correlated, inputs_of
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
 START = ("V0", "omega0")
+#: settings that the digest leaves out: a store may grow with n, and its identity has the method and block that result
+_NOT_IN_DIGEST = ("n", "method", "block")
 
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
 Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
@@ -128,7 +130,8 @@ class Run:
     settings : its section [run].
     inputs : what its other sections say of start, scene or cylinder, and what of it is uncertain.
     t : output times, dimensionless or, with [cylinder], in seconds.
-    digest : SHA-256 of all that the results depend on: settings, inputs, samples.
+    digest : SHA-256 of what the results depend on beside the number of motions, the method and the size of blocks:
+        other settings, inputs, samples.
     """
 
     path: Path
@@ -291,18 +294,19 @@ def _begin(run: Run, values: dict[str, Any]) -> None:
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
             raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
-    asked = settings.rtol, settings.rest, 1
+    asked = Asked(settings.rtol, settings.rest, 1)
     drive = Drive(**drive_of(content))
     begin(roller, start, drive, run.t[-1], asked, unsteady=settings.unsteady, rested=settings.rested)
 
 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
-    """SHA-256 of what the results depend on; comments and the order of keys are not among it."""
+    """The ``digest`` of a :class:`Run`; comments and the order of keys do not change it."""
+    kept = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _NOT_IN_DIGEST}
     sections = {name: given for name, given in content.items() if name != "run"}
     samples = [
         [name, hashlib.sha256(values.tobytes()).hexdigest()]
         for columns in inputs.joint.values()
         for name, values in columns.items()
     ]
-    described = [msgspec.to_builtins(settings), times.tolist(), sections, materials, samples]
+    described = [kept, times.tolist(), sections, materials, samples]
     return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()

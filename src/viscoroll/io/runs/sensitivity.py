@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blocks import run_blocks
-from ...core.checks import whole
+from ...core.checks import whole, yes_or_no
 from ...core.errors import MotionStatus, ParameterError
 from ...core.results import column, unit_of
 from ...core.typed import Floats
@@ -81,6 +81,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     from .store import about
 
     names = _independent(run.inputs)
+    progress = yes_or_no("progress", progress)
     base = 1 << (whole("n", n, 16, 1 << 16) - 1).bit_length()  # a Sobol sequence is even only over so many points
     rows = base * (len(names) + 2)
     summaries = tuple(dict.fromkeys(run.settings.summaries))

@@ -11,8 +11,6 @@ where or in which order the blocks were worked on: two stores of one run are the
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -22,22 +20,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import __version__
 from ...core.errors import FileError
 from ...core.files import write_bytes
-from ...motion.export import provenance
 from ...motion.many import Ensemble
 from ...motion.summaries import Summary, merged, summarise, summary_dataset
 from . import zarr_files
 from .columns import attributes
 from .evaluate import roll_block, roll_inputs
-from .records import Record, damaged, encoded, make_folder, put, read_record
+from .identity import ADVICE, about, identity, refuse_another
+from .records import RECORDS, Record, damaged, encoded, make_folder, put, read_record, refuse_unreadable
 from .runfile import Run
 
-RECORDS, MOTIONS = "records", "motions"
+MOTIONS = "motions"
 _LOCK = ".lock"
 _EACH = ("onset_time", "rest_time", "status", "flow")
-_ADVICE = "give another folder with -o, or delete this one"
 
 
 @dataclass(frozen=True)
@@ -48,7 +44,7 @@ class Store:
     run: Run
 
     def begin(self) -> None:
-        """Make the folder and the metadata of all motions, or check that it is this run's.
+        """Make the folder and the metadata of all motions, or check that it is this run's, perhaps with fewer motions.
 
         Raises
         ------
@@ -58,39 +54,55 @@ class Store:
         self.refuse_other()
         make_folder(self.root / RECORDS)
         self._sweep()
+        self._drop_end()
         self._keep("start", metadata(self.run), about=about(self.run))
 
     def _keep(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
         """Write files, then the record of them; raises FileError."""
-        record = Record(identity(self.run), put(self.root, files), **more)
+        record = Record(identity(self.run), put(self.root, files), self._motions(name), **more)
         write_bytes(_path(self.root, name), encoded(record))
 
+    def _motions(self, name: str | int) -> int:
+        """How many motions a record is of: of a block its own, else all."""
+        if isinstance(name, str):
+            return self.run.settings.n
+        start, stop = self.run.edges(name)
+        return stop - start
+
+    def _drop_end(self) -> None:
+        """Remove the summaries of fewer motions, their record first: from then on the store is not finished."""
+        end = read_record(_path(self.root, "end"))
+        if end is None or end.motions == self.run.settings.n:
+            return
+        try:
+            for path in (_path(self.root, "end"), *(self.root / name for name in end.files)):
+                path.unlink(missing_ok=True)
+        except OSError as error:
+            raise FileError(path, f"cannot be removed ({error.strerror or error})") from error
+
     def refuse_other(self) -> None:
-        """Raise FileError unless the folder is new, or begun by the same run."""
+        """Raise FileError unless the folder is new, or begun by the same run, perhaps with fewer motions."""
         root = self.root
         if not root.exists():
             return
         if not root.is_dir():
-            raise FileError(root, f"is a file: {_ADVICE}")
-        record = read_record(_path(root, "start"))
-        if record is None:
-            whole = map(read_record, sorted((root / RECORDS).glob("[0-9e]*")))
-            record = next((found for found in whole if found is not None), None)
-        if record is None:
-            others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
-            if others:
-                raise FileError(root, f"is no results store, it holds {', '.join(others[:3])}: {_ADVICE}")
-        elif record.run != identity(self.run):
-            versions = record.about.get("versions", json.dumps(_software()))
-            if versions != json.dumps(_software()):
-                raise FileError(root, f"was begun with other versions, {versions}: finish it with those, or {_ADVICE}")
-            raise FileError(root, f"holds the results of another run file: {_ADVICE}")
+            raise FileError(root, f"is a file: {ADVICE}")
+        refuse_unreadable(root)
+        blocks = sorted((root / RECORDS).glob("[0-9]*"))
+        whole = map(read_record, (_path(root, "start"), _path(root, "end"), *blocks))
+        record = next((found for found in whole if found is not None), None)
+        if record is not None:
+            refuse_another(root, self.run, record)
+            return
+        others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
+        if others:
+            raise FileError(root, f"is no results store, it holds {', '.join(others[:3])}: {ADVICE}")
 
     def missing(self) -> Iterator[int]:
         """Blocks that are not there, or not whole: their records and all their files are read."""
-        made = identity(self.run)
+        own = identity(self.run)
         for block in range(self.run.blocks):
-            if problems(self.root, block, made):
+            if problems(self.root, block, own, self._motions(block)):
                 yield block
 
     def work(self, block: int) -> int:
@@ -154,43 +166,13 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     return columns | {"flow": columns["flow"].astype(np.int8)}
 
 
-def about(run: Run) -> dict[str, Any]:
-    """What a store says of itself: run file, seed, versions."""
-    return provenance("Ensemble of motions of a viscoelastic cylinder") | {
-        "versions": json.dumps(_software()),
-        "motions": run.settings.n,
-        "motions_a_block": run.block,
-        "blocks": run.blocks,
-        "seed": run.settings.seed,
-        "design": run.settings.design,
-        "method": run.method,
-        "quantities": "in SI units" if run.si else "dimensionless",
-        "run_file": run.text,
-    }
+def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
+    """What is damaged or missing of a record "start", "end" or a block: its own path, or those of its files.
 
-
-def _software() -> dict[str, str]:
-    """What decides about the bits, beside the run and the processor."""
-    import numba
-    import scipy
-
-    from ...kernels.compile.cache import sources_digest
-
-    return {
-        "viscoroll": __version__, "kernels": sources_digest(), "numpy": np.__version__, "scipy": scipy.__version__,
-        "numba": numba.__version__,
-    }  # fmt: skip
-
-
-def identity(run: Run) -> str:
-    """SHA-256 of the run, its blocks and the software."""
-    return hashlib.sha256(f"{run.digest} {run.block} {json.dumps(_software())}".encode()).hexdigest()
-
-
-def problems(root: Path, name: str | int, made: str) -> list[str]:
-    """What is damaged or missing of a record "start", "end" or a block: its own path, or those of its files."""
+    run, motions : what the record has to be of.
+    """
     record = read_record(_path(root, name))
-    if record is None or record.run != made:
+    if record is None or (record.run, record.motions) != (run, motions):
         return [str(_path(root, name).relative_to(root))]
     return damaged(root, record)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,12 @@ import numpy as np
 
 from ...core.errors import FileError
 from ...core.extras import imported
+from ...core.scale import si_unit
 from ...core.sections import fault, hint, refuse_unknown
 from ...core.typed import Floats
 from ...materials.file import SECTIONS
 from ..config import SCHEMA
+from ..measurements import is_heading, quantity, read_table
 from .inputs import Distribution, Input, Inputs
 
 #: what the names of inputs of a section begin with
@@ -23,13 +26,13 @@ _SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive")
 #: keys that a name leaves out, or has in another form
 _WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
 #: of a material, what may be uncertain
-_SOLID = ("E", "nu", "prony", "creep", "temperature")
+_SOLID = ("E", "nu", "prony", "creep", "temperature", "thickness")
 _ONE = {"distribution", "file", "column"}
 
 
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
     """The inputs of a file that was read, independent; raises FileError."""
-    reader = _Reader(path)
+    reader = _Reader(path, "cylinder" in content)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
     return Inputs(content | sections, reader.random, reader.joint)
 
@@ -37,8 +40,8 @@ def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
 class _Reader:
     """Files what is uncertain, and puts an :class:`Input` in its place."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, si: bool) -> None:
+        self.path, self.si = path, si
         self.random: dict[str, Distribution] = {}
         self.joint: dict[str, dict[str, Floats]] = {}
         #: file -> how it was first written: 'rows.csv' and './rows.csv' share their rows
@@ -119,9 +122,11 @@ class _Reader:
             raise self.fault(at, "must name a distribution, or a file and a column")
         where = f"column {column!r} of {file}"
         try:
-            values = read_column(self.path.parent / file, column)
-        except (OSError, ValueError, KeyError) as error:
-            text = " ".join(str(error).split())
+            # strengths and times of a series, and corners of drives, have no unit of their own
+            unit = si_unit(at.key) if self.si and "." not in at.section else "1"
+            values = read_column(self.path.parent / file, column, unit)
+        except (OSError, ValueError, KeyError, FileError) as error:
+            text = " ".join(str(error.problem if isinstance(error, FileError) else error).split())
             raise self.fault(at, f"{where} cannot be read ({text:.200})") from error
         first = self.files.setdefault((self.path.parent / file).resolve(), file)
         others = self.joint.setdefault(first, {})
@@ -134,13 +139,13 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def read_column(path: Path, column: str) -> Floats:
-    """One column of numbers."""
-    import pandas as pd
-
+def read_column(path: Path, column: str, unit: str) -> Floats:
+    """One column of numbers; of a CSV in this unit, if the file gives one."""
     if path.suffix == ".csv":
-        values = pd.read_csv(path, usecols=[column])[column].to_numpy()
+        values = quantity(read_table(path, partial(is_heading, (column,))), column, unit)
     elif path.suffix == ".parquet":
+        import pandas as pd
+
         imported("pyarrow", "pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
     elif path.suffix == ".nc":

@@ -7,8 +7,8 @@ from os import PathLike
 from pathlib import Path
 
 from ...core.errors import FileError
-from .records import Record, read_record
-from .store import RECORDS, problems
+from .records import RECORDS, Record, read_record, refuse_unreadable
+from .store import problems
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,8 @@ class Verdict:
 
     def __str__(self) -> str:
         if self.ok:
-            return f"complete: {self.blocks} blocks and the summaries have the SHA-256 that they were written with"
+            blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
+            return f"complete: {blocks} and the summaries have the SHA-256 that they were written with"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
         lines += [f"{len(self.missing)} of {self.blocks} blocks are not there or not whole"] * bool(self.missing)
         lines += ["the summaries are not there or not whole"] * (not self.finished)
@@ -56,8 +57,10 @@ def verify(path: str | PathLike[str]) -> Verdict:
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
     """
     root, start = Path(path), start_of(path)
-    blocks = int(start.about["blocks"])
-    found = {part: problems(root, part, start.run) for part in ("start", *range(blocks), "end")}
+    motions, size, blocks = (int(start.about[name]) for name in ("motions", "motions_a_block", "blocks"))
+    parts: dict[str | int, int] = {"start": motions}
+    parts |= {block: min(size, motions - block * size) for block in range(blocks)} | {"end": motions}
+    found = {part: problems(root, part, start.run, count) for part, count in parts.items()}
     missing = tuple(block for block in range(blocks) if found[block])
     # of a block or an end that was not made yet there is nothing to be damaged
     damaged = (name for part, names in found.items() for name in names if part == "start" or (root / name).exists())
@@ -68,6 +71,7 @@ def start_of(path: str | PathLike[str]) -> Record:
     """The record of its start; raises FileError."""
     if not Path(path).is_dir():
         raise FileError(path, "is no results store: there is no such folder")
+    refuse_unreadable(Path(path))
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
         raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")

@@ -80,7 +80,7 @@ def build(
     import xarray as xr
 
     what = _single(what)
-    axes = {"V": increasing("V", V, low=0.0, strict=True), "delta": increasing("delta", delta)}
+    axes = {"V": increasing("V", V, unit=what.scale, low=0.0, strict=True), "delta": increasing("delta", delta)}
     if alpha is not None:
         if isinstance(what, Cylinder) or what.material is not None:
             raise ParameterError("alpha", "given", "left out: the material has its own")

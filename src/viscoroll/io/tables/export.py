@@ -18,7 +18,7 @@ from ...core.files import replacing, write_text
 from ...core.symbols import PAPER
 from ...core.typed import Floats
 from ...materials.law_file import law_of
-from ...materials.law_store import CHECKSUM, content_of
+from ...materials.law_store import CHECKSUM, COVER, content_of
 from . import schema, store
 
 if TYPE_CHECKING:
@@ -52,6 +52,8 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     path = Path(path)
     store.check(table, "export")
     formats = LAW if store.is_law(table) else GRID
+    if table.attrs.get(schema.KIND) == COVER:
+        formats = _EITHER
     if path.suffix not in formats:
         kind = "law" if store.is_law(table) else "grid"
         raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")

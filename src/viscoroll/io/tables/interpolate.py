@@ -112,7 +112,9 @@ class Interpolant:
             wanted = ", ".join(axis for axis in self._axes if axis in needed)
             allowed = f"{', '.join(self._axes)} (needed for these fields: {wanted})"
             raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
-        arrays = {name: checked(name, value) for name, value in points.items()}
+        arrays = {
+            name: checked(name, value, unit=self._table[name].attrs.get("units", "1")) for name, value in points.items()
+        }
         shape = broadcast_shape(**arrays)
         for name, array in arrays.items():
             low, high = self._table[name].values[[0, -1]]

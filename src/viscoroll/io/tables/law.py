@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...contact_law.contact_table import states_of
 from ...core.errors import ParameterError, one_of
 from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...materials import law_axis
+from ...materials.cover_rows import at_speed
 from ...materials.law_file import as_dataset, table_of
 from ...materials.law_modes import by_modes
 from ...materials.law_table import FUNCTIONS, LawTable
@@ -17,6 +20,9 @@ from ...materials.law_table import FUNCTIONS, LawTable
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Of a cover: what is compared with its solve, at so many speeds, by so many terms of the pressure.
+_OF_COVER = "lam", "delta_star", "delta_0", "epsilon", "M_half_space", "M_cylinder"
+_SOLVES, _TERMS = 40, 60
 #: Functions of kappa |V|; the others are of v = 1/F(eta).
 _OF_SPEED = 5
 #: Places in every octave at which errors are measured, and alphas in every octave of alpha, at random with this seed.
@@ -56,8 +62,15 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
             raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
         found: LawTable | law_axis.LawAxis = law_axis.law_axis(*alpha)
     else:
-        found = table_of(material.pair if isinstance(material, Cylinder) else material, base)
+        found = (_of_cylinder if isinstance(material, Cylinder) else table_of)(material, base)
     return as_dataset(found, measured_errors(found))
+
+
+def _of_cylinder(given: Cylinder, base: Any) -> LawTable:
+    """That of its bodies; of a layer at its l0."""
+    if given.pair.covered is None:
+        return table_of(given.pair, base)
+    return replace(table_of(given.scene().material, base), T_ref=given.T_ref, pair=given.pair)
 
 
 def measured_errors(
@@ -80,6 +93,8 @@ def measured_errors(
         worst = {name: max(one[name] for one in each) for name in FUNCTIONS}
         worst["m"] = worst["m_half_space"] + worst["m_cylinder"]
         return {name: worst[name] for name in law_axis.FUNCTIONS}
+    if table.cover is not None:
+        return _errors_of_cover(table, count or _SOLVES, seed)
     rows, e0 = table.coefficients.shape[0], table.e0
     # kappa |V| = 1/(2 sqrt(H)) and v = 1/F lie within [1/(2 zeta sqrt(alpha)), 1/zeta]
     octaves = rows + np.log2(table.alpha) / 2.0 + 3.0
@@ -96,6 +111,26 @@ def measured_errors(
         error = np.abs(_polynomial(table, n, x[inside]) - exact[n][inside]) / scales[n][inside]
         errors[name] = float(np.max(error, initial=0.0))
     return errors
+
+
+def _errors_of_cover(table: LawTable, count: int, seed: int) -> dict[str, float]:
+    """Those of a layer against its solve with half as many terms again, at speeds around its rates; share and press
+    against what they are of the others, L."""
+    cover: Any = table.material
+    modes = cover.modes
+    slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
+    u = slow * (fast / slow) ** np.random.default_rng(seed).random(count)
+    exact = np.array([at_speed(modes, cover.thickness, each, orders=_TERMS) for each in u.tolist()]).T
+    found = states_of(table, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, _OF_COVER)
+    L, M = exact[1], u * exact[4]
+    free = found[2] * (2.0 if cover.on == "base" else -2.0)
+    errors = found[0] / exact[0] - 1.0, 2.0 * found[1] / L - 1.0, (free - exact[2]) / L, found[3] / exact[3] - 1.0
+    lam, limit, free, epsilon = (float(np.abs(each).max(initial=0.0)) for each in errors)
+    moment = float(np.abs(np.divide(found[4] + found[5], M, out=np.ones(count), where=M > 0.0) - 1.0).max())
+    return {
+        "lam": lam, "epsilon": epsilon, "m_half_space": moment, "m_cylinder": moment, "share": lam + limit,
+        "press": 2.0 * limit, "limit": limit, "free": free,
+    }  # fmt: skip
 
 
 def _polynomial(table: LawTable, function: int, x: Floats) -> Floats:

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked, number, whole
+from ...core.checks import checked, number, one_name, whole
 from ...core.errors import ParameterError
 from ...core.typed import Floats
 from ...cylinder import Cylinder
@@ -32,8 +32,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     ParameterError
         An unknown spacing, low >= high, high - low beyond the doubles, count < 2, or "log" with low <= 0.
     """
-    if spacing not in ("linear", "log"):
-        raise ParameterError("spacing", repr(spacing), "'linear' or 'log'")
+    one_name("spacing", spacing, "linear", "log")
     low = number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
     high = number("high", high)
     if not high > low:

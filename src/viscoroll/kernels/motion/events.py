@@ -7,8 +7,9 @@ from ..compile.jit import kernel
 from .collocation import NODES, WIDE, N, rise_at, rise_terms
 from .load import BRAKE
 from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, extremes, may_end
-from .rates import creep_limit, edge
+from .rates import creep_at, edge
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
+from .records import SPEED as PRESCRIBED_V
 
 #: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
 #: function of the event is made of
@@ -72,7 +73,8 @@ def passed_over(panel, frame, case):
         if row == SLOW or (row == EDGE and not frame.slips) or not may_end(row, panel, frame, case):
             continue
         (_, most), scale = extremes(EVENT + WIDE * row, nodes), _scale(row, nodes)
-        if row == TURN:
+        # V passes 0 beside omega, but for one that is prescribed: that is known beside itself
+        if row == TURN and case.drive.prescribed != PRESCRIBED_V:
             scale = max(scale, nodes[SPEED + N])
         if most <= _ROUNDING * scale and nodes[EVENT + WIDE * row + N] < -_near(case.limits.rtol) * scale:
             return row
@@ -129,7 +131,7 @@ def _itself(event, v, frame, case):
     if event == SLOW:
         return max(abs(speed), abs(second)) - case.limits.rest
     if event == STOP:
-        return frame.spin * (1.0 + creep_limit(speed, case.scene) * second)
+        return frame.spin * (1.0 + creep_at(speed, second, case.scene))
     return edge(speed, second, frame, by_value(case.scene))
 
 

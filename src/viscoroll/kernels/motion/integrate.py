@@ -1,4 +1,4 @@
-"""A driven motion from start to end: one regime after the other, one piece of the drive after the other.
+"""A motion, free or driven, from start to end: one regime after the other, one piece of the drive after the other.
 
 A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or held by its brake.
 """
@@ -14,7 +14,7 @@ from .nodes import ONSET, PATHS, REST_TIME, TOTALS, TURNS
 from .origin import EITHER, SLIDES, STAYS, STICKS, depart, leaving_time
 from .output import coast, note, put_here, put_still, regime_of
 from .phase import creeps, phase
-from .rates import creep_limit, inertia_at, room, speeds
+from .rates import creep_at, creep_limit, inertia_at, room, sliding, speeds
 from .records import (
     DONE,
     EDGE,
@@ -57,7 +57,7 @@ def enter(V, omega, clock, case):
         V = omega = (V + case.scene.j * omega) / (1.0 + case.scene.j)
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
-    slip, limit = omega - V, creep_limit(V, case.scene) * V
+    slip, limit = sliding(omega - V, V, case.scene), creep_limit(V, case.scene) * V
     sigma = 1.0 if slip >= 0.0 else -1.0
     state, frame = State(V, omega), Frame(True, direction, sigma, 0.0, False)
     if V == 0.0:
@@ -147,7 +147,7 @@ def settled(state, frame, clock, case):
     inertia = load.per_omega + load.per_V * load.per_omega * n
     p, d, low, high = inertia * state.V + load.per_V * rates.omega, 0.0, -1.0, 1.0
     while low < d < high:
-        delta = creep_limit(state.V, case.scene) * d
+        delta = creep_at(state.V, d, case.scene)
         state = State(p / (inertia + load.per_V * (1.0 + delta)), d)
         frame = Frame(False, frame.direction, 1.0 if d >= 0.0 else -1.0, frame.spin, frame.locked)
         if here(state, frame, clock, case)[1].rate > 0.0:
@@ -158,7 +158,7 @@ def settled(state, frame, clock, case):
     clock = clock_at(_SETTLING * clock.tau, clock)
     if low > -1.0 and high < 1.0:
         return True, state, frame, clock
-    omega = state.V * (1.0 + creep_limit(state.V, case.scene) * frame.sigma)
+    omega = state.V * (1.0 + creep_at(state.V, frame.sigma, case.scene))
     return True, State(state.V, omega), Frame(True, frame.direction, frame.sigma, frame.spin, frame.locked), clock
 
 
@@ -172,7 +172,8 @@ def next_piece(moving, state, frame, clock, case):
     clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
     if moving:
         state, frame = at_new_piece(state, frame, clock, case)
-        moving = not frame.slips or state.V != 0.0 or state.second != 0.0
+        # in partial slip omega is 0 where V is
+        moving = state.V != 0.0 or (frame.slips and state.second != 0.0)
     return moving, state, frame, clock
 
 

@@ -1,5 +1,5 @@
 """The drive at a time.  A piece of it is a row of numbers: when it begins, the scale of its time, and the coefficients
-of four polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the piece; tau = gamma t."""
+of five polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the piece; tau = gamma t."""
 
 from __future__ import annotations
 
@@ -8,14 +8,18 @@ from .records import NEITHER, OMEGA, SPEED, Load
 
 #: columns: start, scale, and from here on as many coefficients for each function as there are terms
 START, SCALE, FIRST = 0, 1, 2
-#: the functions: force and torque; the slope over tau of the speed that is prescribed; most that the brake can take
-FORCE, TORQUE, RATE, BRAKE, FUNCTIONS = range(5)
+#: the functions: force and torque; the slope over tau of the speed that is prescribed; most that the brake can take;
+#: the prescribed speed itself
+FORCE, TORQUE, RATE, BRAKE, PRESCRIBED, FUNCTIONS = range(6)
+#: functions whose values a panel keeps at its nodes: all but the prescribed speed, which is read at single times
+AT_NODES = PRESCRIBED
 #: unit of rounding
 _ROUNDING = 2.2e-16
 #: a jump or a corner up to this share is what the fit of a callable leaves
 _SMOOTH = 1e-4
-#: parts of a piece whose middles tell how far a prescribed speed rises and falls
-_PARTS = 16
+#: units of rounding of a piece's coefficients up to which a prescribed speed counts as 0: a polynomial of up to 14
+#: terms, moved to a part of its piece, is off by some of them
+_ROUNDINGS = 30.0
 
 
 @kernel(inline=True)
@@ -41,6 +45,33 @@ def values_at(tau, piece, drive):
     x = (tau - row[START]) * row[SCALE] - 1.0
     rate = value(row, RATE, x) if drive.prescribed != NEITHER else 0.0
     return value(row, FORCE, x), value(row, TORQUE, x), rate, max(value(row, BRAKE, x), 0.0)
+
+
+@kernel
+def prescribed_speed(tau, piece, drive):
+    """The speed that is prescribed, at one time.
+
+    Parameters
+    ----------
+    tau : float
+        The time, within the piece.
+    piece : int
+        Number of the piece of the drive.
+    drive : Drive
+        With a prescribed speed.
+
+    Returns
+    -------
+    float
+        V or omega, dimensionless, not turned into the frame of the motion; 0 where it is rounding beside the
+        coefficients of its own piece, whatever the speeds were before.
+    """
+    row = drive.pieces[piece]
+    terms = terms_of(row)
+    speed, size = value(row, PRESCRIBED, (tau - row[START]) * row[SCALE] - 1.0), 0.0
+    for n in range(terms):
+        size += abs(row[FIRST + PRESCRIBED * terms + n])
+    return speed if abs(speed) > _ROUNDINGS * _ROUNDING * size else 0.0
 
 
 @kernel(inline=True)
@@ -88,7 +119,7 @@ def goes_on(piece, pieces):
     """Whether the drive neither jumps nor turns a corner at the end of a piece, to the accuracy of a step's length."""
     row, then = pieces[piece], pieces[piece + 1]
     terms = terms_of(row)
-    for function in range(FUNCTIONS):
+    for function in range(AT_NODES):
         size = jump = turn = 0.0
         for n in range(terms):
             before, behind = row[FIRST + function * terms + n], then[FIRST + function * terms + n]
@@ -106,7 +137,7 @@ def constant(piece, pieces):
     """Whether the drive stays as it is within a piece."""
     row, change = pieces[piece], 0.0
     terms = terms_of(row)
-    for function in range(FUNCTIONS):
+    for function in range(AT_NODES):
         for n in range(1, terms):
             change += abs(row[FIRST + function * terms + n])
     return change == 0.0
@@ -116,20 +147,9 @@ def constant(piece, pieces):
 def brakes(piece, pieces):
     """Whether there is a brake within a piece, if only later on."""
     row, size = pieces[piece], 0.0
-    for n in range(FIRST + BRAKE * terms_of(row), row.size):
+    for n in range(FIRST + BRAKE * terms_of(row), FIRST + (BRAKE + 1) * terms_of(row)):
         size += abs(row[n])
     return size > 0.0
-
-
-@kernel
-def risen_by(piece, pieces):
-    """What a prescribed speed has risen and fallen by before a piece, about."""
-    total = 0.0
-    for row in pieces[:piece]:
-        for n in range(_PARTS):
-            if row[SCALE] > 0.0:
-                total += 2.0 / (_PARTS * row[SCALE]) * abs(value(row, RATE, (2 * n + 1) / _PARTS - 1.0))
-    return total
 
 
 @kernel

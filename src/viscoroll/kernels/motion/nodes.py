@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from .collocation import INTEGRAL, SHARES, WIDE, N
-from .load import FUNCTIONS, constant, load_of, needed, values_at
+from .load import AT_NODES, constant, load_of, needed, values_at
 from .rates import edge, rates_of, speeds
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN, State
 
@@ -26,7 +26,7 @@ PATH, PATHS = WIDE * 22, 7
 EVENT = PATH + WIDE * PATHS
 DRIVE = EVENT + WIDE * EVENTS
 #: the interpolants: of V, of the second unknown, of the path, of the function of an event; what has added up
-OF_V = DRIVE + WIDE * FUNCTIONS
+OF_V = DRIVE + WIDE * AT_NODES
 OF_SECOND, OF_PATH = OF_V + WIDE, OF_V + WIDE * 2
 OF_EVENT = OF_PATH + WIDE * PATHS
 TOTALS = OF_EVENT + WIDE

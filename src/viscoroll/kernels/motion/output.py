@@ -1,10 +1,13 @@
-"""Outputs of a driven motion."""
+"""Outputs of a motion: V, omega, delta and the regime; what acts; what adds up along the way."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ..compile.by_reference import by_value
 from ..compile.jit import kernel
+from ..rows.cover import of_cover
+from ..rows.law import creep_at_rest
 from .collocation import WIDE, integral_at, integral_terms, rise_at
 from .load import load_at, needed, threshold
 from .nodes import (
@@ -165,26 +168,32 @@ def coast(state, frame, clock, case):
     """Outputs of the last decay, (1 + j + gamma N) V' = -rate V with delta/V constant: (status, clock)."""
     scene, direction = case.scene, frame.direction
     half_space, cylinder, force, torque = last_pulls(case)
-    inertia = 1.0 + scene.j + inertia_at(0.0, scene)[0]
-    # V and omega fall together: Q = 4 kappa delta takes what the moments differ by
+    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
+    spin = 1.0 + free
+    inertia = 1.0 + scene.j * spin + inertia_at(0.0, scene)[0]
+    # V and omega fall together: Q = 4 kappa (delta - delta_0)/L takes what the moments differ by
     rate, per = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
-    creep = state.V * (scene.j * (half_space - force) - cylinder + torque) / per
-    fastest, rest, end = max(state.V, abs(state.V * (1.0 + creep))), threshold(clock.piece, case), np.inf
+    pull = scene.j * spin * (half_space - force) - cylinder + torque
+    creep = state.V * pull / per * L
+    fastest, rest, end = max(state.V, abs(state.V * (spin + creep))), threshold(clock.piece, case), np.inf
     if rest > 0.0:
         end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)
     by_force, by_torque = force / rate, torque / rate
     energies = 0.0, 0.0, by_force, by_torque, 0.0, 0.0, 1.0 + scene.j + by_force + by_torque
+    if of_cover(by_value(scene.law).free):
+        rolling, slipping = (half_space + cylinder * spin) / rate, free * pull / (inertia * rate)
+        energies = 0.0, 0.0, by_force, by_torque * spin, 0.0, slipping, rolling
     for at in range(clock.at, case.tau.size):
         moves = case.tau[at] <= end
         gone = np.expm1(-rate * (min(case.tau[at], end) - clock.tau))
         decay = 1.0 + gone if gone > -0.5 else np.exp(-rate * (case.tau[at] - clock.tau))
         V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
-        moving = direction * V, direction * (V * (1.0 + delta)), delta
+        moving = direction * V, direction * (V * (spin + delta)), delta + free
         _put(at, moving, PARTIAL if moves else REST, (force * direction * V, torque * direction * V), case)
         way = -direction * state.V * gone / (rate * scene.gamma)
         lost = 0.5 * state.V * state.V * (-gone * (1.0 + decay) if moves else 1.0)
         for n in range(PATHS):
-            _put_path(at, n, way if n < 2 else energies[n] * lost, case)
+            _put_path(at, n, way * (spin if n == 1 else 1.0) if n < 2 else energies[n] * lost, case)
     last = case.tau[case.tau.size - 1]
     clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
     if end <= last:

@@ -8,7 +8,7 @@ from ..compile.jit import kernel
 from ..rows.record import ALPHA, E0
 from .collocation import N, rise_at
 from .events import NOWHERE, ends_on, first_event, located, passed_over, place_of
-from .load import load_at, piece_end, undriven, unloaded
+from .load import constant, load_at, piece_end, rounding, undriven, unloaded
 from .nodes import (
     DIAGONAL,
     OF_SECOND,
@@ -20,6 +20,7 @@ from .nodes import (
     SLOPE,
     SPEED,
     V_RATE,
+    P,
     Panel,
     V,
     cut,
@@ -33,13 +34,21 @@ from .rates import last_pulls, rates_of
 from .records import EDGE, NO_EVENT, SLOW, STUCK, TURN, Clock, Frame, State
 from .records import SPEED as VELOCITY
 from .solve import panel_error, solve
+from .steady import nearness, stay_steady
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
 _FIRST, _RELAXED = 0.4, 3.0
 #: behind the onset of stick the law bends: how far d may go on the first panel there, over what slip feeds back by
 _BEND = 12.0
+#: unit of rounding
+_ROUNDING = 2.2e-16
+#: distance from an equilibrium of V over that up to which a motion has come to it, below which this is looked at
+_NEARLY_STEADY = 2.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
+#: error over the tolerance up to which a panel is taken where a shorter one could not be told from none: the error of a
+#: motion grows by 2 to 3 rtol at most
+_SHORTEST = 10.0
 #: V at the end of a panel, over that at its start, from which on V = 0 is sought
 _NEARLY = 0.2
 #: V that stands for 0
@@ -236,6 +245,15 @@ def creeps(state, frame, case):
     return half_space + cylinder > force + torque and abs(state.second) < _SETTLED * rtol
 
 
+@kernel(inline=True)
+def _slows(noise, case):
+    """Whether V at node 0 may be at its equilibrium, by the slope of p' over V alone; ``noise`` as in
+    :func:`stay_steady`."""
+    nodes = case.nodes
+    # p is about its slope over V times V
+    return abs(nodes[P_RATE]) - noise <= -_NEARLY_STEADY * nearness(case.limits.rtol) * nodes[DIAGONAL] * abs(nodes[P])
+
+
 @kernel
 def phase(fresh, state, frame, clock, case):
     """Follow a regime: (event, state, frame, clock).  ``fresh``: the stick zone has just formed."""
@@ -243,9 +261,17 @@ def phase(fresh, state, frame, clock, case):
     end, length, rejected, last, last_size = piece_end(clock.piece, case), clock.length, 0, 0.0, 1.0
     length = max(length, _INSTANT * clock.tau) if length > 0.0 else length
     alone, free = undriven(clock.piece, case.drive), unloaded(clock.piece, case.drive)
+    lasting, noise = not free and constant(clock.piece, case.drive.pieces), 0.0
+    if lasting:
+        # of p', which in full slip holds Q = mu
+        noise = rounding(clock.piece, case.drive.pieces) + (_ROUNDING * case.scene.mu if frame.slips else 0.0)
     track = Panel(clock.tau, 0.0, clock.piece, False, alone)
     while clock.tau < end and clock.steps < limits.max_steps and not (free and creeps(state, frame, case)):
         frame = _begin(state, frame, clock, case)
+        if lasting and _slows(noise, case):
+            steady, state, clock = stay_steady(end, noise, state, frame, clock, case)
+            if steady:
+                return NO_EVENT, state, frame, clock
         if length == 0.0:
             length = max(_first_length(fresh, clock, frame, case), _INSTANT * clock.tau)
         left = end - clock.tau
@@ -262,9 +288,11 @@ def phase(fresh, state, frame, clock, case):
         clock = Clock(clock.tau, clock.at, clock.piece, clock.steps + 1, clock.ends, length)
         rejected += 1
         if not size <= 1.0:
-            if rejected > _MOST_REJECTIONS or not clock.tau + length > clock.tau:
+            if rejected <= _MOST_REJECTIONS and clock.tau + length > clock.tau:
+                continue
+            if not size <= _SHORTEST:
                 return STUCK, state, frame, clock
-            continue
+            length = panel.length
         whole = v == 2.0 and panel.length == left
         clock = pass_panel(end if whole else panel.tau + panel.length * 0.5 * v, v, panel, frame, clock, case)
         state = State(nodes[V + N], nodes[SECOND + N])

@@ -5,6 +5,9 @@ law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w 
 
     omega = V (1 + k L d)      Q = s mu [1 - w^2 press(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
 
+On a cover of finite thickness delta = delta_0(u) + k L d: delta_0 V is added to omega, and to V' in the last line its
+slope (:mod:`..rows.cover`); half-spaces are compiled without it.
+
 Both sides of the last stay finite as V -> 0, where d follows from the right one being 0.  For |d| > 1 the law is
 continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V < 0 as odd functions.
 
@@ -30,7 +33,8 @@ from ..compile.by_reference import by_value
 from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
 from ..rows.added import added_mass
-from ..rows.law import bodies, place, press, press_secants, speed
+from ..rows.cover import free_kinematics
+from ..rows.law import bodies, creep_at_rest, place, press, press_secants, shift, speed
 from .load import acting
 
 #: k over the least with which dp/dV may vanish at d = -1, from which on V is collocated
@@ -84,7 +88,9 @@ def last_pulls(case):
     """(Moments of half-space and cylinder, force and torque by gains), over V = omega -> 0."""
     _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, case.scene)
     gains = case.drive.gains
-    return half_space, cylinder, gains.force_V + gains.force_omega, gains.torque_V + gains.torque_omega
+    free = creep_at_rest(case.scene.kappa, by_value(case.scene.law))[1]
+    spin = 1.0 + free
+    return half_space, cylinder, gains.force_V + gains.force_omega * spin, gains.torque_V + gains.torque_omega * spin
 
 
 @kernel(inline=True)
@@ -92,6 +98,21 @@ def creep_limit(V, scene):
     """delta_star at V."""
     u, law = scene.kappa * abs(V), by_value(scene.law)
     return 0.5 * scene.mu / scene.kappa * speed(place(u, law), u, law).L
+
+
+@kernel(inline=True)
+def creep_at(V, d, scene):
+    """delta at V and d, |d| <= 1."""
+    u, law = scene.kappa * abs(V), by_value(scene.law)
+    delta = creep_limit(V, scene) * d
+    return delta if law.free is None else delta + 0.5 / scene.kappa * shift(u, law)[0]
+
+
+@kernel(inline=True)
+def sliding(slip, V, scene):
+    """The slip omega - V beyond that of free rolling."""
+    law = by_value(scene.law)
+    return slip if law.free is None else slip - V * (0.5 / scene.kappa * shift(scene.kappa * abs(V), law)[0])
 
 
 @kernel(inline=True)
@@ -104,7 +125,7 @@ def inertia_at(V, scene):
 def speeds(state, frame, scene):
     """(omega, delta) of a state."""
     if not frame.slips:
-        delta = creep_limit(state.V, scene) * state.second
+        delta = creep_at(state.V, state.second, scene)
         return state.V * (1.0 + delta), delta
     slip = state.second - state.V
     return state.second, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
@@ -122,7 +143,7 @@ def edge(V, second, frame, scene):
     if not frame.slips:
         n, _, _ = inertia_at(V, scene)
         return (1.0 - frame.sigma * second) * room(n, scene.j)
-    return frame.sigma * (second - V) - creep_limit(V, scene) * abs(V)
+    return frame.sigma * sliding(second - V, V, scene) - creep_limit(V, scene) * abs(V)
 
 
 @kernel(inline=True)
@@ -153,7 +174,9 @@ def stick_rates(V, d, load, frame, scene):
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * rise)
         Q_V, Q_d = -2.0 * sign * mu * w * (A * left * dL + slope) * turn, 2.0 * mu * w * L * A
     spread = L + u * dL
-    omega, omega_V, omega_d = V * (1.0 + k * L * d), 1.0 + k * d * spread, k * V * L
+    free = free_kinematics(place(u, law), u, scene.kappa, k, spread, law.free)
+    tilt = d + free.aside
+    omega, omega_V, omega_d = V * (1.0 + k * L * d + free.creep), 1.0 + k * tilt * spread, k * V * L
     force, _, torque = acting(V, omega, load, frame)
     M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
     per_V, per_omega, per_both = load.per_V, load.per_omega, load.per_V * load.per_omega
@@ -173,14 +196,15 @@ def stick_rates(V, d, load, frame, scene):
         torque_V, torque_d = torque_V - 0.5 * (n_V * V_rate + n * V_V), torque_d - 0.5 * n * V_d
         p, p_V = p + per_both * whole, p_V + per_both * n
     omega_rate = per_omega * (torque - Q - M_cylinder) + load.omega_rate
-    rate = ((omega_rate - V_rate) / k - d * spread * V_rate) / L
+    rate = ((omega_rate - V_rate) / k - tilt * spread * V_rate) / L
     turn_V, turn_d = per_omega * (torque_V - Q_V - cylinder_rise), per_omega * (torque_d - Q_d)
-    bend = turn * ((2.0 * dL + u * ddL) * d * V_rate + dL * rate)
+    bend = turn * (((2.0 * dL + u * ddL) * d + free.bend) * V_rate + dL * rate)
     if unlikely(strong(load, frame, scene)):
         p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
     return Rates(
         omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, p_V, p_d, p_rate_V, p_rate_d,
-        ((turn_V - V_V) / k - d * spread * V_V - bend) / L, ((turn_d - V_d) / k - spread * (V_rate + d * V_d)) / L, 1.0,
+        ((turn_V - V_V) / k - tilt * spread * V_V - bend) / L,
+        ((turn_d - V_d) / k - spread * (V_rate + tilt * V_d)) / L, 1.0,
     )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.by_reference import by_value
+from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
 from .collocation import SLOPES, TO_START, WIDE, N, invert, product, rise_terms, weighted_slopes
 from .guess import guess
@@ -25,6 +26,7 @@ from .nodes import (
     CHANGE,
     COUPLED,
     DIAGONAL,
+    DRIVE,
     FED,
     OF_SECOND,
     OF_V,
@@ -59,6 +61,10 @@ SHARE, _NEWTON, _LEAST = 0.25, 0.016, 1e-14
 #: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, at most,
 #: and over its change
 _ANEW, _SLOWED, _FIRST_GAIN, _SQUARED = 1e-2, 1e-3, 0.1, 10.0
+#: unit of rounding
+_ROUNDING = 2.2e-16
+#: what the rounding of Q makes of a mismatch of V', over mu: some tens of units, as its extrapolation enlarges it
+_RATE_NOISE = 30.0 * _ROUNDING
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
 #: a mismatch that is no small share of how the rates vary does not overstate it: over that share
@@ -78,6 +84,18 @@ def _creep_weight(share):
     return max(_D_SHARE, share * share) / (abs(share) + _D_SHARE)
 
 
+@kernel
+def _least_speed(panel, case):
+    """The V of full slip that rounding of V' leaves a share of the tolerance of Newton's iteration of.
+
+    V' = Q - M + f may be a small difference of Q and f.  Its rounding moves V for the length of the panel, or for the
+    time in which V relaxes where that is shorter.
+    """
+    nodes = case.nodes
+    moved = _ROUNDING * (case.scene.mu + abs(nodes[DRIVE + N])) * 0.5 * panel.length / (1.0 + abs(nodes[DIAGONAL + N]))
+    return moved / max(_NEWTON * SHARE * case.limits.rtol, _LEAST)
+
+
 @kernel(inline=True)
 def scales(panel, frame, case):
     """(Of V, of the second unknown): what errors are measured by; speeds by the largest of the panel."""
@@ -86,7 +104,11 @@ def scales(panel, frame, case):
         fastest, own = max(fastest, nodes[SPEED + i]), max(own, abs(nodes[V + i]))
     fastest = max(fastest, own)
     if frame.slips:
-        return own if panel.alone else fastest, fastest
+        # where no gain feeds omega into V', V is measured beside itself: omega may be larger by any factor, and a V
+        # that is right beside omega alone may leave the speed at which it settles
+        if panel.alone:
+            return own, fastest
+        return fastest if case.drive.gains.force_omega != 0.0 else max(own, _least_speed(panel, case)), fastest
     # an error of d is one of omega, and of V where p is given
     for i in range(1, N + 1):
         moved = max(moved, abs(nodes[P_SECOND + i] * nodes[PER_P + i]))
@@ -221,13 +243,23 @@ def _least(panel, case):
     return least / largest if largest > 0.0 else 1.0
 
 
+@kernel
+def _strong_noise(frame, case):
+    """What rounding makes of a mismatch of V' where friction is strong, per length of the panel: V' may be a small
+    difference of Q and f.  0 elsewhere, so wherever mu <= kappa."""
+    return _RATE_NOISE * case.scene.mu if strong(load_there(0, frame, case), frame, case.scene) else 0.0
+
+
 @kernel(inline=True)
 def panel_error(panel, frame, case):
     """Error of the interpolants over their tolerance; of d only what its relaxation leaves of it counts."""
     nodes, half = case.nodes, 0.5 * panel.length
     of_V, of_second = scales(panel, frame, case)
     per = abs(nodes[PER_P + N])
-    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes) * per
+    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes)
+    if unlikely(case.scene.mu > case.scene.kappa):
+        error = max(error - _strong_noise(frame, case) * panel.length, 0.0)
+    error *= per
     varies = _variation(half, nodes) * per + case.limits.rtol * of_V
     error *= min(max(_UNRESOLVED * error / varies, 1.0), 1.0 / _OVERSTATED)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not

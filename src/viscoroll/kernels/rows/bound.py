@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..compile.intrinsics import floats_at, function_address, integers_at, record_at
 from ..compile.jit import kernel
 from .contact import slopes_of_Q, traction_of
+from .cover import FRONT, ROW, free_value
 from .law import bodies, place, speed, way_of
 from .record import PARTS, WIDTH, Law
 from .states import State
@@ -26,9 +27,10 @@ from .states import State
 FASTEST = 1e300
 OUT = 8
 #: address of the function; whether slopes are asked for, whether the bodies differ; addresses of the rows and of the
-#: marks of the law, and how many these are; kappa, mu; what 1 of V, omega, Q and M is to the caller
+#: marks of the law, how many these are, and the address of what a cover has beside them; kappa, mu; what 1 of V, omega,
+#: Q and M is to the caller
 SCENE = np.dtype(
-    [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "count")]
+    [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "count", "free")]
     + [(name, np.float64) for name in ("kappa", "mu", "V", "omega", "Q", "M")]
 )
 
@@ -36,30 +38,49 @@ SCENE = np.dtype(
 @kernel(inline=True, allocates=True)
 def _law_of(scene):
     rows, marks = floats_at(scene.rows, scene.count * WIDTH), integers_at(scene.marks, scene.count * PARTS)
-    return Law(rows, marks, rows[:0], 0, 0, 0)
+    return Law(rows, marks, rows[:0], 0, 0, 0, None)
+
+
+@kernel(inline=True, allocates=True)
+def _law_of_cover(scene):
+    law = _law_of(scene)
+    free = floats_at(scene.free, FRONT + ROW * (scene.count - 1))
+    return Law(law.rows, law.marks, law.added, 0, 0, 0, free)
 
 
 @kernel(allocates=True)
 def _loads(speed_of_axis, spin, to, scenes):
-    out, scene = carray(to, OUT), record_at(scenes)
+    scene = record_at(scenes)
+    return _found(speed_of_axis, spin, to, scene, _law_of(scene))
+
+
+@kernel(allocates=True)
+def _loads_on_cover(speed_of_axis, spin, to, scenes):
+    scene = record_at(scenes)
+    return _found(speed_of_axis, spin, to, scene, _law_of_cover(scene))
+
+
+@kernel(inline=True, allocates=True)
+def _found(speed_of_axis, spin, to, scene, law):
+    out = carray(to, OUT)
     V, omega = speed_of_axis / scene.V, spin / scene.omega
     u = scene.kappa * abs(V)
     if not (u <= FASTEST and abs(V) < np.inf and abs(omega) < np.inf):
         for n in range(OUT):
             out[n] = np.nan
         return 1
-    law, state = _law_of(scene), State(scene.kappa, scene.mu, V, omega, True)
+    state = State(scene.kappa, scene.mu, V, omega, True)
     here = place(u, law)
     found = speed(here, u, law)
-    way = way_of(here, u, found.scale, state)
-    out[0], out[1] = traction_of(u, found.L, state, law), way * found.m
+    way, free = way_of(here, u, found.scale, state), free_value(here, u, law.free)
+    out[0], out[1] = traction_of(u, found.L, free, state, law), way * found.m
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * found.rise
     if scene.unlike:
         half_space, cylinder, out[6], out[7] = bodies(here, u, law)
         out[2], out[3] = way * half_space, way * cylinder
     if scene.slopes:
-        out[4], _, out[5] = slopes_of_Q(u, found.L, found.dL, state, law)
+        out[4], _, out[5] = slopes_of_Q(u, found.L, found.dL, free, state, law)
         out[4], out[5] = out[4] * scene.Q / scene.V, out[5] * scene.Q / scene.omega
         out[6], out[7] = out[6] * scene.M / scene.V, out[7] * scene.M / scene.V
     out[0] *= scene.Q
@@ -71,7 +92,8 @@ def _loads(speed_of_axis, spin, to, scenes):
 def bind(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> NDArray[Any]:
     """Scenes without slopes and with; the law is to outlive them."""
     found = np.zeros(2, SCENE)
-    found["function"], found["slopes"] = function(), [0, 1]
+    found["function"], found["slopes"] = function(law.free is not None), [0, 1]
+    found["free"] = 0 if law.free is None else law.free.ctypes.data
     found["rows"], found["marks"], found["count"] = law.rows.ctypes.data, law.marks.ctypes.data, law.rows.size // WIDTH
     found["unlike"], found["kappa"], found["mu"] = unlike, kappa, mu
     for name in ("V", "omega", "Q", "M"):
@@ -79,6 +101,7 @@ def bind(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, fl
     return found
 
 
-def function() -> int:
-    """Address of the function."""
-    return function_address(_loads, SCENE, types.int32, types.float64, types.float64, types.CPointer(types.float64))
+def function(of_cover: bool) -> int:
+    """Address of the function, of half-spaces or of covers."""
+    loads = _loads_on_cover if of_cover else _loads
+    return function_address(loads, SCENE, types.int32, types.float64, types.float64, types.CPointer(types.float64))

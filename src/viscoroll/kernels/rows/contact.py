@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .law import bodies, lengths, place, press, press_secants, share, speed, way_of
+from .cover import keep_free, kept_free, sliding_creep, slope_over_speed
+from .law import bodies, lengths, place, press, press_secants, share, shift, speed, way_of
 from .record import hold
 from .states import put, slip_and_creep, state_of
 
@@ -86,31 +87,36 @@ def traction_slopes(u, L, dL, D, law):
 
 
 @kernel(inline=True)
-def _creep(L, state):
-    """(A number with the sign of omega - V, creep ratio, D or, in full slip, infinity)."""
+def _creep(L, free, state, law):
+    """(A number with the sign of Q, the creep that makes Q, D or, in full slip, infinity).
+
+    ``free``: 2 kappa delta_0.
+    """
     slip, delta = slip_and_creep(state)
+    slip, delta = sliding_creep(slip, delta, free, state, law.free)
     full = abs(delta) >= 0.5 * state.mu / state.kappa * L
     return slip, delta, np.inf if full else 2.0 * state.kappa / state.mu * abs(delta)
 
 
 @kernel(inline=True)
-def traction_of(u, L, state, law):
-    """Q."""
-    slip, _, D = _creep(L, state)
+def traction_of(u, L, free, state, law):
+    """Q; ``free``: 2 kappa delta_0."""
+    slip, _, D = _creep(L, free, state, law)
     return np.copysign(state.mu * traction(u, L, D, law), slip)
 
 
 @kernel(inline=True)
-def slopes_of_Q(u, L, dL, state, law):
+def slopes_of_Q(u, L, dL, free, state, law):
     """Slopes of Q: over V at fixed delta or omega, whichever is given; over delta and over omega."""
-    _, delta, D = _creep(L, state)
+    _, delta, D = _creep(L, free, state, law)
     if D == np.inf:
         return 0.0, 0.0, 0.0
     over_u, over_D = traction_slopes(u, L, dL, D, law)
     over_delta = 2.0 * state.kappa * over_D
     over_V, over_omega = np.sign(delta) * state.mu * state.kappa * over_u, over_delta / abs(state.V)
+    over_V = slope_over_speed(over_V, over_delta, shift(u, law)[1], law.free)
     if state.creep_is_omega:
-        over_V -= over_omega * (1.0 + delta)
+        over_V -= over_omega * (1.0 + slip_and_creep(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
 
 
@@ -136,6 +142,7 @@ def _at_speed(k, at, room, law, asked):
     found = speed(here, u, law)
     way = way_of(here, u, found.scale, state)
     room[0, at] = found.L
+    keep_free(room, at, here, u, law.free)
     put(to.M, way * found.m, n, asked)
     if to.dM_dV >= 0 or _of_Q(to):  # read again: slopes at hand would be computed though not asked for
         slopes = speed(here, u, law)
@@ -159,19 +166,20 @@ def _at_speed(k, at, room, law, asked):
 def _at_creep(k, at, room, law, asked):
     """What depends on the creep too."""
     to, (state, n, u) = asked.to, _turn(k, asked)
-    L = room[0, at]
-    _, delta, D = _creep(L, state)
+    L, free = room[0, at], kept_free(room, at, law.free)
+    _, _, D = _creep(L, free, state, law)
     if to.Q >= 0:
-        put(to.Q, traction_of(u, L, state, law), n, asked)
+        put(to.Q, traction_of(u, L, free, state, law), n, asked)
     if to.beta >= 0:
         put(to.beta, stick_share(u, room[1, at], L, D, law), n, asked)
     if to.grip >= 0:
         put(to.grip, grip(u, L, D, law), n, asked)
     put(to.delta_star, 0.5 * state.mu / state.kappa * L, n, asked)
-    put(to.delta, delta, n, asked)
+    put(to.delta, slip_and_creep(state)[1], n, asked)
+    put(to.delta_0, 0.5 * free / state.kappa, n, asked)
     put(to.full_slip, 1.0 if D == np.inf else 0.0, n, asked)
     if _of_Q(to):
-        over_V, over_delta, over_omega = slopes_of_Q(u, L, room[2, at], state, law)
+        over_V, over_delta, over_omega = slopes_of_Q(u, L, room[2, at], free, state, law)
         put(to.dQ_dV, over_V, n, asked)
         put(to.dQ_ddelta, over_delta, n, asked)
         put(to.dQ_domega, over_omega, n, asked)
@@ -181,8 +189,8 @@ def _at_creep(k, at, room, law, asked):
 def contact_loop(law, asked, room, count):
     """What is asked for of ``count`` states.
 
-    ``room``: for three numbers of some states, which wait there: so the processor works on several at once; of one
-    state where each has a law of its own, of which one is held at a time.
+    ``room``: for three numbers of some states, four of covers, which wait there: so the processor works on several at
+    once; of one state where each has a law of its own, of which one is held at a time.
     """
     for begin in range(0, count, room.shape[1]):
         end = min(begin + room.shape[1], count)

@@ -68,7 +68,7 @@ class Jitted:
         self._scenes = bind(law, unlike, kappa, mu, scale)
         self.plain, self.address = (int(self._scenes[n:].ctypes.data) for n in (0, 1))
         # with the GIL: to release it takes longer than the law
-        self.function_address = function()
+        self.function_address = function(law.free is not None)
         self.function = ctypes.PYFUNCTYPE(_C[0], *_C[1:3], ctypes.c_void_p, _C[4])(self.function_address)
 
     def __call__(self, V: float, omega: float) -> LoadsAndSlopes:

@@ -27,6 +27,7 @@ import numpy as np
 from ..compile.intrinsics import bits_to_float, float_to_bits, unlikely
 from ..compile.jit import kernel
 from . import lanes
+from .cover import fast_lengths, fast_moment, fast_share, free_creep
 from .record import (
     ALPHA,
     BODIES,
@@ -114,7 +115,8 @@ def speed(at, u, law):
         z, shift, part = _fast(u, WHOLE, law)
         per, fall = law.rows[LOW] / u, shift - 4.0 * part
         bend = per * (2.0 * fall - 4.0 * part) / u
-        return Speed(law.rows[LOW] * (1.0 + shift), -per * fall, bend, shift + part, z, z * (3.0 * part - shift))
+        own = fast_moment(shift, u, law.free)
+        return Speed(law.rows[LOW] * (1.0 + shift), -per * fall, bend, own + part, z, z * (3.0 * part - own))
     L, m, dL, dm, ddL, _ = lanes.pair(law.rows, ready(SPEED, at.row, law), at.t)
     return Speed(L, dL * at.per, ddL * at.per * at.per, m, 1.0, m + u * at.per * dm)
 
@@ -130,7 +132,7 @@ def lengths(at, u, law):
     """(lam, epsilon) at u."""
     if beyond(at):
         _, shift, _ = _fast(u, WHOLE, law)
-        return law.rows[LOW], shift
+        return fast_lengths(law.rows[LOW], shift, u, law.free)
     return lanes.pair(law.rows, ready(LENGTHS, at.row, law), at.t)[:2]
 
 
@@ -148,6 +150,23 @@ def bodies(at, u, law):
     return half_space, cylinder, half_space + per * d_half_space, cylinder + per * d_cylinder
 
 
+@kernel(inline=True)
+def shift(u, law):
+    """(2 kappa delta_0 at u, its slope over u, and the slope of that); 0 of half-spaces, without looking."""
+    if law.free is None:
+        return 0.0, 0.0, 0.0
+    return free_creep(place(u, law), u, law.free)
+
+
+@kernel(inline=True)
+def creep_at_rest(kappa, law):
+    """(L, delta_0) as V -> 0: 1 and -0.0 of half-spaces."""
+    if law.free is None:
+        return 1.0, -0.0
+    at = place(0.0, law)
+    return speed(at, 0.0, law).L, 0.5 * free_creep(at, 0.0, law.free)[0] / kappa
+
+
 # --- over v = 1/F(eta), y = 1/v ---
 
 
@@ -163,7 +182,7 @@ def _fast_share(y, law):
 def share(at, v, law):
     """eta/F at v."""
     if beyond(at):
-        return _fast_share(1.0 / v, law)[0]
+        return fast_share(_fast_share(1.0 / v, law)[0], v, law.free)
     return lanes.one(law.rows, ready(SHARE, at.row, law), at.t)[0]
 
 

@@ -34,6 +34,7 @@ class Law(NamedTuple):
     marks : those in front, as many as a row has; then of every part of every row the stamp of the material that it was
         made for
     added : rows of N and of its integral (:func:`...materials.law_build.added`); none of a law of steady rolling
+    free : of a cover the numbers of :mod:`cover`, and None of half-spaces, whose kernels are compiled without
     hold, make, source : addresses of the kernels (n, source) and (where a part begins, source), and of what these know
         (:mod:`..compile.intrinsics`); 0 where all rows stand
     """
@@ -44,6 +45,7 @@ class Law(NamedTuple):
     hold: int
     make: int
     source: int
+    free: Any = None
 
 
 @kernel(inline=True)

@@ -30,6 +30,7 @@ class Fields(NamedTuple):
     M_cylinder: int = -1
     dM_half_space_dV: int = -1
     dM_cylinder_dV: int = -1
+    delta_0: int = -1
 
 
 class State(NamedTuple):

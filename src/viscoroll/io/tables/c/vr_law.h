@@ -2,6 +2,7 @@
  *
  * C99 and C++, one header, no allocation, no state, thread safe; of libm: frexp, log, log1p, sqrt, fabs, fmin, fmax.
  * Dimensionless: V in R/T_ref, forces over the load P, moments over P R.  V and slip = omega - V have any sign.
+ * All values are NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300.
  *
  *     vr_state s = vr_contact(&rubber, kappa, mu, V, slip);
  *     vr_slopes d;
@@ -118,10 +119,20 @@ static inline double vr_secant(const vr_law *law, double v1, double v2) {
   return total;
 }
 
+/* a NaN for every value */
+static inline void vr_nothing(vr_state *s, vr_slopes *d) {
+  s->lam = s->epsilon = s->delta_star = s->beta = s->Q = s->M = s->M_half_space = s->M_cylinder = s->N = NAN;
+  if (d) d->dQ_dV = d->dQ_domega = d->dM_dV = d->dM_half_space_dV = d->dM_cylinder_dV = NAN;
+}
+
 static inline void vr_solve(const vr_law *law, double kappa, double mu, double V, double slip,
                             vr_state *s, vr_slopes *d) {
   double u = kappa * fabs(V), f[5], m[2] = {0.0, 0.0}, a[2], b[2], p1, p2, q;
   double sign = (slip > 0.0) - (slip < 0.0), delta = slip == 0.0 ? 0.0 : fabs(slip / V);
+  if (!(kappa > 0.0 && mu > 0.0 && mu < HUGE_VAL && u <= 1e300 && fabs(slip) < HUGE_VAL)) {
+    vr_nothing(s, d);
+    return;
+  }
   vr_speed(law, u, f, d ? m : (double *)0);
   double L = f[VR_LAM] * (1.0 + f[VR_EPSILON]), D = 2.0 * kappa * delta / mu, w = L - D;
   s->lam = f[VR_LAM], s->epsilon = f[VR_EPSILON], s->N = f[VR_N], s->delta_star = 0.5 * mu * L / kappa;

@@ -1,0 +1,145 @@
+"""A cover, belt or lining of finite thickness under or on a roller, dimensionless: :class:`Cover`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Real
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.checks import checked, frozen, number
+from ..core.errors import ParameterError
+from ..core.results import short
+from .bodies import Bodies
+from .cover_rows import CoverRows, cover_rows
+from .cover_solve import CoverModes
+from .prony import Prony, series_of_alpha
+from .prony_forms import HIGHEST_ALPHA
+
+#: thickness over l0 beyond which a body is a half-space to rounding at any speed of interest
+_THICKEST = 1e15
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Cover(Bodies):
+    """A viscoelastic layer bonded to a rigid core or bed, rolling against a rigid or elastic body.
+
+    It stands as ``material`` of a :class:`viscoroll.Scene`.  In SI units give ``thickness`` to a
+    :class:`viscoroll.Material`.
+
+    Parameters
+    ----------
+    series : the layer's :class:`Prony` series, times over T_ref; or its alpha >= 1, with T_epsilon for the unit of
+        time.
+    nu : Poisson's ratio of the layer, in [0, 0.5], constant in time.
+    thickness : h/l0, dimensionless, > 0: over the contact length at rest that the same bodies would have as
+        half-spaces.  So thin that half the contact at rest is longer than six thicknesses it is refused.  An array (n,)
+        makes n covers, ``cover[i]`` one of them, for an array parameter of a scene or for the motions of an ensemble.
+    on : "cylinder" (a covered roller; default) or "base" (a belt or lining that a roller runs on).
+    part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1 (default): the other
+        body is rigid, else it is an elastic half-space.
+    other_nu : Poisson's ratio of the other body; only where ``part`` < 1.
+
+    Raises
+    ------
+    ParameterError
+        A value out of range, a series of many materials, a cover that is too thin.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> cover = vr.Cover(vr.Prony([10.0], [1 / 11.0]), nu=0.5, thickness=1.0)
+    >>> scene = vr.Scene(material=cover, kappa=10.0, mu=0.5)
+    >>> state = vr.contact(scene, 0.03, delta=0.0)
+
+    Notes
+    -----
+    lam, epsilon, M and delta_star solve the normal and the full-slip problem of the layer to 1e-11; boundary elements
+    agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  delta_0 is exact where shear does not act back on the
+    pressure, for nu = 1/2 to 1e-10 and else to 1e-5 of delta_star/mu.
+
+    Q follows Eq. (15) with the cover's own contact in place of the half-space's: the stick zone of creep limit F' has
+    the traction that a full contact with that creep limit would carry at the same l0/h.  Beside the exact solution
+    without coupling Q/mu is off by at most 1, 3, 4.5 and 6.5 % at h/l0 = 5, 1, 0.5 and 0.2, and a third less where
+    nu is near 1/2 (``make prove``; :func:`viscoroll.validity` states it).
+    """
+
+    nu: float = 0.5
+    thickness: Any = 1.0
+    on: Literal["cylinder", "base"] = "cylinder"
+    other_nu: float = 0.5
+
+    def __init__(
+        self,
+        series: Prony | float,
+        *,
+        nu: float,
+        thickness: ArrayLike,
+        on: Literal["cylinder", "base"] = "cylinder",
+        part: float = 1.0,
+        other_nu: float = 0.5,
+    ) -> None:
+        if isinstance(series, Real) and not isinstance(series, bool):
+            series = series_of_alpha(float(checked("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
+        if not isinstance(series, Prony) or series.shape:
+            raise ParameterError("series", f"{series!r:.60}", "a Prony series of one material, or an alpha")
+        if on not in ("cylinder", "base"):
+            raise ParameterError("on", repr(on), "'cylinder' or 'base'")
+        for name, value in (("nu", nu), ("other_nu", other_nu)):
+            object.__setattr__(self, name, number(name, value, low=0.0, high=0.5))
+        part = number("part", part, low=0.0, strict=True, high=1.0)
+        other, cylinder = Prony.elastic(), on == "cylinder"
+        object.__setattr__(self, "cylinder", series if cylinder else other)
+        object.__setattr__(self, "base", other if cylinder else series)
+        object.__setattr__(self, "share", part if cylinder else 1.0 - part)
+        given = checked("thickness", thickness, low=0.0, strict=True, high=_THICKEST)
+        if given.ndim > 1:
+            raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
+        object.__setattr__(self, "thickness", frozen(given))
+        object.__setattr__(self, "on", on)
+        super().__post_init__()
+        object.__setattr__(self, "shape", given.shape)
+
+    @property
+    def like(self) -> bool:
+        """Never: all of M is the layer's."""
+        return False
+
+    @property
+    def layer(self) -> Prony:
+        """The series of the layer alone."""
+        return self.cylinder if self.on == "cylinder" else self.base
+
+    @property
+    def part(self) -> float:
+        """The layer's part of the long-time compliance."""
+        return float(self.share if self.on == "cylinder" else 1.0 - self.share)
+
+    @property
+    def modes(self) -> CoverModes:
+        """What the solve takes of it."""
+        return CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
+
+    def rows(self, thickest: float | None = None) -> CoverRows:
+        """The law over speed, of one cover; 0.1 to 0.3 s.  ``thickest`` : as of :func:`.cover_rows.cover_rows`."""
+        return cover_rows(self.modes, self.thickness, 1.0 if self.on == "base" else -1.0, thickest)
+
+    def of_thickness(self, thickness: ArrayLike) -> Cover:
+        """The same bodies with another thickness over l0."""
+        more: dict[str, Any] = {"on": self.on, "part": self.part, "other_nu": self.other_nu}
+        return Cover(self.layer, nu=self.nu, thickness=thickness, **more)
+
+    def __getitem__(self, which: Any) -> Cover:
+        return self.of_thickness(self.thickness[which])
+
+    @cached_property
+    def _key(self) -> tuple[Any, ...]:
+        thickness = np.shape(self.thickness), np.asarray(self.thickness).tobytes()
+        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu
+
+    def __repr__(self) -> str:
+        other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
+        return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={short(self.thickness)}, on={self.on!r}{other})"

@@ -1,0 +1,69 @@
+"""Measured schedules: time and memory in proportion to their corners; many motions with corners of their own."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+import tolerances as tol
+from drives import ROLLER
+from memory import taken_beside
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.motion import courses, driven
+
+
+@pytest.mark.parametrize("count", [2_000, 200_000])
+def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
+    times = np.arange(count) * 1e-3
+    drive = driven.Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
+    driven.prepared(driven.Drive(torque=0.1), 0.1, 0.1, 1.0, 1e-8)  # imports take memory too
+    tracemalloc.start()
+    ready = driven.prepared(drive, 0.1, 0.1, times[-1], 1e-8)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert ready.pieces is not None
+    assert ready.pieces.shape[1] == 2 * count - 2
+    assert peak <= tol.BYTES_A_CORNER * 2 * count
+
+
+def test_corners_do_not_use_up_the_step_limit():
+    """A measured torque of 300 corners, at each of which a step ends, and a limit of 100 steps."""
+    times = np.arange(300) * 1e-2
+    m = vr.roll(ROLLER, 0.1, 0.1, times[-1], torque=vr.Schedule(times, 0.01 * np.sin(times)), rtol=1e-4, max_steps=100)
+    assert m.success
+    assert m.steps >= 299
+
+
+def test_schedules_of_many_motions_take_little_memory_beside_themselves():
+    """100 motions of 3,000 corners each: pieces of all at once would take 24 MB."""
+    times = np.sort(np.random.default_rng(1).uniform(0.0, 1.0, (100, 3000)), axis=1)
+    values = np.full(times.shape, 0.01)
+
+    def call() -> vr.Ensemble:
+        return vr.ensemble(ROLLER, np.ones(100), 0.5, 0.9, torque=vr.Schedule(times, values), rtol=1e-2, fields=("V",))
+
+    call()
+    assert taken_beside(call) <= tol.BYTES_OF_SCHEDULES
+
+
+@pytest.mark.parametrize("name", ["torque", "V"])
+def test_motions_with_corners_of_their_own_have_the_bits_of_each_alone(monkeypatch, name):
+    """Whatever the number of motions whose pieces are made at a time."""
+    random = np.random.default_rng(2)
+    times, values = np.sort(random.uniform(0.0, 9.0, (12, 7)), axis=1), random.uniform(-0.1, 0.3, (12, 7))
+    times[:, 0] = 0.0
+    start = (None, 0.2) if name == "V" else (0.3, 0.2)
+    for size in (1, 2_000, courses._BLOCK_BYTES):
+        monkeypatch.setattr(courses, "_BLOCK_BYTES", size)
+        many = vr.ensemble(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times, values)})
+        for n in range(12):
+            one = vr.roll(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times[n], values[n])})
+            for field in ("V", "omega", "x"):
+                assert np.array_equal(many[field][n], one[field]), (size, n, field)
+
+
+def test_a_jump_of_one_slow_motion_is_refused_beside_fast_ones():
+    """A jump is judged by the speeds of its own motion: 1e-13 is one where the speed is 1e-13."""
+    speeds = vr.Schedule([[0.0, 1.0, 2.0], [0.0, 1.0, 1.0]], [[1.0, 2.0, 3.0], [1e-13, 1e-13, 3e-13]])
+    refused(lambda: vr.ensemble(ROLLER, None, 0.2, 3.0, V=speeds), "V = a jump at t = 1: must be")
