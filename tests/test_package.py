@@ -63,6 +63,7 @@ def test_import_is_light(code):
 
 
 def test_kernels_import_numpy_and_numba_only():
+    """And for the cache of their machine code filelock."""
     for path in (PACKAGE / "kernels").rglob("*.py"):
         names = set()
         for node in ast.walk(ast.parse(path.read_text())):
@@ -70,7 +71,7 @@ def test_kernels_import_numpy_and_numba_only():
                 names |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 names.add(node.module.split(".")[0])
-        assert names <= {"numpy", "numba", "llvmlite"} | set(sys.stdlib_module_names), path.name
+        assert names <= {"numpy", "numba", "llvmlite", "filelock"} | set(sys.stdlib_module_names), path.name
 
 
 def test_old_names_work_with_a_warning_that_names_the_new_ones():
