@@ -4,7 +4,8 @@ BIN := .venv/bin
 RUN := $(BIN)/python
 CONFIG ?= pipeline/config.toml
 STAGES := $(RUN) -m pipeline --config $(CONFIG)
-INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt
+# Python compiles the modules that it imports; pip would compile all.
+INSTALL := $(BIN)/pip install --no-compile --quiet --disable-pip-version-check -c constraints.txt
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup demo tables validate corners figures runtime ensemble benchmark bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check

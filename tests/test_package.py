@@ -63,6 +63,7 @@ def test_import_is_light(code):
 
 
 def test_kernels_import_numpy_and_numba_only():
+    """And for the cache of their machine code filelock."""
     for path in (PACKAGE / "kernels").rglob("*.py"):
         names = set()
         for node in ast.walk(ast.parse(path.read_text())):
