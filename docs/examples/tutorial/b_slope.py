@@ -11,7 +11,7 @@ import numpy as np
 import viscoroll as vr
 
 shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
-measured = vr.fit_prony(*vr.read_dma(vr.datasets.path("dma.csv")))
+measured = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
 cool = measured.material(nu=0.49, name="rubber", density=1100.0)  # at 20 °C
 rubber = cool.at(60.0, shift=shift)
 steel = vr.Material.elastic(E=2.1e11, nu=0.3, density=7850.0)

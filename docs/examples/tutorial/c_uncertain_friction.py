@@ -14,7 +14,7 @@ import viscoroll as vr
 
 shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 rubber = (
-    vr.fit_prony(*vr.read_dma(vr.datasets.path("dma.csv")))
+    vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
     .material(nu=0.49, name="rubber", density=1100.0)
     .at(60.0, shift=shift)
 )

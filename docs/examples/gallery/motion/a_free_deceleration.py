@@ -12,7 +12,7 @@ import numpy as np
 
 import viscoroll as vr
 
-rubber = vr.fit_prony(*vr.read_dma(vr.datasets.path("dma.csv"))).material(
+rubber = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv"))).material(
     nu=0.49, density=1100.0
 )
 roller = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.5)
