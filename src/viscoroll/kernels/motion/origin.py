@@ -244,7 +244,7 @@ def depart(tau, piece, case):
 def _slide_off(when, piece, braked, band, case):
     """Full slip out of rest, of the sign that lasts: with omega - V beyond this share of V."""
     scene = case.scene
-    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, free_creep = creep_at_rest(scene.kappa, by_value(scene.law))
     load = load_at(when, piece, Frame(True, 1.0, 1.0, 0.0, False), case)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu
@@ -253,7 +253,7 @@ def _slide_off(when, piece, braked, band, case):
         spin = np.sign(free) if braked and abs(free) > load.brake else 0.0
         locked = braked and spin == 0.0
         omega_rate = 0.0 if locked else load.per_omega * (free - spin * load.brake) + load.omega_rate
-        if sigma * (omega_rate - V_rate * (1.0 + free)) > band * L * abs(V_rate):
+        if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > band * L * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return SLIDES, Frame(True, direction, direction * sigma, direction * spin, locked), 0.0
     return STAYS, Frame(False, 1.0, 1.0, 0.0, False), 0.0
