@@ -85,7 +85,7 @@ MOTION = [
     ("motion/rates.py", "- creep_limit(V, scene) * abs(V)", "- 0.98 * creep_limit(V, scene) * abs(V)", _MOTION),
     ("motion/collocation.py", "total = fma(t, total, nodes[row + k])", "total = fma(t, total, nodes[row + k] * (1.0 + 1e-7))", _MOTION),
     ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, WIDE + 1.0)", "_ALL.powers() / np.arange(2.0, WIDE + 2.0)", _MOTION),
-    ("motion/output.py", "(scene.j * (half_space - force) - cylinder", "(half_space - force - scene.j * cylinder", "tests/motion/test_motion.py"),
+    ("motion/output.py", "scene.j * spin * (half_space - force) - cylinder", "spin * (half_space - force) - scene.j * cylinder", "tests/motion/test_motion.py"),
     ("motion/integrate.py", "on_edge = sigma * here(inside, stick, clock, case)[1].rate < 0.0", "on_edge = False", "tests/motion/test_nasty_starts.py"),
     ("motion/rates.py", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.5 * n * V_rate", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.4 * n * V_rate", "tests/motion/test_unsteady.py"),
     ("rows/added.py", "whole += law.added[start + row]", "whole -= law.added[start + row]", "tests/motion/test_unsteady.py"),
