@@ -14,5 +14,5 @@ vr.stress(scene, x, 0.5)  # type: ignore[call-overload]  # wrong: no creep
 vr.ensemble(scene, x, 0.5, 1e-3, method="map")  # type: ignore[arg-type]  # wrong: no such method
 vr.steady(scene, 0.01)  # type: ignore[call-arg]  # wrong: force or torque?
 vr.presets.PAPER_CYLINDER.contact(0.5, 0.01)  # type: ignore[call-overload]  # wrong: creep or angular velocity?
-vr.fit_prony(x, x)  # type: ignore[call-arg]  # wrong: one modulus alone
+vr.fit_prony(x, x)  # type: ignore[call-overload]  # wrong: one modulus alone
 print(vr.law(scene)(0.3, 0.3).dQ_dV)  # type: ignore[attr-defined]  # wrong: slopes were not asked for

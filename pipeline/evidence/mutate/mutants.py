@@ -65,7 +65,7 @@ SLICE = [
     ("rows/contact.py", "part = 1.0 - w * w * value", "part = 1.0 - w * value", _STATES),
     ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", claims("contact")),
     ("rows/law.py", "rise = part * rise + (1.0 - part) * there * other", "rise = 1.0 * rise", _STATES),
-    ("rows/law.py", "bend, shift + part, z,", "bend, shift, z,", _STATES),
+    ("rows/law.py", "bend, own + part, z,", "bend, own, z,", _STATES),
     ("rows/lanes.py", "_constant([k] * LANES)", "_constant([k * 1.0000001] * LANES)", _STATES),
 ]  # fmt: skip
 ROWS = [
