@@ -10,8 +10,6 @@ from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
-from .errors import ParameterError
-
 #: quantity -> its dimension in radius R, time T, load P (N/m), mass m (kg/m), contact length at rest l0, modulus E';
 #: what is not here is a ratio; temperatures and what belongs to them have no part in a scale
 DIMENSIONS = {
@@ -148,10 +146,3 @@ SI = Scale()
 def si_unit(name: str) -> str:
     """The SI unit of a quantity, as "m s-1"; "1" of a ratio."""
     return KINDS[DIMENSIONS[name]][0] if name in DIMENSIONS else "1"
-
-
-def refuse_other_unit(name: str, value: Any, unit: str) -> None:
-    """Raise ParameterError for another unit, or an array of xarray or pandas that says it has one; "m/s" is "m s-1"."""
-    given = value if isinstance(value, str) else getattr(value, "attrs", {}).get("units")
-    if given is not None and powers(str(given)) != powers(unit):
-        raise ParameterError(name, f"in {given!s:.40}", f"in {unit}")
