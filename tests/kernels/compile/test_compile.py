@@ -337,7 +337,7 @@ def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, 
     shutil.copytree(cache_module.KERNELS, copy, ignore=shutil.ignore_patterns("__pycache__"))
     digest = cache_module.sources_digest.__wrapped__
     before = digest()
-    monkeypatch.setattr(cache_module, "HERE", copy)
+    monkeypatch.setattr(cache_module, "KERNELS", copy)
     assert digest() == before
     with (copy / name).open("ab") as file:
         file.write(b" ")
@@ -399,7 +399,7 @@ def test_who_waits_is_told_once_a_process(tmp_path):
 
 @pytest.fixture
 def untold(monkeypatch):
-    monkeypatch.setattr(notice, "told", False)
+    monkeypatch.setattr(notice, "announced", False)
     monkeypatch.delenv("VISCOROLL_QUIET", raising=False)
 
 

@@ -143,7 +143,8 @@ def make_part(start, source):
     numbers = floats_at(given.numbers, SCRATCH_SIZE + _FUNCTIONS * nodes)
     grid = Grid(
         floats_at(given.rows, start + 2 * PART_SIZE), numbers, numbers[SCRATCH_SIZE:].reshape(nodes, _FUNCTIONS), nodes,
-        integers_at(given.node_versions, nodes // LANES), floats_at(marks[_MATERIAL] + 8 * SERIES_START, given.material_size - SERIES_START),
+        integers_at(given.node_versions, nodes // LANES),
+        floats_at(marks[_MATERIAL] + 8 * SERIES_START, given.material_size - SERIES_START),
         floats_at(given.workspace, given.workspace_size), marks[_MODES], given.unlike != 0 and marks[_MODES] > 0, e0,
         marks[VERSION], lowest - lowest % LANES,
     )  # fmt: skip
