@@ -59,9 +59,11 @@ def order_of_alphas(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
 
 def _room(count: int) -> tuple[Floats, Integers]:
     """Of so many rows, numbers and marks, with those in front."""
-    from ..kernels.rows.record import PARTS_PER_ROW, ROW_SIZE
+    from ..kernels.rows.record import PARTS_PER_ROW, ROW_SIZE, SELECTED
 
-    return np.zeros((count + 1) * ROW_SIZE), np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
+    marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
+    marks[SELECTED] = -1
+    return np.zeros((count + 1) * ROW_SIZE), marks
 
 
 def _record(select: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> Any:
@@ -109,7 +111,6 @@ def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     from ..kernels.rows.series import LANES, series_size, workspace_size
     from ..kernels.rows.z_grid import (
         FIRST_EXPONENT,
-        SELECTED,
         SERIES_START,
         SOURCE,
         grid_size,
@@ -130,7 +131,6 @@ def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     count = int(numbers[:, FIRST_EXPONENT + 1].max(initial=1.0))
     nodes, working = grid_size(count, float(numbers[:, 0].max(initial=1.0))), workspace_size(most)
     rows, marks = _room(count)
-    marks[SELECTED] = -1
     return _record(
         select_series, make_part, SOURCE, rows=rows, marks=marks,
         material_index=np.ascontiguousarray(of, dtype=np.int64), state_count=of.size, materials=numbers,
@@ -160,7 +160,7 @@ def _law_of_covers(covers: Cover, which: Integers) -> Any:
     """The record of states or motions that have the covers ``which``, for one thread."""
     from ..kernels.numerics.interpolation import to_chebyshev as to_terms
     from ..kernels.rows.record import E0
-    from ..kernels.rows.thickness_axis import NODES, SELECTED, SOURCE, make_part, select_cover
+    from ..kernels.rows.thickness_axis import NODES, SOURCE, make_part, select_cover
 
     some, of = np.unique(which, return_inverse=True)
     octave, place = np.floor(np.log2(covers.thickness[some])), np.log2(covers.thickness[some])
@@ -169,7 +169,7 @@ def _law_of_covers(covers: Cover, which: Integers) -> Any:
     octaves = np.array([(laws[each].numbers.ctypes.data, laws[each].rows) for each in octave.tolist()], np.int64)
     most = max(law.rows for law in laws.values())
     rows, marks = _room(most)
-    marks[SELECTED], marks[E0] = -1, next(iter(laws.values())).e0
+    marks[E0] = next(iter(laws.values())).e0
     free = np.zeros(max(law.beside for law in laws.values()))
     return _record(
         select_cover, make_part, SOURCE, free, rows=rows, marks=marks,

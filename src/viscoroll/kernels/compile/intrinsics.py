@@ -23,7 +23,7 @@ from numba import carray
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from .jit import kernel
+from .jit import inline_kernel, kernel
 
 #: a 64-bit integer of LLVM, which holds an address
 _WORD = ir.IntType(64)
@@ -127,7 +127,7 @@ def record_at(pointer):
     return carray(pointer, 1)[0]
 
 
-@kernel(inline=True)
+@inline_kernel
 def septic(t, c):
     """c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme, whose parts are independent of one another."""
     t2 = t * t

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.intrinsics import fma
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import gauss
 from ..numerics.simd4 import LANES, broadcast, fma4, make_load, unpack
 from ..rows.evaluate import locate_octave
@@ -61,7 +61,7 @@ _powers = make_load(LAYER_TERMS // LANES)
 _GAUSS_X, _GAUSS_W = gauss(5)
 
 
-@kernel(inline=True)
+@inline_kernel
 def full_slip_integrals(V, level, flow):
     """Time and distance of sliding from rest to V in the mirrored frame.
 
@@ -79,7 +79,7 @@ def full_slip_integrals(V, level, flow):
     return T if V > 0.0 else -T, X, limit
 
 
-@kernel(inline=True)
+@inline_kernel
 def speed_at_slide_time(T, flow):
     """V in full slip at the time T since (or before) rest, in the mirrored frame."""
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
@@ -106,7 +106,7 @@ def slide_distance(start, tau, flow):
     return x * tau
 
 
-@kernel(inline=True)
+@inline_kernel
 def read_onset(I, level, flow):
     """State at the onset of partial slip of a sliding motion, in the mirrored frame.
 
@@ -124,7 +124,7 @@ def read_onset(I, level, flow):
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _locate_on_manifold(slow_log):
     """Locate a slow logarithm in the table of the slow manifold.
 
@@ -144,7 +144,7 @@ def _locate_on_manifold(slow_log):
     return STARTS.slow + row * _SLOW, 2.0 * (place - row) - 1.0, share
 
 
-@kernel(inline=True)
+@inline_kernel
 def manifold_speeds(slow_log, table):
     """(V, delta) on the slow manifold at a slow logarithm."""
     at, t, share = _locate_on_manifold(slow_log)
@@ -152,7 +152,7 @@ def manifold_speeds(slow_log, table):
     return share * V, share * delta
 
 
-@kernel(inline=True)
+@inline_kernel
 def _remaining_path(slow_log, table):
     """(distance, angle) that remain to rest on the slow manifold."""
     at, t, share = _locate_on_manifold(slow_log)
@@ -203,7 +203,7 @@ def asymptote_on_manifold(slow_log):
     return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
 
 
-@kernel(inline=True)
+@inline_kernel
 def read_asymptote(family, v, level, flow):
     """The asymptote of the motion that enters partial slip at v = kappa V.
 
@@ -223,13 +223,13 @@ def read_asymptote(family, v, level, flow):
     return Asymptote(slow_log, rate, evaluate_one(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
 
 
-@kernel(inline=True)
+@inline_kernel
 def layer_coordinate(E, split):
     """Layer coordinate u at the stiff time E, where the layer is divided at ``split``."""
     return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
 
 
-@kernel(inline=True)
+@inline_kernel
 def locate_in_layer(family, v, u, flow):
     """(position in the table, t, s) in the layer of a family at v = kappa V of the onset and at the layer coordinate
     u.
@@ -239,7 +239,7 @@ def locate_in_layer(family, v, u, flow):
     return STARTS.layer + (((row - 1 + family * _ONSET_OCTAVES) * _LAYER_OCTAVES) + part - 1) * _LAYER, t, s
 
 
-@kernel(inline=True)
+@inline_kernel
 def _evaluate_in_t(p, t):
     """Value at t of a polynomial whose twelve coefficients are three vectors of four."""
     square = t * t
@@ -248,7 +248,7 @@ def _evaluate_in_t(p, t):
     return fma(square, fma(t, d, c), fma(t, b, a))
 
 
-@kernel(inline=True)
+@inline_kernel
 def layer_value_and_slopes(table, column, at, t, s):
     """Value and slopes of one column of a layer.
 

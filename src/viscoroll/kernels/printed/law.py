@@ -1,12 +1,12 @@
 """The contact law as the paper prints it: Eqs. (6), (8)-(10), (15), (16) and two Brent-Dekker roots.
 
-Independent of the modules of ``law`` in the Bessel ratios, in the algebra and in the root finder: the
+Independent of :mod:`..rows` in the Bessel ratios, in the algebra and in the root finder: the
 baseline that the explicit law is timed against and checked against.  The one liberty taken
 is that Eqs. (6) and (10) are divided by I0 K1, so that only r = I1/I0 and k = K0/K1 occur
 and nothing overflows.
 
 The printed forms lose digits in corners where the explicit ones do not.  Differences from
-``law``, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
+:mod:`..rows`, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
 [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu,
 M 2e-13/kappa; the docstrings say where relative digits go.
 """
@@ -18,16 +18,23 @@ import numpy as np
 from ..compile.jit import kernel
 from .bessel import ratio_i, ratio_k0k1
 
-#: statuses
-OK, NOT_CONVERGED = 0, 1
-_EQ_6, _EQ_10 = 6, 10
-_MAX_BRENT = 60
+#: Status of a root that was found.
+OK = 0
+#: Status of a root that was not found: a NaN, or more than _MAX_STEPS steps.
+NOT_CONVERGED = 1
+#: Number that selects the residual of Eq. (6).
+_EQ_6 = 6
+#: Number that selects the residual of Eq. (10).
+_EQ_10 = 10
+#: Steps after which a search ends: six times what was ever seen.
+_MAX_STEPS = 60
+#: Distance from 1 to the next double.
 _EPS = 2.0**-52
 
 
 @kernel
 def _residual_6(lam, kappa_V, alpha):
-    """Left side of Eq. (6) over I0(alpha zeta) K1(zeta)."""
+    """Return the left side of Eq. (6) divided by I0(alpha zeta) K1(zeta), at kappa V = ``kappa_V`` and ``alpha``."""
     zeta = lam / (2.0 * kappa_V)
     r = ratio_i(alpha * zeta)
     k = ratio_k0k1(zeta)
@@ -36,9 +43,9 @@ def _residual_6(lam, kappa_V, alpha):
 
 @kernel
 def _residual_10(beta, front, creep, zeta, alpha):
-    """Left side of Eq. (10) over I0(alpha beta zeta) K1(beta zeta).
+    """Return the left side of Eq. (10) divided by I0(alpha beta zeta) K1(beta zeta).
 
-    front is 1 + epsilon, creep 2 delta kappa/(mu lam).
+    beta : share of the stick zone.  front : 1 + epsilon.  creep : 2 delta kappa/(mu lam).  zeta, alpha : as printed.
     """
     r = ratio_i(alpha * beta * zeta)
     k = ratio_k0k1(beta * zeta)
@@ -47,7 +54,10 @@ def _residual_10(beta, front, creep, zeta, alpha):
 
 @kernel
 def _residual(equation, x, data):
-    """A number picks the equation: numba cannot cache a caller that passes a function."""
+    """Return the residual of an equation at x; numba cannot cache a caller that passes a function.
+
+    equation : _EQ_6 or _EQ_10.  x : lam or beta.  data : four numbers, the further arguments of the residual.
+    """
     if equation == _EQ_6:
         return _residual_6(x, data[0], data[1])
     return _residual_10(x, data[0], data[1], data[2], data[3])
@@ -55,9 +65,10 @@ def _residual(equation, x, data):
 
 @kernel
 def brent(equation, data, low, high, floor):
-    """Root of _residual(equation, x, data) in [low, high] by Brent-Dekker, and a status.
+    """Return (root, status) of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
 
-    Found to floor + 4e-16 |x|.
+    equation, data : arguments of :func:`_residual`.  low, high : ends of the bracket.
+    floor : absolute tolerance; the root is found to floor + 4e-16 |x|.
 
     At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].
     The residual falls from >= 0 at low to <= 0 at high.  An end where rounding spoils that
@@ -74,7 +85,7 @@ def brent(equation, data, low, high, floor):
     # b: best so far; a: the one before; c: the far end of the bracket
     c, fc = a, fa
     d = e = b - a
-    for _ in range(_MAX_BRENT):
+    for _ in range(_MAX_STEPS):
         if abs(fc) < abs(fb):
             a, b, c = b, c, b
             fa, fb, fc = fb, fc, fb
@@ -110,7 +121,7 @@ def brent(equation, data, low, high, floor):
 
 @kernel
 def direct_contact_length(kappa_V, alpha):
-    """Eqs. (6)-(8) at kappa V > 0: (lam, zeta, epsilon, status).
+    """Return (lam, zeta, epsilon, status) by Eqs. (6)-(8) at kappa V = ``kappa_V`` > 0 and ``alpha`` >= 1.
 
     At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is
     -2 c r/zeta <= 0: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative
@@ -125,13 +136,15 @@ def direct_contact_length(kappa_V, alpha):
 
 @kernel
 def direct_delta_star(kappa, mu, lam, epsilon):
-    """Eq. (9): the creep at which stick ends."""
+    """Return delta_star by Eq. (9), the creepage at which stick ends; arguments in the symbols of the paper."""
     return mu * lam * (1.0 + epsilon) / (2.0 * kappa)
 
 
 @kernel
 def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
-    """Eq. (10) for 0 <= delta_abs < delta_star: (beta, status).
+    """Return (beta, status) by Eq. (10) for 0 <= delta_abs < delta_star.
+
+    delta_abs : |delta|.  kappa, mu, lam, epsilon, zeta, alpha : as printed.
 
     At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is
     -2 delta kappa/(mu lam) (1 + p) <= 0 by Eq. (8).
@@ -143,7 +156,9 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 
 @kernel
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
-    """Eq. (15): Q.
+    """Return |Q| by Eq. (15).
+
+    beta : share of the stick zone.  delta_abs : |delta|.  kappa, mu, lam, epsilon, zeta : as printed.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at
     s = 1e-6 (1e-8 for kappa V = 1e3, where K1/K0 magnifies the rounding of the bracket).
@@ -158,7 +173,7 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
 
 @kernel
 def direct_moment(kappa, lam, epsilon, zeta, alpha):
-    """Eq. (16): M.
+    """Return M > 0 by Eq. (16); kappa, lam, epsilon, zeta, alpha as printed.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by
     9e-14 relative at kappa V = 1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and

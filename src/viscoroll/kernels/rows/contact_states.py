@@ -1,4 +1,4 @@
-"""States of the contact as the law is given them, and what it finds of them, by name."""
+"""Records of contact states: what the law is given, and which quantities are written where."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel
 
 
 class Fields(NamedTuple):
-    """The row that each quantity goes to, -1 for none."""
+    """The row of the output that each quantity is written to; -1 for a quantity that is not requested."""
 
     lam: int = -1
     zeta: int = -1
@@ -34,7 +34,11 @@ class Fields(NamedTuple):
 
 
 class State(NamedTuple):
-    """kappa, mu, V, and the creep as delta or as omega."""
+    """One state of the contact, dimensionless.
+
+    kappa : R/l0, slenderness.  mu : coefficient of friction.  V : speed of the axis.
+    creep : creepage delta, or angular velocity omega.  creep_is_omega : whether ``creep`` is omega.
+    """
 
     kappa: float
     mu: float
@@ -44,7 +48,7 @@ class State(NamedTuple):
 
 
 class States(NamedTuple):
-    """Arrays of what a :class:`State` holds: one value, or one a state."""
+    """Arrays of the fields of :class:`State`, each of length 1, for all states, or with one value a state."""
 
     kappa: Any
     mu: Any
@@ -54,9 +58,10 @@ class States(NamedTuple):
 
 
 class Request(NamedTuple):
-    """States, in an order or, where that is empty, in theirs, and what is asked of them: its rows in ``out``.
+    """States, and the quantities of them that are requested.
 
-    first : the column of state 0
+    states : :class:`States`.  order : numbers of the states in the order of evaluation; empty: in their own order.
+    to : :class:`Fields`.  out : (quantities, states), written.  first : column of ``out`` for state 0.
     """
 
     states: Any
@@ -66,32 +71,40 @@ class Request(NamedTuple):
     first: int
 
 
-@kernel(inline=True)
+@inline_kernel
 def element(values, n):
-    """Number n of an array of one value, or of one each."""
+    """Return element ``n`` of an array that has one value for all or one each."""
     return values[np.uint64(n * (values.size > 1))]
 
 
-@kernel(inline=True)
+@inline_kernel
 def read_state(states, n):
-    """State number n."""
+    """Return the :class:`State` with number ``n`` of :class:`States`."""
     return State(
         element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
         states.creep_is_omega,
     )  # fmt: skip
 
 
-@kernel(inline=True)
-def write_field(row, value, n, asked):
-    """A quantity of state n into its row, if it has one."""
+@inline_kernel
+def write_field(row, value, n, request):
+    """Write a quantity of a state, if it is requested.
+
+    row : row of the output, a field of :class:`Fields`.  value : the quantity.  n : number of the state.
+    request : the :class:`Request`.
+    """
     if row >= 0:
-        asked.out[np.uint64(row), np.uint64(n + asked.first)] = value
+        request.out[np.uint64(row), np.uint64(n + request.first)] = value
 
 
-@kernel(inline=True)
+@inline_kernel
 def slip_and_creepage(state):
-    """(a number with the sign of omega - V, creep ratio); V = 0 counts as V -> 0+."""
-    V, creep = state.V, state.creep
+    """Return (slip, delta) of a :class:`State`.
+
+    slip : a number with the sign of omega - V.  delta : the creepage (omega - V)/V; V = 0 counts as V -> 0+.
+    """
+    V = state.V
+    creep = state.creep
     if not state.creep_is_omega:
         return -creep if V < 0.0 else creep, creep
     slip = creep - V
