@@ -7,8 +7,6 @@ A bin spans 1/33 of the distance to the nearest singularity of the function (the
 k), so the truncation error falls like 66**-(DEGREE + 1) = 4e-17.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 #: Bins of an octave.

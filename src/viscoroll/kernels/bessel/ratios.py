@@ -13,8 +13,6 @@ Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
 and cost no further Bessel function.
 """
 
-from __future__ import annotations
-
 from decimal import Decimal
 from pathlib import Path
 

@@ -7,8 +7,6 @@ signature and choice of numba's settings, behind a SHA-256 of itself.  Anything 
 written (:mod:`folder`), is compiled again and replaced: it is never trusted and never ends the process.
 """
 
-from __future__ import annotations
-
 import hashlib
 import pickle
 import sys
@@ -18,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Callable
+from typing import Callable
 
 import llvmlite
 import numba
@@ -30,11 +28,20 @@ from .folder import cache_root, make_private_folder, read_private, write_private
 #: Folder of all kernels.
 KERNELS = Path(__file__).parents[1]
 #: Settings of numba (environment: NUMBA_...) on which its machine code depends, beside those of the processor.
-_SETTINGS = (
-    "BOUNDSCHECK", "OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DISABLE_INTEL_SVML", "DEBUGINFO_DEFAULT",
-    "EXTEND_VARIABLE_LIFETIMES", "ENABLE_PROFILING", "NRT_STATS", "DEBUG_NRT", "LLVM_REFPRUNE_PASS",
+_SETTINGS = [
+    "BOUNDSCHECK",
+    "OPT",
+    "LOOP_VECTORIZE",
+    "SLP_VECTORIZE",
+    "DISABLE_INTEL_SVML",
+    "DEBUGINFO_DEFAULT",
+    "EXTEND_VARIABLE_LIFETIMES",
+    "ENABLE_PROFILING",
+    "NRT_STATS",
+    "DEBUG_NRT",
+    "LLVM_REFPRUNE_PASS",
     "LLVM_REFPRUNE_FLAGS",
-)  # fmt: skip
+]
 #: Seconds after which a process no longer waits for another one to compile: more than a kernel takes on a busy machine.
 PATIENCE = 120.0
 #: Bytes of the checksum in front of a file.
@@ -68,7 +75,7 @@ class DiskCache:
         self.cache_path = str(self._folder)
 
     @contextmanager
-    def exclusive(self, signature: Any, codegen: Any) -> Iterator[None]:
+    def exclusive(self, signature, codegen) -> Iterator[None]:
         """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE`.
 
         signature : types of the arguments.  codegen : numba's code generator, which knows the processor.
@@ -91,7 +98,7 @@ class DiskCache:
                 Path(lock.lock_file).unlink(missing_ok=True)
             lock.release()
 
-    def load_overload(self, signature: Any, target: Any) -> CompileResult | None:
+    def load_overload(self, signature, target) -> CompileResult | None:
         """Return the machine code for a signature, or None.
 
         signature : types of the arguments.  target : numba's target context.
@@ -108,7 +115,7 @@ class DiskCache:
         warn_once(f"the cache of compiled kernels is damaged ({self._folder})")
         return None  # save_overload then replaces the file
 
-    def save_overload(self, signature: Any, compiled: CompileResult) -> None:
+    def save_overload(self, signature, compiled: CompileResult) -> None:
         """Store the machine code of a signature, unless it contains addresses of this process; warn if that fails."""
         if compiled.library.has_dynamic_globals:
             return
@@ -121,7 +128,7 @@ class DiskCache:
     def flush(self) -> None:
         """Do nothing: ``recompile`` of numba's dispatcher calls this, and no code is kept in memory."""
 
-    def _path(self, signature: Any, codegen: Any) -> Path:
+    def _path(self, signature, codegen) -> Path:
         """Return the path of the machine code: the name of the function, and a hash of all that the code depends on.
 
         signature : types of the arguments.  codegen : numba's code generator, which knows the processor.

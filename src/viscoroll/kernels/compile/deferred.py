@@ -9,11 +9,8 @@ This uses private names of numba.  If one of them fails, numba compiles in its o
 kernels, the same bits, in some three times the time.
 """
 
-from __future__ import annotations
-
 import gc
 import warnings
-from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, Callable
@@ -30,25 +27,57 @@ _deferring = True
 _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift")
 
 
+@contextmanager
+def _memoized_types(typing):
+    """Keep the types of operations on numbers, which numba resolves again at each sum of two floats.
+
+    typing : numba's typing context.
+    """
+    if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
+        yield
+        return
+    resolved: dict[Any, Any] = {}
+    plain = typing.resolve_function_type
+
+    def resolve_function_type(function, args, kws):
+        if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
+            return plain(function, args, kws)
+        if (function, args) not in resolved:
+            resolved[function, args] = plain(function, args, kws)
+        return resolved[function, args]
+
+    typing.resolve_function_type = resolve_function_type
+    try:
+        yield
+    finally:
+        del typing.resolve_function_type
+
+
+@contextmanager
+def _without_garbage_collection():
+    """Switch garbage collection off: numba makes millions of objects that live until it ends, and it took a tenth."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
 class EntryPipeline:
     """The compiler of kernels that Python calls, in the interface of numba's compiler classes.
 
     context : what numba passes to the constructor of a compiler.
     """
 
-    def __init__(self, *context: Any) -> None:
+    def __init__(self, *context):
         self._context = context
 
-    def compile_extra(self, function: Callable) -> Any:
-        """Compile ``function``, and return numba's result."""
+    @_without_garbage_collection()
+    def compile_extra(self, function: Callable):
+        """Compile ``function``, and return numba's result; in numba's own way if a private name of numba fails."""
         announce_compiling()
-        with _without_garbage_collection():
-            return self._compile(function)
-
-    def _compile(self, function: Callable) -> Any:
-        """Compile ``function`` in this way, or in numba's own way if a private name of numba fails; return the
-        result.
-        """
         global _deferring
         if not _deferring:
             return Compiler(*self._context).compile_extra(function)
@@ -73,45 +102,7 @@ class EntryPipeline:
         return compiled
 
 
-@contextmanager
-def _memoized_types(typing: Any) -> Iterator[None]:
-    """Keep the types of operations on numbers, which numba resolves again at each sum of two floats.
-
-    typing : numba's typing context.
-    """
-    if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
-        yield
-        return
-    resolved: dict[Any, Any] = {}
-    plain = typing.resolve_function_type
-
-    def resolve_function_type(function: Any, args: tuple, kws: dict[str, Any]) -> Any:
-        if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
-            return plain(function, args, kws)
-        if (function, args) not in resolved:
-            resolved[function, args] = plain(function, args, kws)
-        return resolved[function, args]
-
-    typing.resolve_function_type = resolve_function_type
-    try:
-        yield
-    finally:
-        del typing.resolve_function_type
-
-
-@contextmanager
-def _without_garbage_collection() -> Iterator[None]:
-    """Switch garbage collection off: numba makes millions of objects that live until it ends, and it took a tenth."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
-
-
-def defer(whole: Any, options: dict[str, Any]) -> None:
+def defer(whole, options: dict[str, Any]):
     """Make other kernels that call this one compile with its part.
 
     whole : the dispatcher of the kernel, changed.  options : of numba, for the part.
@@ -119,25 +110,25 @@ def defer(whole: Any, options: dict[str, Any]) -> None:
     plain = type(whole)
 
     @lru_cache(maxsize=1)
-    def part() -> Any:
+    def part():
         return numba.njit(
             whole.py_func, pipeline_class=_pipelines()[0], no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
         )
 
-    def get_call_template(args: tuple, kws: dict[str, Any]) -> Any:
+    def get_call_template(args, kws):
         # numba compiles again for every literal integer among the arguments
         args = tuple(map(types.unliteral, args))
         kws = {name: types.unliteral(kind) for name, kind in kws.items()}
         return plain.get_call_template(part() if _deferring else whole, args, kws)
 
-    def get_overload(signature: Any) -> Any:
+    def get_overload(signature):
         return plain.get_overload(part() if _deferring else whole, signature)
 
     whole.get_call_template, whole.get_overload = get_call_template, get_overload
 
 
 @lru_cache(maxsize=1)
-def _pipelines() -> tuple[type, type]:
+def _pipelines():
     """Return numba's compiler classes for parts and for wholes."""
     from numba.core.codegen import JITCodeLibrary
 
@@ -146,24 +137,24 @@ def _pipelines() -> tuple[type, type]:
 
         is_part = True
 
-        def finalize(self) -> None:
+        def finalize(self):
             self._finalized = True
 
-        def get_pointer_to_function(self, name: str) -> int:
+        def get_pointer_to_function(self, name):
             return 1  # never called: Python calls the whole of the same function
 
         @property
-        def codegen(self) -> Part:
+        def codegen(self):
             return self
 
-        def set_env(self, name: str, environment: Any) -> None:
+        def set_env(self, name, environment):
             """Do nothing: there is no code yet."""
 
-        def _optimize_functions(self, module: Any) -> None:
+        def _optimize_functions(self, module):
             """Optimise nothing: LLVM works on the whole alone."""
             module.data_layout = self._codegen._data_layout
 
-        def _get_module_for_linking(self) -> Any:
+        def _get_module_for_linking(self):
             """Return the IR with that of all parts below, for an ordinary jitted function between two kernels."""
             module = super()._get_module_for_linking().clone()
             _link(self, module)
@@ -172,7 +163,7 @@ def _pipelines() -> tuple[type, type]:
     class Whole(JITCodeLibrary):
         """A library with the IR of all parts below, optimised and compiled together."""
 
-        def finalize(self) -> None:
+        def finalize(self):
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
             _link(self, module)
@@ -182,12 +173,12 @@ def _pipelines() -> tuple[type, type]:
             self._linking_libraries = []
             super().finalize()
 
-        def _optimize_final_module(self) -> None:
+        def _optimize_final_module(self):
             """Optimise once: numba does it twice, to remove counts of references, which parts do not have."""
             manager, builder = self._codegen._module_pass_manager(opt=2)
             manager.run(self._final_module, builder)
 
-        def _verify_declare_only_symbols(self) -> None:
+        def _verify_declare_only_symbols(self):
             """Raise if a function is missing, where LLVM would end the process; _ZN begins the names of numba's
             functions.
             """
@@ -199,7 +190,7 @@ def _pipelines() -> tuple[type, type]:
     return _pipeline(Part), _pipeline(Whole)
 
 
-def _link(library: Any, module: Any) -> None:
+def _link(library, module):
     """Link into a module what a library and the parts below it call, each library once.
 
     library : numba's library.  module : LLVM's module, changed.
@@ -217,7 +208,7 @@ def _link(library: Any, module: Any) -> None:
             waiting.extend(library._linking_libraries if hasattr(library, "is_part") else ())
 
 
-def _pipeline(library_class: type) -> type:
+def _pipeline(library_class: type):
     """Return numba's default compiler, which lowers into libraries of ``library_class``."""
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass
@@ -227,7 +218,7 @@ def _pipeline(library_class: type) -> type:
     class Lowering(NativeLowering):
         _name = f"lowering into {library_class.__name__}"
 
-        def run_pass(self, state: Any) -> bool:
+        def run_pass(self, state):
             state.library = library_class(state.targetctx.codegen(), state.func_id.func_qualname)
             state.library.enable_object_caching()
             return super().run_pass(state)
@@ -235,17 +226,17 @@ def _pipeline(library_class: type) -> type:
     class ShortFlags(Flags):
         """Flags that are compared by those that are set; numba compares all forty at every call that it types."""
 
-        def __hash__(self) -> int:
+        def __hash__(self):
             return hash(frozenset(self._values))
 
-        def __eq__(self, other: object) -> bool:
+        def __eq__(self, other):
             return isinstance(other, ShortFlags) and self._values == other._values
 
     class Compiler(CompilerBase):
-        def __init__(self, typing: Any, target: Any, library: Any, args: tuple, returns: Any, flags: Any, types_: dict):
+        def __init__(self, typing, target, library, args, returns, flags, types_):
             super().__init__(typing, target, library, args, returns, ShortFlags(flags), types_)
 
-        def define_pipelines(self) -> list[Any]:
+        def define_pipelines(self):
             passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
             steps = [(step, why) for step, why in passes.passes if step.__name__ not in _NOT_NEEDED]
             passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in steps]

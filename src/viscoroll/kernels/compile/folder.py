@@ -8,8 +8,6 @@ The folder is ``$VISCOROLL_CACHE_DIR``, else ``$XDG_CACHE_HOME/viscoroll``, else
 without a home directory, a folder of this user in ``$TMPDIR`` or ``/tmp``.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import secrets

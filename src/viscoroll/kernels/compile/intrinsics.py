@@ -9,12 +9,9 @@ is spent, call :func:`fma`.
 caller. Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from inspect import Parameter, Signature
-from typing import Any
 
 import numba
 import numpy as np
@@ -31,7 +28,7 @@ _WORD = ir.IntType(64)
 _FUNCTION = ir.FunctionType(ir.VoidType(), [_WORD, _WORD])
 
 
-def make_intrinsic(lower: Callable, returned: Any, *kinds: Any) -> Any:
+def make_intrinsic(lower: Callable, returned, *kinds):
     """A function for kernels that is lowered to instructions of LLVM.
 
     lower : (context, builder, signature, arguments) -> value of LLVM, as numba calls it.
@@ -39,7 +36,7 @@ def make_intrinsic(lower: Callable, returned: Any, *kinds: Any) -> Any:
     kinds : numba's types of the arguments, None for any type.
     """
 
-    def typed(context: Any, *given: Any) -> Any:
+    def typed(context, *given):
         return returned(*(kind or own for kind, own in zip(kinds, given, strict=True))), lower
 
     names = ["context", *(f"given_{n}" for n in range(len(kinds)))]
@@ -47,19 +44,15 @@ def make_intrinsic(lower: Callable, returned: Any, *kinds: Any) -> Any:
     return intrinsic(typed)
 
 
-def call_llvm(builder: Any, name: str, given: Any) -> Any:
+def call_llvm(builder, name: str, given):
     """Call the intrinsic ``name`` of LLVM, whose arguments ``given`` and value have one type."""
     kind = given[0].type
     function = ir.FunctionType(kind, [kind] * len(given))
     return builder.call(cgutils.get_or_insert_function(builder.module, function, name), given)
 
 
-def _to_bits(context, builder, signature, given):
-    return builder.bitcast(given[0], _WORD)
-
-
-def _from_bits(context, builder, signature, given):
-    return builder.bitcast(given[0], ir.DoubleType())
+def _bitcast(context, builder, signature, given):
+    return builder.bitcast(given[0], context.get_value_type(signature.return_type))
 
 
 def _fma(context, builder, signature, given):
@@ -81,9 +74,9 @@ def _pointer(context, builder, signature, given):
 
 
 #: the bits of a double as an integer; numba would compile ``view`` in each kernel, in 0.1 s
-float_to_bits = make_intrinsic(_to_bits, types.int64, types.float64)
+float_to_bits = make_intrinsic(_bitcast, types.int64, types.float64)
 #: the double with these bits
-bits_to_float = make_intrinsic(_from_bits, types.float64, types.int64)
+bits_to_float = make_intrinsic(_bitcast, types.float64, types.int64)
 #: a b + c, rounded once
 fma = make_intrinsic(_fma, *[types.float64] * 4)
 #: ``if unlikely(condition)`` tells LLVM that the branch is rarely taken
@@ -96,8 +89,16 @@ _to_doubles, _to_integers = (
 )
 
 
+def record_type(integers: str, floats: str = "") -> np.dtype:
+    """Return the dtype of a record of 64-bit integers, among them addresses, and of doubles behind them.
+
+    integers, floats : names of the fields, separated by blanks.
+    """
+    return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in floats.split()])
+
+
 @cache
-def function_address(function: Any, record: np.dtype, returned: Any = types.void, *first: Any) -> int:
+def function_address(function, record: np.dtype, returned=types.void, *first) -> int:
     """Address of the machine code of a kernel.
 
     function : the kernel.  record : dtype of the record to which its last argument points.

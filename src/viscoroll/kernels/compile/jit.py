@@ -1,8 +1,6 @@
 """One decorator, :func:`kernel`: numba compilation, deferred (:mod:`deferred`) and cached on disk (:mod:`cache`)."""
 
-from __future__ import annotations
-
-from typing import Any, Callable
+from typing import Callable
 
 import numba
 
@@ -41,11 +39,11 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     return dispatcher
 
 
-def _compile_exclusively(dispatcher: Any) -> None:
+def _compile_exclusively(dispatcher) -> None:
     """Let no two processes compile the function of ``dispatcher`` for one signature at the same time."""
     plain = dispatcher.compile
 
-    def compile_exclusively(signature: Any) -> Any:
+    def compile_exclusively(signature):
         with dispatcher._cache.exclusive(signature, dispatcher.targetctx.codegen()):
             return plain(signature)
 

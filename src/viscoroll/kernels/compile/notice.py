@@ -1,7 +1,5 @@
 """One line on standard error for the user who waits while kernels are compiled."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import sys

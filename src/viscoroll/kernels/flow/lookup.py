@@ -5,8 +5,6 @@ slip.  Behind the onset the boundary layer is a table over (V at onset, E); then
 manifold, a function of the slow logarithm.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.intrinsics import fma

@@ -1,7 +1,5 @@
 """Look up many motions of one scene in its flow map."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel

@@ -2,8 +2,6 @@
 from.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel

@@ -1,7 +1,5 @@
 """Assignments to arrays, element by element: numba's own would prepare for shapes that differ, and compile longer."""
 
-from __future__ import annotations
-
 from ..compile.jit import kernel
 
 

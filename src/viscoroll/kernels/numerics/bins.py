@@ -4,8 +4,6 @@ No logarithm is taken: the number of the bin is read off the bits of the float. 
 the offset t of the mantissa from the centre of the bin.
 """
 
-from __future__ import annotations
-
 from ..compile.intrinsics import bits_to_float, float_to_bits
 from ..compile.jit import inline_kernel
 

@@ -7,22 +7,21 @@ The polynomial through values at nodes is the sum of the values times Lagrange's
 node and 0 at the others.  Its coefficients, values, slopes and integrals therefore are matrices times the values.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from decimal import Context, Decimal, localcontext
 from functools import wraps
-from typing import Any
 
 import numpy as np
-from numpy.polynomial.chebyshev import cheb2poly, chebval
+from numpy.polynomial.chebyshev import cheb2poly
 from numpy.polynomial.legendre import leg2poly
 from numpy.polynomial.polynomial import polyder, polyfromroots, polyint, polyval
 from numpy.typing import NDArray
 
-#: Digits of the Decimals: some twelve are lost to cancellation in polynomials of degree 36.
+#: Digits of the Decimals: half of them would do, were nothing lost to cancellation.
 _DIGITS = 40
+#: Digits in the search for zeros, where polynomials of degree 36 lose fourteen to cancellation.
+_DIGITS_OF_SEARCH = 60
 #: Digits behind the point that zeros keep: the last ones would tell how this machine computes a cosine.
 _DIGITS_OF_ZEROS = 36
 #: Newton steps from a start good to two digits: each doubles the digits.
@@ -34,7 +33,7 @@ def in_40_digits(function: Callable) -> Callable:
     """Make ``function`` compute with Decimals of 40 digits, whatever the decimal context of its caller."""
 
     @wraps(function)
-    def precise(*arguments: Any) -> Any:
+    def precise(*arguments):
         with localcontext(Context(prec=_DIGITS)):
             return function(*arguments)
 
@@ -115,9 +114,12 @@ def chebyshev(n: int) -> list[Decimal]:
 @in_40_digits
 def to_chebyshev(n: int) -> _Floats:
     """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1), [term, node]."""
-    matrix = chebval(np.array(chebyshev(n)), np.eye(n, dtype=object)) * 2 / n
-    matrix[0] /= 2
-    return to_doubles(matrix)
+    x = np.array(chebyshev(n))
+    terms = [1 + 0 * x, x]
+    for _ in range(n - 2):
+        terms.append(2 * x * terms[-1] - terms[-2])
+    terms[0] /= 2
+    return to_doubles(2 * np.array(terms) / n)
 
 
 def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
@@ -130,7 +132,7 @@ def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
     return matrix
 
 
-def to_doubles(values: Any) -> _Floats:
+def to_doubles(values) -> _Floats:
     """Return Decimals as the nearest doubles, of the same shape."""
     return np.array(values, dtype=np.float64)
 
@@ -151,8 +153,9 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
     """
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)
-    for _ in range(_NEWTON_STEPS):
-        x = x - polyval(x, polynomial) / polyval(x, slope)
+    with localcontext(Context(prec=_DIGITS_OF_SEARCH)):
+        for _ in range(_NEWTON_STEPS):
+            x = x - polyval(x, polynomial) / polyval(x, slope)
     return sorted(round(zero, _DIGITS_OF_ZEROS) + 0 for zero in x)
 
 

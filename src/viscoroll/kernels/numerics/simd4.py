@@ -4,10 +4,7 @@
 alone; :func:`fma4` rounds product and sum together.
 """
 
-from __future__ import annotations
-
 import operator
-from typing import Any, Callable
 
 from llvmlite import ir
 from numba.core import cgutils, types
@@ -26,7 +23,7 @@ _INT = ir.IntType(32)
 class _FourType(types.Type):
     """numba's type of a vector."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         super().__init__("four numbers")
 
 
@@ -38,29 +35,29 @@ FOUR = _FourType()
 class _FourModel(models.PrimitiveModel):
     """A vector is represented by LLVM's vector itself."""
 
-    def __init__(self, manager: Any, kind: Any) -> None:
+    def __init__(self, manager, kind) -> None:
         super().__init__(manager, kind, VECTOR)
 
 
-def shuffle(builder: Any, a: Any, b: Any, order: Any) -> Any:
+def shuffle(builder, a, b, order):
     """Return instructions that take four of the eight numbers of vectors ``a`` and ``b``: those numbered in
     ``order``.
     """
     return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
 
 
-def broadcast_value(builder: Any, x: Any) -> Any:
+def broadcast_value(builder, x):
     """Return instructions that make a vector of four times the number ``x``."""
     one = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), x, _INT(0))
     return shuffle(builder, one, one, [0] * LANES)
 
 
-def fma_vectors(builder: Any, *vectors: Any) -> Any:
+def fma_vectors(builder, *vectors):
     """Return the instruction a b + c of three vectors."""
     return call_llvm(builder, "llvm.fma.v4f64", vectors)
 
 
-def vector_pointers(context: Any, builder: Any, kind: Any, array: Any, start: Any, count: int) -> list:
+def vector_pointers(context, builder, kind, array, start, count):
     """Return pointers to ``count`` vectors that follow each other in an array.
 
     context, builder : of numba's lowering.  kind : numba's type of ``array``, an array or a pointer to doubles.
@@ -71,7 +68,7 @@ def vector_pointers(context: Any, builder: Any, kind: Any, array: Any, start: An
     return [builder.gep(first, [_INT(n)]) for n in range(count)]
 
 
-def load_vectors(context: Any, builder: Any, signature: Any, arguments: Any, count: int) -> list:
+def load_vectors(context, builder, signature, arguments, count):
     """Return instructions that load ``count`` vectors.
 
     context, builder, signature, arguments : of numba's lowering of a function (array, start, ...).
@@ -80,16 +77,16 @@ def load_vectors(context: Any, builder: Any, signature: Any, arguments: Any, cou
     return [builder.load(pointer, align=8) for pointer in pointers]
 
 
-def _define_operator(function: Callable, name: str) -> None:
+def _define_operator(function, name):
     """Define an operator of Python for two vectors, and for a number and a vector.
 
     function : of the module ``operator``.  name : of the method of LLVM's builder.
     """
 
-    def typed(context: Any) -> Callable:
+    def typed(context):
         return lambda a, b: FOUR if FOUR in (a, b) and {a, b} <= {FOUR, types.float64} else None
 
-    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def lower(context, builder, signature, arguments):
         operands = zip(arguments, signature.args, strict=True)
         return getattr(builder, name)(*(x if kind is FOUR else broadcast_value(builder, x) for x, kind in operands))
 
@@ -103,7 +100,7 @@ for _name, _instruction in (("add", "fadd"), ("sub", "fsub"), ("mul", "fmul"), (
     _define_operator(getattr(operator, f"i{_name}"), _instruction)
 
 
-def _vectors_of(builder: Any, kind: Any, x: Any, count: int) -> list:
+def _vectors_of(builder, kind, x, count):
     """Return the vectors of a tuple ``x``, or ``count`` times the vector ``x``; ``kind`` is its type."""
     return cgutils.unpack_tuple(builder, x) if isinstance(kind, types.UniTuple) else [x] * count
 
@@ -175,6 +172,6 @@ load = make_intrinsic(_load, FOUR, None, types.int64)
 store = make_intrinsic(_store, types.void, None, types.int64, None)
 
 
-def make_load(count: int) -> Any:
+def make_load(count):
     """Return a function for kernels, (array, start) -> tuple of ``count`` vectors that follow each other."""
     return make_intrinsic(_load, types.UniTuple(FOUR, count), None, types.int64)

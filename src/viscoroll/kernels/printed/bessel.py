@@ -9,8 +9,6 @@ on 4800 arguments from 5e-324 to 1.8e308: at most 2.7 ULP (``ratio_i``, near 25)
 (``ratio_k0k1``, below 1), in 20 to 200 ns.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -11,8 +11,6 @@ The printed forms lose digits in corners where the explicit ones do not.  Differ
 M 2e-13/kappa; the docstrings say where relative digits go.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import kernel
@@ -33,34 +31,24 @@ _EPS = 2.0**-52
 
 
 @kernel
-def _residual_6(lam, kappa_V, alpha):
-    """Return the left side of Eq. (6) divided by I0(alpha zeta) K1(zeta), at kappa V = ``kappa_V`` and ``alpha``."""
-    zeta = lam / (2.0 * kappa_V)
-    r = ratio_i(alpha * zeta)
-    k = ratio_k0k1(zeta)
-    return (1.0 - lam * lam) * (1.0 + k * r) + 2.0 / zeta * (1.0 / alpha - 1.0) * (lam * lam) * r
-
-
-@kernel
-def _residual_10(beta, front, creep, zeta, alpha):
-    """Return the left side of Eq. (10) divided by I0(alpha beta zeta) K1(beta zeta).
-
-    beta : share of the stick zone.  front : 1 + epsilon.  creep : 2 delta kappa/(mu lam).  zeta, alpha : as printed.
-    """
-    r = ratio_i(alpha * beta * zeta)
-    k = ratio_k0k1(beta * zeta)
-    return (front - beta - creep) * (1.0 + r * k) + 1.0 / zeta * (1.0 / alpha - 1.0) * r * k
-
-
-@kernel
 def _residual(equation, x, data):
-    """Return the residual of an equation at x; numba cannot cache a caller that passes a function.
+    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it.
 
-    equation : _EQ_6 or _EQ_10.  x : lam or beta.  data : four numbers, the further arguments of the residual.
+    equation : _EQ_6 or _EQ_10; numba cannot cache a caller that passes a function.
+    x : lam in Eq. (6), beta in Eq. (10).
+    data : four numbers: in Eq. (6) kappa V, alpha and two that are not used; in Eq. (10) 1 + epsilon,
+        2 delta kappa/(mu lam), zeta and alpha.
     """
     if equation == _EQ_6:
-        return _residual_6(x, data[0], data[1])
-    return _residual_10(x, data[0], data[1], data[2], data[3])
+        kappa_V, alpha, _, _ = data
+        zeta = x / (2.0 * kappa_V)
+        r = ratio_i(alpha * zeta)
+        k = ratio_k0k1(zeta)
+        return (1.0 - x * x) * (1.0 + k * r) + 2.0 / zeta * (1.0 / alpha - 1.0) * (x * x) * r
+    front, creep, zeta, alpha = data
+    r = ratio_i(alpha * x * zeta)
+    k = ratio_k0k1(x * zeta)
+    return (front - x - creep) * (1.0 + r * k) + 1.0 / zeta * (1.0 / alpha - 1.0) * r * k
 
 
 @kernel
@@ -74,8 +62,10 @@ def brent(equation, data, low, high, floor):
     The residual falls from >= 0 at low to <= 0 at high.  An end where rounding spoils that
     sign is itself the root, to rounding.
     """
-    a, fa = low, _residual(equation, low, data)
-    b, fb = high, _residual(equation, high, data)
+    a = low
+    fa = _residual(equation, low, data)
+    b = high
+    fb = _residual(equation, high, data)
     if fb >= 0.0:
         return b, OK
     if fa <= 0.0:
@@ -83,7 +73,8 @@ def brent(equation, data, low, high, floor):
     if not fa > fb:  # a NaN
         return np.nan, NOT_CONVERGED
     # b: best so far; a: the one before; c: the far end of the bracket
-    c, fc = a, fa
+    c = a
+    fc = fa
     d = e = b - a
     for _ in range(_MAX_STEPS):
         if abs(fc) < abs(fb):
@@ -98,23 +89,28 @@ def brent(equation, data, low, high, floor):
         else:
             s = fb / fa
             if a == c:
-                p, q = 2.0 * half * s, 1.0 - s
+                p = 2.0 * half * s
+                q = 1.0 - s
             else:
-                q, t = fa / fc, fb / fc
+                q = fa / fc
+                t = fb / fc
                 p = s * (2.0 * half * q * (q - t) - (b - a) * (t - 1.0))
                 q = (q - 1.0) * (t - 1.0) * (s - 1.0)
             if p > 0.0:
                 q = -q
             p = abs(p)
             if 2.0 * p < min(3.0 * half * q - abs(tolerance * q), abs(e * q)):
-                e, d = d, p / q
+                e = d
+                d = p / q
             else:
                 d = e = half
-        a, fa = b, fb
+        a = b
+        fa = fb
         b += d if abs(d) > tolerance else np.copysign(tolerance, half)
         fb = _residual(equation, b, data)
         if (fb > 0.0) == (fc > 0.0):
-            c, fc = a, fa
+            c = a
+            fc = fa
             d = e = b - a
     return b, NOT_CONVERGED
 

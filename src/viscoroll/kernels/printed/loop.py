@@ -1,7 +1,5 @@
 """The contact law as printed, over arrays of states; rows and signs as in :mod:`..rows.contact_states`."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import kernel
@@ -24,7 +22,9 @@ def direct_state(alpha, n, request):
     speed = abs(state.V)
     slip, delta = slip_and_creepage(state)
     status = stick_status = OK
-    lam, zeta, epsilon, M = 1.0, np.inf, 0.0, 0.0
+    lam = 1.0
+    zeta = np.inf
+    epsilon = M = 0.0
     if speed > 0.0:
         lam, zeta, epsilon, status = direct_contact_length(kappa * speed, alpha)
         M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)

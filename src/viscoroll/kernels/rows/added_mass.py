@@ -1,7 +1,5 @@
 """N of M = M(V) + N V', and the added mass gamma N of a law that has it; 0 of a law of steady rolling."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.intrinsics import unlikely

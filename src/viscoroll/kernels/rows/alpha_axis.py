@@ -5,13 +5,11 @@ as unit of time, and with M/V and epsilon divided by c = (alpha - 1)/alpha.  The
 special case.  Sums stay in registers, 24 numbers side by side.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 
-from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, integers_at, record_at
+from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, integers_at, record_at, record_type
 from ..compile.jit import inline_kernel, kernel
 from ..numerics.simd4 import LANES, load, pack, store
 from .contact_states import element
@@ -40,7 +38,7 @@ ALPHA_PARTS = 6
 ALPHA_E0 = -4
 #: What these kernels read.  Addresses: rows and marks of the law; alpha; for each octave of alpha the address of its
 #: axis and its number of rows.  state_count: length of alpha, 1 or one for each state.
-SOURCE = np.dtype([(name, np.int64) for name in ("rows", "marks", "alpha", "state_count", "octaves")])
+SOURCE = record_type("rows marks alpha state_count octaves")
 #: Index in the head of the rows where the values T_j(s) begin.
 _CHEBYSHEV = MAKER_NUMBERS
 #: Mark that is the address of the axis of the selected octave.

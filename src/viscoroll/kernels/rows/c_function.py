@@ -6,8 +6,6 @@ slopes of the parts over V.  It returns 0, or another number with NaN in ``out``
 threads may call it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,8 +14,8 @@ from numba import carray
 from numba.core import types
 from numpy.typing import NDArray
 
-from ..compile.intrinsics import floats_at, function_address, integers_at, record_at
-from ..compile.jit import kernel
+from ..compile.intrinsics import floats_at, function_address, integers_at, record_at, record_type
+from ..compile.jit import inline_kernel, kernel
 from .contact import Q_slopes, signed_traction
 from .contact_states import State
 from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE, free_creep_value
@@ -31,10 +29,15 @@ RESULTS = 8
 #: User data.  function: address of the C function.  slopes: whether slopes are asked for.  unlike: whether the bodies
 #: differ.  rows, marks: addresses of the arrays of the law.  row_count: rows with the head.  cover_rows: address of the
 #: numbers that only a cover has.  kappa, mu: of the scene.  V, omega, Q, M: 1 of each in the units of the caller.
-SCENE = np.dtype(
-    [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "row_count", "cover_rows")]
-    + [(name, np.float64) for name in ("kappa", "mu", "V", "omega", "Q", "M")]
-)
+SCENE = record_type("function slopes unlike rows marks row_count cover_rows", "kappa mu V omega Q M")
+
+
+@inline_kernel
+def refuse(out):
+    """Fill the results ``out`` with NaN, and return the status of a state at which the law is not defined."""
+    for n in range(RESULTS):
+        out[n] = np.nan
+    return 1
 
 
 @kernel(allocates=True)
@@ -65,9 +68,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     omega = caller_omega / scene.omega
     u = scene.kappa * abs(V)
     if not (u <= MAX_U and abs(V) < np.inf and abs(omega) < np.inf):
-        for n in range(RESULTS):
-            out[n] = np.nan
-        return 1
+        return refuse(out)
     state = State(scene.kappa, scene.mu, V, omega, True)
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
@@ -99,16 +100,14 @@ def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[
     law : of one material; its arrays must outlive the records.  unlike : whether the two bodies differ.
     kappa, mu : of the scene.  scale : for V, omega, Q and M what 1 is in the units of the caller.
     """
-    scenes = np.zeros(2, SCENE)
-    numbers: dict[str, Any] = {name: scale[name] for name in ("V", "omega", "Q", "M")}
-    numbers |= {"rows": law.rows.ctypes.data, "marks": law.marks.ctypes.data, "row_count": law.rows.size // ROW_SIZE}
-    numbers |= {"unlike": unlike, "kappa": kappa, "mu": mu, "slopes": [0, 1]}
-    function = _half_space_law
-    if law.cover_rows is not None:
-        function = _cover_law
-        numbers["cover_rows"] = law.cover_rows.ctypes.data
+    cover_rows = law.cover_rows
+    function, address = (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)
+    arrays = law.rows.ctypes.data, law.marks.ctypes.data, law.rows.size // ROW_SIZE, address
+    numbers = unlike, *arrays, kappa, mu, *(scale[name] for name in ("V", "omega", "Q", "M"))
+    return np.array([(c_function_address(function, SCENE), slopes, *numbers) for slopes in (0, 1)], SCENE)
+
+
+def c_function_address(function, record: np.dtype) -> int:
+    """Return the address of a kernel (V, omega, pointer to results, pointer to a ``record``) -> status."""
     arguments = types.float64, types.float64, types.CPointer(types.float64)
-    numbers["function"] = function_address(function, SCENE, types.int32, *arguments)
-    for name, number in numbers.items():
-        scenes[name] = number
-    return scenes
+    return function_address(function, record, types.int32, *arguments)

@@ -6,8 +6,6 @@ at small creepage.  There their difference is exact with the mean slope S of H/F
     |Q|/mu = D [(2 L - D) (H/F^2)(v2) - v2 L S]
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
@@ -162,7 +160,7 @@ def _next_state(k, request):
 @inline_kernel
 def _requests_Q_slopes(to):
     """Return whether slopes of Q are among the :class:`Fields` ``to``."""
-    return to.dQ_dV >= 0 or to.dQ_ddelta >= 0 or to.dQ_domega >= 0
+    return max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
 
 
 @inline_kernel
@@ -184,13 +182,13 @@ def _write_functions_of_speed(k, column, buffer, law, request):
         slopes = length_and_moment(position, u, law)
         buffer[2, column] = slopes.dL
         write_field(to.dM_dV, slopes.d_um, n, request)
-    if to.lam >= 0 or to.zeta >= 0 or to.epsilon >= 0 or to.beta >= 0:
+    if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
         lam, epsilon = lam_and_epsilon(position, u, law)
         buffer[1, column] = lam
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon, n, request)
-    if to.M_half_space >= 0 or to.M_cylinder >= 0 or to.dM_half_space_dV >= 0 or to.dM_cylinder_dV >= 0:
+    if max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0:
         half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
         write_field(to.M_half_space, factor * half_space, n, request)
         write_field(to.M_cylinder, factor * cylinder, n, request)

@@ -1,54 +1,28 @@
 """Records of contact states: what the law is given, and which quantities are written where."""
 
-from __future__ import annotations
-
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..compile.jit import inline_kernel
 
-
-class Fields(NamedTuple):
-    """The row of the output that each quantity is written to; -1 for a quantity that is not requested."""
-
-    lam: int = -1
-    zeta: int = -1
-    epsilon: int = -1
-    delta_star: int = -1
-    delta: int = -1
-    full_slip: int = -1
-    beta: int = -1
-    grip: int = -1
-    Q: int = -1
-    M: int = -1
-    dQ_dV: int = -1
-    dQ_ddelta: int = -1
-    dQ_domega: int = -1
-    dM_dV: int = -1
-    M_half_space: int = -1
-    M_cylinder: int = -1
-    dM_half_space_dV: int = -1
-    dM_cylinder_dV: int = -1
-    delta_0: int = -1
+#: The row of the output that each quantity is written to; -1 for a quantity that is not requested.  The names are those
+#: of the fields of ``contact``.
+Fields = namedtuple(
+    "Fields",
+    "lam zeta epsilon delta_star delta full_slip beta grip Q M dQ_dV dQ_ddelta dQ_domega dM_dV "
+    "M_half_space M_cylinder dM_half_space_dV dM_cylinder_dV delta_0",
+    defaults=[-1] * 19,
+)
 
 
 class State(NamedTuple):
-    """One state of the contact, dimensionless.
+    """One state of the contact, dimensionless; or arrays of states, each of length 1 or with one value for each.
 
     kappa : R/l0, slenderness.  mu : coefficient of friction.  V : speed of the axis.
-    creep : creepage delta, or angular velocity omega.  creep_is_omega : whether ``creep`` is omega.
+    creep : creepage delta, or angular velocity omega.  creep_is_omega : whether ``creep`` is omega; one for all.
     """
-
-    kappa: float
-    mu: float
-    V: float
-    creep: float
-    creep_is_omega: bool
-
-
-class States(NamedTuple):
-    """Arrays of the fields of :class:`State`, each of length 1, for all states, or with one value a state."""
 
     kappa: Any
     mu: Any
@@ -60,7 +34,8 @@ class States(NamedTuple):
 class Request(NamedTuple):
     """States, and the quantities of them that are requested.
 
-    states : :class:`States`.  order : numbers of the states in the order of evaluation; empty: in their own order.
+    states : a :class:`State` of arrays.
+    order : numbers of the states in the order of evaluation; empty: in their own order.
     to : :class:`Fields`.  out : (quantities, states), written.  first : column of ``out`` for state 0.
     """
 
@@ -79,7 +54,7 @@ def element(values, n):
 
 @inline_kernel
 def read_state(states, n):
-    """Return the :class:`State` with number ``n`` of :class:`States`."""
+    """Return the :class:`State` with number ``n`` of ``states``, a :class:`State` of arrays."""
     return State(
         element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
         states.creep_is_omega,

@@ -6,8 +6,6 @@ nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numb
 second derivative.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

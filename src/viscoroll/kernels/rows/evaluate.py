@@ -17,8 +17,6 @@ the parts that it reads.  A part depends on its material alone, not on what was 
 the first ``locate_row``: positions of another material mean nothing.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -183,8 +181,6 @@ def body_moments(position, u, law):
 @inline_kernel
 def free_creep_and_slopes(u, law):
     """Return 2 kappa delta_0 and its first two derivatives over u = kappa |V|; zeros of half-spaces, at no cost."""
-    if law.cover_rows is None:
-        return 0.0, 0.0, 0.0
     return free_creep_at(locate_row(u, law), u, law.cover_rows)
 
 

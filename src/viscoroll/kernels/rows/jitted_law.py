@@ -3,8 +3,6 @@
 All such laws have one numba type, so that a user's function that is given a law is compiled once for all of them.
 """
 
-from __future__ import annotations
-
 import ctypes
 import inspect
 from functools import cached_property
@@ -41,10 +39,10 @@ _constants: list[Any] = []
 class LawType(types.Callable):
     """numba's type of a law: (V, omega) -> :class:`LoadsAndSlopes`."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         super().__init__("viscoroll.law")
 
-    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+    def get_call_type(self, context, args, kws):
         """Return the signature of a call with two real numbers, or None for other arguments.
 
         context : of numba.  args, kws : types of the positional and of the named arguments.
@@ -58,11 +56,11 @@ class LawType(types.Callable):
         returned = types.NamedUniTuple(types.float64, RESULTS, LoadsAndSlopes)
         return signature(returned, types.float64, types.float64, recvr=self).replace(pysig=_SIGNATURE)
 
-    def get_call_signatures(self) -> tuple[list[Any], bool]:
+    def get_call_signatures(self):
         """Return the signatures that numba names in its messages, and that they have no parameters."""
         return [signature(types.float64, types.float64, types.float64)], False
 
-    def get_impl_key(self, _: Any) -> type:
+    def get_impl_key(self, _):
         """Return the key under which numba finds :func:`_lower_call`."""
         return LawType
 
@@ -84,7 +82,7 @@ class Jitted:
 
     _numba_type_ = LawType()
 
-    def __init__(self, scenes: NDArray[Any], owner: Any) -> None:
+    def __init__(self, scenes: NDArray[Any], owner):
         self._scenes = scenes
         self._owner = owner
         self.plain, self.address = (int(scenes[n:].ctypes.data) for n in (0, 1))
@@ -112,12 +110,12 @@ class Jitted:
 class _LawModel(models.PrimitiveModel):
     """A law is represented by the address of its user data."""
 
-    def __init__(self, manager: Any, kind: Any) -> None:
+    def __init__(self, manager, kind):
         super().__init__(manager, kind, _WORD)
 
 
 @unbox(LawType)
-def _unbox(kind: Any, law: Any, c: Any) -> NativeValue:
+def _unbox(kind, law, c):
     """Return the address of the law that Python passes; arguments as numba gives them."""
     address = c.pyapi.object_getattr_string(law, "address")
     value = c.pyapi.long_as_ulonglong(address)
@@ -126,14 +124,14 @@ def _unbox(kind: Any, law: Any, c: Any) -> NativeValue:
 
 
 @lower_constant(LawType)
-def _lower_constant(context: Any, builder: Any, kind: Any, law: Any) -> Any:
+def _lower_constant(context, builder, kind, law):
     """Return the address of a law that is a constant of the code; numba then keeps the code out of its cache."""
     _constants.append(law)
     return builder.ptrtoint(context.add_dynamic_addr(builder, law.address, info="law"), _WORD)
 
 
 @lower_builtin(LawType, LawType, types.float64, types.float64)
-def _lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+def _lower_call(context, builder, signature, arguments):
     """Return instructions that call the C function of a law, whose address begins the user data.
 
     context, builder, signature : of numba.  arguments : values of the law, V and omega.

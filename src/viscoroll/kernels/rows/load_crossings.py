@@ -4,8 +4,6 @@ kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one
 which its left side is monotone.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,13 +33,6 @@ class LoadCurve(NamedTuple):
 
 
 @kernel
-def _evaluate_curve(u, gain, law):
-    """Return kappa (M - gain V) and its slope over ln u at u = kappa V, for a :class:`Law` and a ``gain``."""
-    functions = length_and_moment(locate_row(u, law), u, law)
-    return u * functions.scale * functions.m - u * gain, u * (functions.d_um - gain)
-
-
-@kernel
 def _find_crossing(load, n, curve, law):
     """Return u between the nodes ``n`` and n + 1 where the curve equals ``load``: Newton's iteration in a bracket.
 
@@ -65,7 +56,9 @@ def _find_crossing(load, n, curve, law):
         top = high
     u = low * (high / low) ** part
     for _ in range(_MAX_STEPS):
-        value, slope = _evaluate_curve(u, curve.gain, law)
+        functions = length_and_moment(locate_row(u, law), u, law)
+        value = u * functions.scale * functions.m - u * curve.gain
+        slope = u * (functions.d_um - curve.gain)  # over ln u
         if (value <= load) == (rise > 0.0):
             low = u
         else:

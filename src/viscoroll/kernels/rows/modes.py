@@ -11,12 +11,11 @@ _s is the slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long
 T_mean times themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..bessel.ratios import asymptotic_series, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 from ..compile.jit import inline_kernel, kernel
+from ..numerics.interpolation import to_doubles
 from ..numerics.simd4 import LANES, pack, store, unpack
 from .contact_states import element
 from .series import FUNCTIONS, evaluate_functions, reciprocal
@@ -24,9 +23,9 @@ from .series import FUNCTIONS, evaluate_functions, reciprocal
 #: From this argument on r and k come from their asymptotic series, whose derivatives keep their digits.
 _ASYMPTOTIC = 64.0
 #: Coefficients of the asymptotic series of r.
-_SERIES_R = np.array([float(a) for a in asymptotic_series(-1, 17)])
+_SERIES_R = to_doubles(asymptotic_series(-1, 17))
 #: Coefficients of the asymptotic series of k.
-_SERIES_K = np.array([float(a) for a in asymptotic_series(1, 17)])
+_SERIES_K = to_doubles(asymptotic_series(1, 17))
 #: From this multiple of the longest creep time on N has its limit V -> 0, to rounding.
 _SLOW = 1e17
 #: Below this multiple of the shortest relaxation time N has its limit of fast rolling, to rounding.

@@ -5,8 +5,6 @@ their values, and behind them the leading divided differences; values at the nod
 arguments and values four numbers are kept free, so that vectors may reach below the first point.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
@@ -51,12 +49,9 @@ def divided_differences(count, scratch):
     Each order is computed in place, four at a time, from the last point down.  What lies below the first difference of
     an order is spoilt, and is not read any more.
     """
-    for which in range(count):
-        start = VALUES + FUNCTION_STRIDE * which
-        scratch[start + _BLOCK] = scratch[start]
-    for order in range(1, POINT_COUNT):
+    for order in range(POINT_COUNT):
         first = POINT_COUNT - LANES
-        while first > order - LANES:
+        while order > 0 and first > order - LANES:
             x = ARGUMENTS + first
             per = 1.0 / (load(scratch, x) - load(scratch, x - order))
             for which in range(count):

@@ -9,8 +9,6 @@ that it was made for.  The rows of one material are complete.  Of many materials
 who reads it need not know which (:mod:`evaluate`).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

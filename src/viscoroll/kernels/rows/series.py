@@ -19,8 +19,6 @@ True, a **jet** at one place: value, d/dz, d/ds, d2/dz ds.  The parameter s is s
 while E_i a_i, J_j b_j and Q stay what they are (:mod:`modes`).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,14 +27,14 @@ from ..bessel.ratios import ratio_i2, ratio_k, ratio_r
 from ..compile.jit import inline_kernel, kernel
 from ..numerics.simd4 import LANES, broadcast, fma4, load, pack, store, unpack
 
-#: Index of g/z among the functions.
+#: Position of the four values of g/z among the results.
 G_OVER_Z = 0
-#: Index of h/z.
-H_OVER_Z = 1
-#: Index of m of the half-space.
-M_HALF_SPACE = 2
-#: Index of m of the cylinder.
-M_CYLINDER = 3
+#: Position of h/z.
+H_OVER_Z = 4
+#: Position of m of the half-space.
+M_HALF_SPACE = 8
+#: Position of m of the cylinder.
+M_CYLINDER = 12
 #: Number of functions.
 FUNCTIONS = 4
 
@@ -114,15 +112,16 @@ def new_workspace(modes: int) -> Workspace:
 def evaluate_ratios(places, series, work):
     """Write 1/r, k and i2 of every mode at four places z.
 
-    places : tuple of four z > 0.  series : a :class:`Series`.  work : its :class:`Workspace`, written.
+    places : vector of four z > 0.  series : a :class:`Series`.  work : its :class:`Workspace`, written.
     """
+    z = unpack(places)
     for at in range(LANES * series.a.size):
         i = at // LANES
-        x = series.a[i] * places[at % LANES]
+        x = series.a[i] * z[at % LANES]
         r, _ = ratio_r(x)
         work.per_r[at] = 1.0 / r
         work.i2[at] = ratio_i2(x, r)
-        work.k[at], _ = ratio_k(series.b[i] * places[at % LANES])
+        work.k[at], _ = ratio_k(series.b[i] * z[at % LANES])
 
 
 # --- arithmetic of four values or of a jet ---
@@ -298,8 +297,8 @@ def evaluate_functions(jets, z, series, work):
         factor = multiply(jets, m, reciprocal(jets, half_space + cylinder))
         half_space = multiply(jets, half_space, factor)
         cylinder = multiply(jets, cylinder, factor)
-    store(work.found, LANES * G_OVER_Z, multiply(jets, g, per_z))
-    store(work.found, LANES * H_OVER_Z, h_over_z)
-    store(work.found, LANES * M_HALF_SPACE, half_space)
-    store(work.found, LANES * M_CYLINDER, cylinder)
+    store(work.found, G_OVER_Z, multiply(jets, g, per_z))
+    store(work.found, H_OVER_Z, h_over_z)
+    store(work.found, M_HALF_SPACE, half_space)
+    store(work.found, M_CYLINDER, cylinder)
     return g, h, pressed

@@ -7,10 +7,6 @@ So a polynomial over an octave costs no more than one over an eighth of the octa
 All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``.
 """
 
-from __future__ import annotations
-
-from typing import Any
-
 from llvmlite import ir
 from numba.core import types
 
@@ -24,12 +20,12 @@ TERMS = 24
 _ONE = TERMS // LANES
 
 
-def _constant(numbers: Any) -> Any:
+def _constant(numbers):
     """Return a constant vector of LLVM with four ``numbers``."""
     return ir.Constant(VECTOR, [float(x) for x in numbers])
 
 
-def _make_sums(count: int, orders: int) -> Any:
+def _make_sums(count: int, orders: int):
     """Return a function for kernels, (table, start, x) -> polynomial in x with vectors for coefficients, derivatives.
 
     count : number of coefficients.  orders : how many values are returned: the polynomial, its first derivative, ...

@@ -18,8 +18,6 @@ to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the secon
 the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,7 +37,7 @@ _DEEP = 38.0
 
 
 class MemoryWeights(NamedTuple):
-    """What the memory integrals of a series have in common at one z; filled by :func:`_update_weights`.
+    """What the memory integrals of a series have in common at one z; filled by :func:`unit_shape`.
 
     weight : a_i X_i of each mode.  complement : 1 - r(a_i z) of each mode.  z : the z, (1,).  work : a workspace.
     """
@@ -98,23 +96,10 @@ def _memory_integral(u, w, a, r_complement):
     return sign * span * total
 
 
-def new_memory_weights(series: Any) -> MemoryWeights:
+def new_memory_weights(series) -> MemoryWeights:
     """Return :class:`MemoryWeights` of a :class:`Series` that belong to no z yet."""
     n = series.a.size
     return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))
-
-
-@kernel
-def _update_weights(z, series, weights):
-    """Compute the :class:`MemoryWeights` ``weights`` of a :class:`Series` at z, unless they belong to z already."""
-    if weights.z[0] == z:
-        return
-    weights.z[0] = z
-    evaluate_ratios((z, z, z, z), series, weights.work)
-    evaluate_functions(False, broadcast(z), series, weights.work)
-    for i in range(series.a.size):
-        weights.weight[i] = series.a[i] * weights.work.y[LANES * i]
-        _, weights.complement[i] = ratio_r(series.a[i] * z)
 
 
 @kernel
@@ -123,43 +108,26 @@ def unit_shape(u, w, z, series, weights):
 
     u, w : distances from the front and the rear edge in half contacts, u + w = 2.
     z : half transit time, dimensionless; inf is the elastic limit V = 0.
-    series : a :class:`Series`.  weights : its :class:`MemoryWeights`, updated.
+    series : a :class:`Series`.  weights : its :class:`MemoryWeights`, computed again if they belong to another z.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
     shape = np.sqrt(u * w)
     if z == np.inf:
         return shape
-    _update_weights(z, series, weights)
+    if weights.z[0] != z:
+        weights.z[0] = z
+        places = broadcast(z)
+        evaluate_ratios(places, series, weights.work)
+        evaluate_functions(False, places, series, weights.work)
+        for i in range(series.a.size):
+            weights.weight[i] = series.a[i] * weights.work.y[LANES * i]
+            _, weights.complement[i] = ratio_r(series.a[i] * z)
     for i in range(series.a.size):
         a = series.a[i] * z
         if weights.weight[i] > 0.0 and a < np.inf:
             shape += weights.weight[i] * _memory_integral(u, w, a, weights.complement[i])
     return shape
-
-
-@kernel
-def _stress(i, points, series, whole, stick):
-    """Return (p/E', |tau|/E') at point number ``i``.
-
-    points : :class:`Points`.  series : a :class:`Series`.
-    whole, stick : :class:`MemoryWeights` for the contact and for the stick zone.
-    """
-    lam = element(points.lam, i)
-    epsilon = element(points.epsilon, i)
-    beta = element(points.beta, i)
-    zeta = element(points.zeta, i)
-    mu = element(points.mu, i)
-    y = 2.0 * element(points.x, i) / lam
-    u = (1.0 - y) + epsilon
-    w = (1.0 + y) - epsilon
-    scale = lam / (8.0 * np.pi * element(points.kappa, i))
-    p = scale * unit_shape(u, w, zeta, series, whole)
-    if u >= 2.0 * beta:
-        return p, mu * p
-    stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, series, stick)
-    # at beta = 1 the difference is zero to rounding, of either sign
-    return p, mu * max(p - scale * stuck, 0.0)
 
 
 @kernel
@@ -175,4 +143,17 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:
             whole.z[0] = stick.z[0] = np.nan
         set_alpha_of_state(i, alpha, series)
-        p[i], tau[i] = _stress(i, points, series, whole, stick)
+        lam = element(points.lam, i)
+        epsilon = element(points.epsilon, i)
+        beta = element(points.beta, i)
+        zeta = element(points.zeta, i)
+        y = 2.0 * element(points.x, i) / lam
+        u = (1.0 - y) + epsilon
+        w = (1.0 + y) - epsilon
+        scale = lam / (8.0 * np.pi * element(points.kappa, i))
+        p[i] = scale * unit_shape(u, w, zeta, series, whole)
+        stuck = 0.0
+        if not u >= 2.0 * beta:
+            stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, series, stick)
+        # at beta = 1 the difference is zero to rounding, of either sign
+        tau[i] = element(points.mu, i) * max(p[i] - scale * stuck, 0.0)

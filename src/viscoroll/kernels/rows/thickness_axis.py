@@ -4,11 +4,7 @@ Every number of a law is a polynomial of log2(h/l0) within an octave of the thic
 of the laws at the nodes, each times a weight that depends on the thickness alone.
 """
 
-from __future__ import annotations
-
-import numpy as np
-
-from ..compile.intrinsics import floats_at, integers_at, record_at
+from ..compile.intrinsics import floats_at, integers_at, record_at, record_type
 from ..compile.jit import inline_kernel, kernel
 from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE
 from .record import (
@@ -29,12 +25,7 @@ NODES = 14
 #: What these kernels read.  Addresses: rows, marks and cover rows of the law; the index of the cover of each state;
 #: the weights of each cover; for each cover the address of the laws of its octave and their number of rows.
 #: state_count: length of the indices, 1 or one for each state.  cover_count: number of covers.
-SOURCE = np.dtype(
-    [
-        (name, np.int64)
-        for name in ("rows", "marks", "cover_rows", "cover_index", "state_count", "weights", "octaves", "cover_count")
-    ]
-)
+SOURCE = record_type("rows marks cover_rows cover_index state_count weights octaves cover_count")
 #: Mark that is the address of the laws of the selected octave.
 _LAWS = MAKER_MARKS
 

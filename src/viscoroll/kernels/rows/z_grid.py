@@ -7,17 +7,15 @@ the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No 
 needed.  A row depends on its material alone, not on the rows that were made before.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.intrinsics import floats_at, integers_at, record_at
+from ..compile.intrinsics import floats_at, integers_at, record_at, record_type
 from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import chebyshev, to_doubles
-from ..numerics.simd4 import LANES, pack
+from ..numerics.simd4 import LANES, pack, unpack
 from .newton_interpolation import (
     ARGUMENTS,
     FUNCTION_STRIDE,
@@ -116,9 +114,9 @@ _SLOW_POINTS = _leja_order(0.5 + 0.5 * to_doubles(chebyshev(POINT_COUNT)))
 #: of the materials; scratch for the grid (``numbers``); the versions of its blocks of four nodes; the workspace of the
 #: modes.  state_count: length of the indices, 1 or one for each state.  material_size: numbers of a material.
 #: node_count: nodes of the grid.  workspace_size: numbers of the workspace.  unlike: whether the bodies differ.
-SOURCE = np.dtype(
-    [(name, np.int64) for name in ("rows", "marks", "material_index", "state_count", "materials", "material_size")]
-    + [(name, np.int64) for name in ("numbers", "node_count", "node_versions", "workspace", "workspace_size", "unlike")]
+SOURCE = record_type(
+    "rows marks material_index state_count materials material_size "
+    "numbers node_count node_versions workspace workspace_size unlike"
 )
 #: Number of a material, and of the head of rows: sum J_j T_j of the half-space; behind it that of the cylinder.
 _T_HALF_SPACE = MAKER_NUMBERS
@@ -279,17 +277,20 @@ def _z_of_node(node, grid):
 @kernel
 def _fill_block(first, grid):
     """Compute the functions at the four nodes from number ``first`` on."""
-    z = _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
+    places = pack(
+        _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
+    )
+    z = unpack(places)
     series = unpack_series(grid.series, grid.modes, grid.unlike)
     work = split_workspace(grid.workspace, grid.modes)
-    evaluate_ratios(z, series, work)
-    evaluate_functions(False, pack(z[0], z[1], z[2], z[3]), series, work)
+    evaluate_ratios(places, series, work)
+    evaluate_functions(False, places, series, work)
     for c in range(LANES):
-        shift = work.found[LANES * G_OVER_Z + c]
-        half_space = work.found[LANES * M_HALF_SPACE + c]
-        cylinder = work.found[LANES * M_CYLINDER + c]
+        shift = work.found[G_OVER_Z + c]
+        half_space = work.found[M_HALF_SPACE + c]
+        cylinder = work.found[M_CYLINDER + c]
         per_z = 1.0 / z[c]
-        per_lam = np.sqrt(1.0 + 2.0 * work.found[LANES * H_OVER_Z + c])
+        per_lam = np.sqrt(1.0 + 2.0 * work.found[H_OVER_Z + c])
         share = 1.0 / (1.0 + shift)
         lam = 1.0 / per_lam
         ratio = share * per_lam

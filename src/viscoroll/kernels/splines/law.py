@@ -5,27 +5,21 @@ Below the slowest speed of the grid Q is that of the slowest at the same creepag
 both ends of delta |Q| is mu P, if the grid slips fully there.  The status of other states outside is not 0.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import carray
-from numba.core import types
 from numpy.typing import NDArray
 
-from ..compile.intrinsics import floats_at, function_address, record_at
+from ..compile.intrinsics import floats_at, record_at, record_type
 from ..compile.jit import kernel
-from ..rows.c_function import RESULTS
+from ..rows.c_function import RESULTS, c_function_address, refuse
 from ..rows.jitted_law import Jitted
 from .spline import HIGH, evaluate
 
-#: Fields of the law, each a spline.
-FIELDS = ("Q", "M_half_space", "M_cylinder")
 #: User data.  function: address of the C function.  slopes: whether slopes are asked for.  Of each spline its address
 #: and size.  slips: whether the grid slips fully at both ends of delta.  slowest: least V.  low, high: ends of delta.
 #: R: radius, which turns omega into a speed.
-GRID = np.dtype(
-    [(name, np.int64) for name in ("function", "slopes", *FIELDS, *(f"{name}_size" for name in FIELDS), "slips")]
-    + [(name, np.float64) for name in ("slowest", "low", "high", "R")]
+GRID = record_type(
+    "function slopes Q M_half_space M_cylinder Q_size M_half_space_size M_cylinder_size slips", "slowest low high R"
 )
 
 
@@ -50,9 +44,7 @@ def _grid_law(V, omega, pointer, grids):
     beyond = not grid.low <= delta <= grid.high
     defined = abs(slip) < np.inf and speed < np.inf and half_space.value == half_space.value
     if not defined or (beyond and not grid.slips):
-        for n in range(RESULTS):
-            out[n] = np.nan
-        return 1
+        return refuse(out)
     slow = speed < grid.slowest
     part = speed / grid_V
     ddelta = 0.0 if beyond else traction.ddelta
@@ -73,12 +65,12 @@ def _grid_law(V, omega, pointer, grids):
 def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Jitted:
     """Return the law of a grid for jitted code.
 
-    splines : those of the :data:`FIELDS`, which the law keeps.  numbers : slips, slowest, low, high, R of :data:`GRID`.
+    splines : those of Q, M_half_space and M_cylinder, which the law keeps.
+    numbers : slips, slowest, low, high, R of :data:`GRID`.
     """
     grids = np.zeros(2, GRID)
     grids["slopes"] = 0, 1
-    arguments = types.float64, types.float64, types.CPointer(types.float64)
-    grids["function"] = function_address(_grid_law, GRID, types.int32, *arguments)
+    grids["function"] = c_function_address(_grid_law, GRID)
     for name, spline in splines.items():
         grids[name] = spline.ctypes.data
         grids[f"{name}_size"] = spline.size

@@ -5,8 +5,6 @@ intervals, and for each interval the basis splines that are not 0 there, as poly
 edge.  ``viscoroll.materials.grid_splines`` writes it.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -73,7 +71,7 @@ def _number_at(spline, n):
 @inline_kernel
 def _integer_at(spline, n):
     """Return number ``n`` of a spline as an integer."""
-    return np.int64(spline[np.uint64(n)])
+    return np.int64(_number_at(spline, n))
 
 
 @inline_kernel
