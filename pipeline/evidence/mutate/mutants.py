@@ -64,8 +64,8 @@ SLICE = [
     ("rows/evaluate.py", "return LengthAndMoment(L, dL * dt", "return LengthAndMoment(L * (1.0 + 1e-9), dL * dt", _STATES),
     ("rows/contact.py", "traction = 1.0 - w * w * value", "traction = 1.0 - w * value", _STATES),
     ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * secant)", "return D * (2.0 * L - D) * value", claims("contact")),
-    ("rows/evaluate.py", "rise = part * rise + (1.0 - part) * near_rise * other", "rise = 1.0 * rise", _STATES),
-    ("rows/evaluate.py", "bend, own + part, z,", "bend, own, z,", _STATES),
+    ("rows/evaluate.py", "secant = part * secant + (1.0 - part) * near_secant * near_dt", "secant = 1.0 * secant", _STATES),
+    ("rows/evaluate.py", "ddL, moment + part, z,", "ddL, moment, z,", _STATES),
     ("rows/simd_polynomial.py", "_constant([k] * LANES)", "_constant([k * 1.0000001] * LANES)", _STATES),
 ]  # fmt: skip
 ROWS = [
@@ -94,8 +94,8 @@ MOTION = [
 ]  # fmt: skip
 _UNSTEADY = "tests/kernels/rows/test_unsteady.py"
 SERIES = [
-    ("rows/series.py", "* (0.0 - per)", "* per", claims("series", "states")),
-    ("rows/series.py", "reciprocal(jets, one + 2.0 * h_over_z)", "reciprocal(jets, one + h_over_z)", claims("series", "states")),
+    ("rows/series.py", "* (0.0 - inverse)", "* inverse", claims("series", "states")),
+    ("rows/series.py", "reciprocal(jets, unit + 2.0 * h_over_z)", "reciprocal(jets, unit + h_over_z)", claims("series", "states")),
     ("rows/series.py", "w * w * (2.0 * w * dz * ds - dzds)", "w * w * (w * dz * ds - dzds)", _UNSTEADY),
     ("rows/series.py", "weight = a * series.a[n] / (a + series.a[n])", "weight = series.a[n]", claims("series", "states")),
     ("rows/series.py", "half_space += series.weights[j] * series.t[j] * moment", "half_space += series.weights[j] * moment", claims("series", "states")),

@@ -117,15 +117,15 @@ def _polynomial(row, t):
 @inline_kernel
 def ratio_r(x):
     """Return r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy (2.4 ULP)."""
-    per_x = 1.0 / x
+    inverse_x = 1.0 / x
     # selections, not branches: those would be mispredicted on scattered arguments
     near = x < _NEAR
     far = not x < _FAR  # also for NaN, which must not become the number of a bin
     row = bin_number(x, _BIN_BITS) + (_R_SMALL if x < 2.0 else _R_LARGE)
     row = _R_NEAR if near else _R_FAR if far else row
-    piece = _polynomial(row, x * x if near else per_x if far else bin_offset(x, _BIN_BITS))
+    piece = _polynomial(row, x * x if near else inverse_x if far else bin_offset(x, _BIN_BITS))
     r = x * piece
-    complement = piece * per_x
+    complement = piece * inverse_x
     return r if x < 2.0 else 1.0 - complement, 1.0 - r if x < 2.0 else complement
 
 
@@ -135,12 +135,12 @@ def ratio_k(z):
     if z < K_LEAST:
         k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
         return k, 1.0 - k
-    per_z = 1.0 / z
+    inverse_z = 1.0 / z
     inside = z < _FAR
     row = bin_number(z, _BIN_BITS) + (_K_SMALL if z < 1.0 else _K_LARGE)
-    piece = _polynomial(row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else per_z)
+    piece = _polynomial(row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else inverse_z)
     k = z * piece
-    complement = piece * per_z
+    complement = piece * inverse_z
     return k if z < 1.0 else 1.0 - complement, 1.0 - k if z < 1.0 else complement
 
 

@@ -61,17 +61,17 @@ def _load(context, builder, kind, at):
     return whole
 
 
-def _lower_reference(context, builder, signature, given):
-    return cgutils.alloca_once_value(builder, given[0])
+def _lower_reference(context, builder, signature, arguments):
+    return cgutils.alloca_once_value(builder, arguments[0])
 
 
-def _lower_value(context, builder, signature, given):
+def _lower_value(context, builder, signature, arguments):
     kind = signature.args[0]
-    return _load(context, builder, kind.record, given[0]) if isinstance(kind, _ReferenceType) else given[0]
+    return _load(context, builder, kind.record, arguments[0]) if isinstance(kind, _ReferenceType) else arguments[0]
 
 
-def _lower_pointer(context, builder, signature, given):
-    return context.make_array(signature.args[0])(context, builder, given[0]).data
+def _lower_pointer(context, builder, signature, arguments):
+    return context.make_array(signature.args[0])(context, builder, arguments[0]).data
 
 
 def _value_signature(kind):

@@ -116,7 +116,10 @@ class DiskCache:
         return None  # save_overload then replaces the file
 
     def save_overload(self, signature, compiled: CompileResult) -> None:
-        """Store the machine code of a signature, unless it contains addresses of this process; warn if that fails."""
+        """Store machine code, unless it contains addresses of this process; warn if that fails.
+
+        signature : types of the arguments.  compiled : numba's result.
+        """
         if compiled.library.has_dynamic_globals:
             return
         content = zlib.compress(dumps(compiled._reduce()), 1)

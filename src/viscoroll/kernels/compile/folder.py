@@ -80,7 +80,7 @@ def make_private_folder(folder: Path) -> None:
 
 
 def refuse_writable_by_others(path: Path) -> None:
-    """Raise PermissionError if others may write to a file or folder, or to one above it, as far as they exist.
+    """Raise PermissionError if others may write to ``path``, or to a folder above it, as far as they exist.
 
     Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile
     of a user is theirs alone, nothing is tested.

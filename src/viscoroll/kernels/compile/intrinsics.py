@@ -29,48 +29,48 @@ _FUNCTION = ir.FunctionType(ir.VoidType(), [_WORD, _WORD])
 
 
 def make_intrinsic(lower: Callable, returned, *kinds):
-    """A function for kernels that is lowered to instructions of LLVM.
+    """Return a function for kernels that is lowered to instructions of LLVM.
 
     lower : (context, builder, signature, arguments) -> value of LLVM, as numba calls it.
     returned : numba's type of the value.
     kinds : numba's types of the arguments, None for any type.
     """
 
-    def typed(context, *given):
-        return returned(*(kind or own for kind, own in zip(kinds, given, strict=True))), lower
+    def give_signature(context, *arguments):
+        return returned(*(kind or own for kind, own in zip(kinds, arguments, strict=True))), lower
 
     names = ["context", *(f"given_{n}" for n in range(len(kinds)))]
-    typed.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])  # type: ignore[attr-defined]
-    return intrinsic(typed)
+    give_signature.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])
+    return intrinsic(give_signature)
 
 
-def call_llvm(builder, name: str, given):
-    """Call the intrinsic ``name`` of LLVM, whose arguments ``given`` and value have one type."""
-    kind = given[0].type
-    function = ir.FunctionType(kind, [kind] * len(given))
-    return builder.call(cgutils.get_or_insert_function(builder.module, function, name), given)
+def call_llvm(builder, name: str, arguments):
+    """Return the call of the intrinsic ``name`` of LLVM, whose ``arguments`` and value have one type."""
+    kind = arguments[0].type
+    function = ir.FunctionType(kind, [kind] * len(arguments))
+    return builder.call(cgutils.get_or_insert_function(builder.module, function, name), arguments)
 
 
-def _bitcast(context, builder, signature, given):
-    return builder.bitcast(given[0], context.get_value_type(signature.return_type))
+def _bitcast(context, builder, signature, arguments):
+    return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
 
 
-def _fma(context, builder, signature, given):
+def _fma(context, builder, signature, arguments):
     """An instruction if the processor has one, else a call of the C library."""
-    return builder.fma(*given)
+    return builder.fma(*arguments)
 
 
-def _expect(context, builder, signature, given):
-    return call_llvm(builder, "llvm.expect.i1", [*given, ir.IntType(1)(0)])
+def _expect(context, builder, signature, arguments):
+    return call_llvm(builder, "llvm.expect.i1", [*arguments, ir.IntType(1)(0)])
 
 
-def _call(context, builder, signature, given):
-    builder.call(builder.inttoptr(given[0], _FUNCTION.as_pointer()), given[1:])
+def _call(context, builder, signature, arguments):
+    builder.call(builder.inttoptr(arguments[0], _FUNCTION.as_pointer()), arguments[1:])
     return context.get_dummy_value()
 
 
-def _pointer(context, builder, signature, given):
-    return builder.inttoptr(given[0], context.get_value_type(signature.return_type))
+def _pointer(context, builder, signature, arguments):
+    return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
 
 
 #: the bits of a double as an integer; numba would compile ``view`` in each kernel, in 0.1 s
@@ -83,10 +83,10 @@ fma = make_intrinsic(_fma, *[types.float64] * 4)
 unlikely = make_intrinsic(_expect, types.boolean, types.boolean)
 #: call the kernel at an address: (address, number, address of a record)
 call_address = make_intrinsic(_call, types.void, *[types.int64] * 3)
-#: an address as a pointer to doubles, and to 64-bit integers
-_to_doubles, _to_integers = (
-    make_intrinsic(_pointer, types.CPointer(kind), types.int64) for kind in (types.float64, types.int64)
-)
+#: an address as a pointer to doubles
+_to_doubles = make_intrinsic(_pointer, types.CPointer(types.float64), types.int64)
+#: an address as a pointer to 64-bit integers
+_to_integers = make_intrinsic(_pointer, types.CPointer(types.int64), types.int64)
 
 
 def record_type(integers: str, floats: str = "") -> np.dtype:

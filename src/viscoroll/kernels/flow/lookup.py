@@ -12,7 +12,7 @@ from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import gauss
 from ..numerics.simd4 import LANES, broadcast, fma4, make_load, unpack
 from ..rows.evaluate import locate_octave
-from ..rows.simd_polynomial import evaluate_one, evaluate_pair
+from ..rows.simd_polynomial import evaluate_pair, evaluate_single
 from . import layout
 from .layout import LAYER_TERMS, SHAPES, STARTS
 from .records import Asymptote
@@ -55,8 +55,10 @@ _LAYER_OCTAVES = SHAPES.layer[2]
 _LAYER = SHAPES.layer[3] * SHAPES.layer[4]
 #: loads the twelve coefficients of the powers of t, that belong to one power of s, as three vectors of four
 _powers = make_load(LAYER_TERMS // LANES)
-#: nodes and weights of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
-_GAUSS_X, _GAUSS_W = gauss(5)
+#: nodes of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
+_GAUSS_X = gauss(5)[0]
+#: weights of that rule
+_GAUSS_W = gauss(5)[1]
 
 
 @inline_kernel
@@ -73,7 +75,7 @@ def full_slip_integrals(V, level, flow):
         return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
     at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * _SLIDE
     T, limit = evaluate_pair(flow.table, at, t)[:2]
-    X = evaluate_one(flow.table, at + layout.SLIDE_X, t)[0] if level >= PATH else 0.0
+    X = evaluate_single(flow.table, at + layout.SLIDE_X, t)[0] if level >= PATH else 0.0
     return T if V > 0.0 else -T, X, limit
 
 
@@ -83,7 +85,7 @@ def speed_at_slide_time(T, flow):
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
         return flow.mu * T
-    V = evaluate_one(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t)[0]
+    V = evaluate_single(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t)[0]
     return V if T > 0.0 else -V
 
 
@@ -118,7 +120,7 @@ def read_onset(I, level, flow):
     row, t, _ = locate_octave(x, layout.LOW)
     at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
     V, T = evaluate_pair(flow.table, at, t)[:2]
-    X = evaluate_one(flow.table, at + layout.ONSET_X, t)[0] if level >= PATH else 0.0
+    X = evaluate_single(flow.table, at + layout.ONSET_X, t)[0] if level >= PATH else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
@@ -185,7 +187,7 @@ def manifold_path(start, span, rate, table):
 def remaining_slip_loss(slow_log, table):
     """Slip loss that remains to rest at a slow logarithm on the slow manifold; it falls as V^3 as V -> 0."""
     at, t, share = _locate_on_manifold(slow_log)
-    return share**3 * evaluate_one(table, at + layout.SLOW_LOSS, t)[0]
+    return share**3 * evaluate_single(table, at + layout.SLOW_LOSS, t)[0]
 
 
 @kernel
@@ -217,8 +219,8 @@ def read_asymptote(family, v, level, flow):
     if level >= PATH:
         x, angle = evaluate_pair(table, at + layout.ASYMPTOTE_PATH, t)[:2]
     if level >= LOSS:
-        loss = evaluate_one(table, at + layout.ASYMPTOTE_LOSS, t)[0]
-    return Asymptote(slow_log, rate, evaluate_one(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
+        loss = evaluate_single(table, at + layout.ASYMPTOTE_LOSS, t)[0]
+    return Asymptote(slow_log, rate, evaluate_single(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
 
 
 @inline_kernel

@@ -31,8 +31,23 @@ from .records import FullSlipStart, Output, Request, StickOnset
 NOT_COVERED = -1
 #: largest ratio of initial speed to speed at onset: V at onset is a difference whose error is 2e-14 of the initial one
 _MAX_SPEED_RATIO = 4096.0
-#: rows of the array of outputs
-_V, _OMEGA, _X, _ANGLE, _DELTA, _REGIME, SLIP_LOSS, ROLLING_LOSS = range(8)
+# Rows of the array of outputs.
+#: speed of the axis
+_V = 0
+#: angular velocity
+_OMEGA = 1
+#: distance
+_X = 2
+#: angle
+_ANGLE = 3
+#: creepage
+_DELTA = 4
+#: regime
+_REGIME = 5
+#: energy lost by slip
+SLIP_LOSS = 6
+#: energy lost by rolling resistance
+ROLLING_LOSS = 7
 #: number of these rows
 ROWS = 8
 

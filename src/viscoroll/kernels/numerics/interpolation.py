@@ -55,6 +55,7 @@ class Interpolation:
 
     @in_40_digits
     def __init__(self, nodes: Sequence[Decimal]) -> None:
+        """Compute Lagrange's polynomials of ``nodes``."""
         self.exact = tuple(nodes)
         self.nodes = to_doubles(nodes)
         lagrange = []
@@ -133,8 +134,8 @@ def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
 
 
 def to_doubles(values) -> _Floats:
-    """Return Decimals as the nearest doubles, of the same shape."""
-    return np.array(values, dtype=np.float64)
+    """Return Decimals as the nearest doubles, of the same shape, in C order: einsum's sums depend on the order."""
+    return np.array(values, dtype=np.float64, order="C")
 
 
 def _unit_series(degree: int, *last: int) -> list[Decimal]:

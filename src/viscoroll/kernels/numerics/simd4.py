@@ -83,14 +83,14 @@ def _define_operator(function, name):
     function : of the module ``operator``.  name : of the method of LLVM's builder.
     """
 
-    def typed(context):
+    def give_type(context):
         return lambda a, b: FOUR if FOUR in (a, b) and {a, b} <= {FOUR, types.float64} else None
 
     def lower(context, builder, signature, arguments):
         operands = zip(arguments, signature.args, strict=True)
         return getattr(builder, name)(*(x if kind is FOUR else broadcast_value(builder, x) for x, kind in operands))
 
-    type_callable(function)(typed)
+    type_callable(function)(give_type)
     for kinds in ((FOUR, FOUR), (FOUR, types.float64), (types.float64, FOUR)):
         lower_builtin(function, *kinds)(lower)
 

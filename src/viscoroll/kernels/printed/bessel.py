@@ -62,9 +62,10 @@ _I1_TAIL = np.array(_hankel(1, -1))
 _K0_TAIL = np.array(_hankel(0, +1))
 #: Hankel's expansion of K1.
 _K1_TAIL = np.array(_hankel(1, +1))
-# Temme's series of K0 and of K1: what the logarithm is multiplied by, and the rest.
-_K0_LOG, _K0_REST = np.array(_temme_k0())
-_K1_LOG, _K1_REST = np.array(_temme_k1())
+#: Temme's series of K0: what the logarithm is multiplied by, and the rest.
+_K0 = np.array(_temme_k0())
+#: Temme's series of z K1, likewise.
+_K1 = np.array(_temme_k1())
 
 
 @kernel
@@ -102,8 +103,8 @@ def ratio_k0k1(z):
         # ln 2 - ln z and not -ln(z/2): half the smallest double is zero
         f = (_LN2 - np.log(z)) - _EULER_GAMMA
         q = 0.25 * z * z
-        k0 = f * _horner(q, _K0_LOG) + _horner(q, _K0_REST)
-        z_k1 = 1.0 + (_horner(q, _K1_REST) - f * _horner(q, _K1_LOG))
+        k0 = f * _horner(q, _K0[0]) + _horner(q, _K0[1])
+        z_k1 = 1.0 + (_horner(q, _K1[1]) - f * _horner(q, _K1[0]))
         return z * (k0 / z_k1)
     # K1/K0 = (z + 1/2 - h)/z with h = (1/4)/(2 (z + 1) - (9/4)/(2 (z + 2) - ...)); error exp(-4 sqrt(2 n z))
     n = 5 + int(44.0 / z)

@@ -74,7 +74,7 @@ def write_field(row, value, n, request):
 
 @inline_kernel
 def slip_and_creepage(state):
-    """Return (slip, delta) of a :class:`State`.
+    """Return (slip, delta) of ``state``, a :class:`State`.
 
     slip : a number with the sign of omega - V.  delta : the creepage (omega - V)/V; V = 0 counts as V -> 0+.
     """

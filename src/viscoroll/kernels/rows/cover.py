@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compile.jit import inline_kernel
-from .simd_polynomial import TERMS, evaluate_one, evaluate_pair
+from .simd_polynomial import TERMS, evaluate_pair, evaluate_single
 
 #: Index in the head: lam as u -> infinity; behind it the coefficient of 1/u.
 _LAM = 0
@@ -71,13 +71,13 @@ def fast_lengths(lam, shift, u, cover_rows):
 
 
 @inline_kernel
-def fast_share(share, v, cover_rows):
+def fast_eta_over_F(eta_over_F, v, cover_rows):
     """Return eta/F in the fast limit.
 
-    share : eta/F of a half-space, which is the result if ``cover_rows`` is None.  v : 1/F(eta).
+    eta_over_F : eta/F of a half-space, which is the result if ``cover_rows`` is None.  v : 1/F(eta).
     """
     if cover_rows is None:
-        return share
+        return eta_over_F
     return cover_rows[_SHARE] + cover_rows[_SHARE + 1] / v
 
 
@@ -85,16 +85,16 @@ def fast_share(share, v, cover_rows):
 def free_creep_at(position, u, cover_rows):
     """Return 2 kappa delta_0 and its first two derivatives over u; zeros of half-spaces.
 
-    position : of u in the rows of the law.  u : kappa |V|.
+    position : of u in the rows of the law.  u : kappa |V|.  cover_rows : as of :class:`Law`.
     """
     if cover_rows is None:
         return 0.0, 0.0, 0.0
     if position.row < 0:
-        fall = cover_rows[_FREE + 1] / u
-        return cover_rows[_FREE] + fall, -fall / u, 2.0 * fall / (u * u)
+        change = cover_rows[_FREE + 1] / u
+        return cover_rows[_FREE] + change, -change / u, 2.0 * change / (u * u)
     start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + TERMS
-    value, _, slope, _, bend, _ = evaluate_pair(cover_rows, start, position.t)
-    return value, slope * position.dt_dx, bend * position.dt_dx * position.dt_dx
+    value, _, slope, _, second_derivative, _ = evaluate_pair(cover_rows, start, position.t)
+    return value, slope * position.dt_dx, second_derivative * position.dt_dx * position.dt_dx
 
 
 @inline_kernel
@@ -104,7 +104,7 @@ def free_creep_value(position, u, cover_rows):
         return 0.0
     if position.row < 0:
         return cover_rows[_FREE] + cover_rows[_FREE + 1] / u
-    return evaluate_one(cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row, position.t)[0]
+    return evaluate_single(cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row, position.t)[0]
 
 
 @inline_kernel
@@ -112,7 +112,7 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
     """Return (a number with the sign of the traction, the creepage that makes it): delta less that of free rolling.
 
     slip : a number with the sign of omega - V.  delta : creepage.  free_creep : 2 kappa delta_0.
-    state : a :class:`State`.
+    state : a :class:`State`.  cover_rows : as of :class:`Law`.
     """
     if cover_rows is None:
         return slip, delta
@@ -125,7 +125,7 @@ def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
     """Return dQ/dV at fixed creepage.
 
     dQ_dV : slope at fixed creepage less that of free rolling.  dQ_ddelta : slope over the creepage.
-    free_slope : slope of 2 kappa delta_0 over u.
+    free_slope : slope of 2 kappa delta_0 over u.  cover_rows : as of :class:`Law`; None leaves dQ_dV as it is.
     """
     if cover_rows is None:
         return dQ_dV
@@ -137,10 +137,14 @@ def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
     """Return :class:`FreeCreep` at u; of half-spaces -0.0, which a compiler leaves out of sums.
 
     position : of u in the rows of the law.  u : kappa |V|.  kappa : slenderness R/l0.  k : mu/(2 kappa).
-    uL_slope : d(u L)/du.
+    uL_slope : d(u L)/du.  cover_rows : as of :class:`Law`.
     """
     if cover_rows is None:
         return FreeCreep(-0.0, -0.0, -0.0)
-    value, slope, bend = free_creep_at(position, u, cover_rows)
-    per = 0.5 / kappa
-    return FreeCreep(per * value, per * (value + u * slope) / (k * uL_slope), per * (2.0 * slope + u * bend) / k)
+    value, slope, second_derivative = free_creep_at(position, u, cover_rows)
+    factor = 0.5 / kappa
+    return FreeCreep(
+        factor * value,
+        factor * (value + u * slope) / (k * uL_slope),
+        factor * (2.0 * slope + u * second_derivative) / k,
+    )

@@ -23,7 +23,7 @@ import numpy as np
 
 from ..compile.intrinsics import bits_to_float, float_to_bits, unlikely
 from ..compile.jit import inline_kernel, kernel
-from .cover import fast_lengths, fast_moment, fast_share, free_creep_at
+from .cover import fast_eta_over_F, fast_lengths, fast_moment, free_creep_at
 from .record import (
     ALPHA,
     BODY_MOMENTS,
@@ -39,7 +39,7 @@ from .record import (
     ROW_COUNT,
     ensure_part,
 )  # fmt: skip
-from .simd_polynomial import evaluate_one, evaluate_pair, evaluate_secants
+from .simd_polynomial import evaluate_pair, evaluate_secants, evaluate_single
 
 #: Row of a position behind the last row, where the fast limit holds.
 FAST_LIMIT = -1
@@ -130,11 +130,11 @@ def length_and_moment(position, u, law):
     if in_fast_limit(position):
         lam = law.rows[LAM_FAST]
         z, shift, part = _fast_terms(u, FAST_TOTAL, law)
-        per = lam / u
-        fall = shift - 4.0 * part
-        bend = per * (2.0 * fall - 4.0 * part) / u
-        own = fast_moment(shift, u, law.cover_rows)
-        return LengthAndMoment(lam * (1.0 + shift), -per * fall, bend, own + part, z, z * (3.0 * part - own))
+        decrease = shift - 4.0 * part
+        dL = -(lam / u) * decrease
+        ddL = lam / u * (2.0 * decrease - 4.0 * part) / u
+        moment = fast_moment(shift, u, law.cover_rows)
+        return LengthAndMoment(lam * (1.0 + shift), dL, ddL, moment + part, z, z * (3.0 * part - moment))
     dt = position.dt_dx
     L, m, dL, dm, ddL, _ = evaluate_pair(law.rows, ensure_part(LENGTH_MOMENT, position.row, law), position.t)
     return LengthAndMoment(L, dL * dt, ddL * dt * dt, m, 1.0, m + u * dt * dm)
@@ -174,8 +174,8 @@ def body_moments(position, u, law):
         return half_space + part, cylinder + other, z * (3.0 * part - half_space), z * (3.0 * other - cylinder)
     start = ensure_part(BODY_MOMENTS, position.row, law)
     half_space, cylinder, d_half_space, d_cylinder, _, _ = evaluate_pair(law.rows, start, position.t)
-    per = u * position.dt_dx
-    return half_space, cylinder, half_space + per * d_half_space, cylinder + per * d_cylinder
+    factor = u * position.dt_dx
+    return half_space, cylinder, half_space + factor * d_half_space, cylinder + factor * d_cylinder
 
 
 @inline_kernel
@@ -201,7 +201,7 @@ def limits_at_rest(kappa, law):
 
 
 @inline_kernel
-def _fast_eta_over_F(y, law):
+def _half_space_eta_over_F(y, law):
     """Return eta/F and minus its slope over y = F(eta) in the fast limit of ``law``."""
     half = 0.5 * law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]
@@ -216,8 +216,8 @@ def eta_over_F(position, v, law):
     position : of v, by :func:`locate_row`.  v : 1/F(eta).  law : a :class:`Law`.
     """
     if in_fast_limit(position):
-        return fast_share(_fast_eta_over_F(1.0 / v, law)[0], v, law.cover_rows)
-    return evaluate_one(law.rows, ensure_part(ETA_OVER_F, position.row, law), position.t)[0]
+        return fast_eta_over_F(_half_space_eta_over_F(1.0 / v, law)[0], v, law.cover_rows)
+    return evaluate_single(law.rows, ensure_part(ETA_OVER_F, position.row, law), position.t)[0]
 
 
 @inline_kernel
@@ -229,9 +229,9 @@ def H_over_F2(position, v, law):
     if in_fast_limit(position):
         alpha = law.rows[ALPHA]
         y = 1.0 / v
-        eta, d_eta = _fast_eta_over_F(y, law)
+        eta, d_eta = _half_space_eta_over_F(y, law)
         return alpha * eta * eta, 2.0 * alpha * eta * d_eta * y * y
-    value, slope = evaluate_one(law.rows, ensure_part(H_OVER_F2, position.row, law), position.t)
+    value, slope = evaluate_single(law.rows, ensure_part(H_OVER_F2, position.row, law), position.t)
     return value, slope * position.dt_dx
 
 
@@ -245,22 +245,23 @@ def H_over_F2_secants(position, near, v, x, law):
     Returns (value, slope, mean slope of the value, mean slope of the slope).
     """
     if in_fast_limit(position):
-        value, slope = H_over_F2(position, v, law)
-        rise, bend = _fast_secants(v, x, law)
-        return value, slope, rise, bend
-    per = position.dt_dx
+        return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
+    dt = position.dt_dx
     end = near.t if near.row == position.row else -1.0
-    value, rise, slope, bend = evaluate_secants(law.rows, ensure_part(H_OVER_F2, position.row, law), position.t, end)
-    rise *= per
-    bend *= per * per
+    value, secant, slope, slope_secant = evaluate_secants(
+        law.rows, ensure_part(H_OVER_F2, position.row, law), position.t, end
+    )
+    secant *= dt
+    slope_secant *= dt * dt
     if near.row != position.row:
-        other = near.dt_dx
-        _, near_rise, _, near_bend = evaluate_secants(law.rows, ensure_part(H_OVER_F2, near.row, law), 1.0, near.t)
+        near_dt = near.dt_dx
+        start = ensure_part(H_OVER_F2, near.row, law)
+        _, near_secant, _, near_slope_secant = evaluate_secants(law.rows, start, 1.0, near.t)
         # fraction of the interval that lies in the row of v
-        part = min((position.t + 1.0) * (1.0 + x) / (per * v * x), 1.0)
-        rise = part * rise + (1.0 - part) * near_rise * other
-        bend = part * bend + (1.0 - part) * near_bend * other * other
-    return value, slope * per, rise, bend
+        part = min((position.t + 1.0) * (1.0 + x) / (dt * v * x), 1.0)
+        secant = part * secant + (1.0 - part) * near_secant * near_dt
+        slope_secant = part * slope_secant + (1.0 - part) * near_slope_secant * near_dt * near_dt
+    return value, slope * dt, secant, slope_secant
 
 
 @kernel
@@ -272,10 +273,10 @@ def _fast_secants(v, x, law):
     alpha = law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]
     y = 1.0 / v
-    other = y * (1.0 + x)
-    eta, d_eta = _fast_eta_over_F(y, law)
-    near, d_near = _fast_eta_over_F(other, law)
+    near_y = y * (1.0 + x)
+    eta, d_eta = _half_space_eta_over_F(y, law)
+    near_eta, near_d_eta = _half_space_eta_over_F(near_y, law)
     mean = W * (np.log1p(x) / x if x > 0.0 else 1.0)
-    rise = y * other * (d_near + 0.5 * alpha * (W - mean))
-    bend = other * (0.5 * alpha * other * other * mean - y * (y + other) * d_eta)
-    return alpha * (eta + near) * rise, 2.0 * alpha * (eta * bend + d_near * other * other * rise)
+    secant = y * near_y * (near_d_eta + 0.5 * alpha * (W - mean))
+    slope_secant = near_y * (0.5 * alpha * near_y * near_y * mean - y * (y + near_y) * d_eta)
+    return alpha * (eta + near_eta) * secant, 2.0 * alpha * (eta * slope_secant + near_d_eta * near_y * near_y * secant)

@@ -39,12 +39,12 @@ def _evaluate_asymptotic(terms, x):
     terms : coefficients a_n, of which a_0 = 1.  x : argument, large.
     """
     w = 1.0 / x
-    value = slope = bend = 0.0
+    value = slope = second_derivative = 0.0
     for n in range(terms.size - 1, 0, -1):
         value = value * w + terms[n]
         slope = slope * w - n * terms[n]
-        bend = bend * w + n * (n + 1) * terms[n]
-    return 1.0 + value * w, slope * w * w, bend * w * w * w
+        second_derivative = second_derivative * w + n * (n + 1) * terms[n]
+    return 1.0 + value * w, slope * w * w, second_derivative * w * w * w
 
 
 @inline_kernel
@@ -53,8 +53,8 @@ def _jet(rate, z, function):
 
     rate : a_i or b_j.  z : zeta.  function : (value, first derivative, second derivative) over x.
     """
-    value, slope, bend = function
-    return pack(value, rate * slope, -z * slope, -slope - rate * z * bend)
+    value, slope, second_derivative = function
+    return pack(value, rate * slope, -z * slope, -slope - rate * z * second_derivative)
 
 
 @kernel
@@ -85,7 +85,7 @@ def _write_ratio_jets(z, series, work):
         ddk = 2.0 * k * dk + (dk - k / x) / x
         if x >= _ASYMPTOTIC:
             k, dk, ddk = _evaluate_asymptotic(_SERIES_K, x)
-        store(work.per_r, LANES * i, reciprocal(True, _jet(a, z, (r, dr, ddr))))
+        store(work.inverse_r, LANES * i, reciprocal(True, _jet(a, z, (r, dr, ddr))))
         store(work.i2, LANES * i, _jet(a, z, (i2, di2, ddi2)))
         store(work.k, LANES * i, _jet(b, z, (k, dk, ddk)))
 
@@ -129,9 +129,9 @@ def set_alpha_of_state(n, alpha, series):
     alpha : alphas, of length 1 or with one for each state; empty: the series is complete.  series : written.
     """
     if alpha.size > 0:
-        own = element(alpha, n)
-        series.a[0] = own
-        series.e[0] = series.t[0] = np.sqrt((own - 1.0) / own)
+        one_alpha = element(alpha, n)
+        series.a[0] = one_alpha
+        series.e[0] = series.t[0] = np.sqrt((one_alpha - 1.0) / one_alpha)
 
 
 @kernel
@@ -147,6 +147,6 @@ def modes_loop(series, alpha, work, z, out):
         _write_ratio_jets(z[n], series, work)
         g, h, y = evaluate_functions(True, pack(z[n], 1.0, 0.0, 0.0), series, work)
         for row in range(FUNCTIONS):
-            out[row, n] = work.found[LANES * row]
-            out[FUNCTIONS + row, n] = -z[n] * work.found[LANES * row + 1]
+            out[row, n] = work.functions[LANES * row]
+            out[FUNCTIONS + row, n] = -z[n] * work.functions[LANES * row + 1]
         out[2 * FUNCTIONS, n] = _evaluate_N(z[n], series, g, h, y)

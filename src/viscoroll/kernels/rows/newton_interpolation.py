@@ -53,11 +53,11 @@ def divided_differences(count, scratch):
         first = POINT_COUNT - LANES
         while order > 0 and first > order - LANES:
             x = ARGUMENTS + first
-            per = 1.0 / (load(scratch, x) - load(scratch, x - order))
+            inverse = 1.0 / (load(scratch, x) - load(scratch, x - order))
             for which in range(count):
                 start = VALUES + FUNCTION_STRIDE * which + first
                 upper = load(scratch, start)
-                store(scratch, start, (upper - shift_in(load(scratch, start - LANES), upper)) * per)
+                store(scratch, start, (upper - shift_in(load(scratch, start - LANES), upper)) * inverse)
             first -= LANES
         for which in range(count):
             start = VALUES + FUNCTION_STRIDE * which + order

@@ -59,18 +59,18 @@ class Series(NamedTuple):
 class Workspace(NamedTuple):
     """Arrays of an evaluation, four numbers for each mode.
 
-    per_r, k, i2 : 1/r, k and i2.  y : y and, after the evaluation, X.  kf : k f.  right : a right side.
-    matrix : 1/r + Q^T k Q, four numbers an element.  found : the results, four numbers a function.
+    inverse_r, k, i2 : 1/r, k and i2.  y : y and, after the evaluation, X.  kf : k f.  right : a right side.
+    matrix : 1/r + Q^T k Q, four numbers an element.  functions : the results, four numbers a function.
     """
 
-    per_r: Any
+    inverse_r: Any
     k: Any
     i2: Any
     y: Any
     kf: Any
     right: Any
     matrix: Any
-    found: Any
+    functions: Any
 
 
 #: Fields of :class:`Workspace` with four numbers for each mode.
@@ -119,7 +119,7 @@ def evaluate_ratios(places, series, work):
         i = at // LANES
         x = series.a[i] * z[at % LANES]
         r, _ = ratio_r(x)
-        work.per_r[at] = 1.0 / r
+        work.inverse_r[at] = 1.0 / r
         work.i2[at] = ratio_i2(x, r)
         work.k[at], _ = ratio_k(series.b[i] * z[at % LANES])
 
@@ -140,10 +140,10 @@ def multiply(jets, p, q):
 @inline_kernel
 def reciprocal(jets, p):
     """Return 1/p of a vector, which is a jet if ``jets``."""
-    per = 1.0 / p
+    inverse = 1.0 / p
     if not jets:
-        return per
-    w, _, _, _ = unpack(per)
+        return inverse
+    w, _, _, _ = unpack(inverse)
     _, dz, ds, dzds = unpack(p)
     return pack(w, -w * w * dz, -w * w * ds, w * w * (2.0 * w * dz * ds - dzds))
 
@@ -168,10 +168,10 @@ def _factorize(matrix, count):
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
-        per = 1.0 / load(matrix, i * count + i)
-        store(matrix, i * count + i, per)
+        inverse = 1.0 / load(matrix, i * count + i)
+        store(matrix, i * count + i, inverse)
         for row in range(i + LANES, row_size, LANES):
-            factor = load(matrix, row * count + i) * (0.0 - per)
+            factor = load(matrix, row * count + i) * (0.0 - inverse)
             for column in range(i + LANES, row + LANES, LANES):
                 at = row * count + column
                 store(matrix, at, fma4(factor, load(matrix, column * count + i), load(matrix, at)))
@@ -211,22 +211,22 @@ def solve_modes(jets, series, work):
         for n in range(0, i + 1, 2):  # two sums that do not wait for one another
             other = min(n + 1, i)
             at = LANES * i * count
-            one = two = broadcast(0.0)
+            first = second = broadcast(0.0)
             for j in range(count):
                 x = load(work.kf, LANES * j)
-                one = fma4(broadcast(series.Q[j, n]), x, one)
-                two = fma4(broadcast(series.Q[j, other]), x, two)
-            store(work.matrix, at + LANES * n, _value(jets, one))
-            store(work.matrix, at + LANES * other, _value(jets, two))
+                first = fma4(broadcast(series.Q[j, n]), x, first)
+                second = fma4(broadcast(series.Q[j, other]), x, second)
+            store(work.matrix, at + LANES * n, _value(jets, first))
+            store(work.matrix, at + LANES * other, _value(jets, second))
         at = LANES * i * (count + 1)
-        store(work.matrix, at, load(work.matrix, at) + _value(jets, load(work.per_r, LANES * i)))
+        store(work.matrix, at, load(work.matrix, at) + _value(jets, load(work.inverse_r, LANES * i)))
         store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]))
         store(work.y, LANES * i, broadcast(0.0))
     _factorize(work.matrix, count)
     for turn in range(3 if jets else 1):
         if turn > 0:
             for i in range(count):
-                total = multiply(jets, load(work.per_r, LANES * i), load(work.y, LANES * i))
+                total = multiply(jets, load(work.inverse_r, LANES * i), load(work.y, LANES * i))
                 for j in range(count):
                     total = fma4(broadcast(series.Q[j, i]), load(work.kf, LANES * j), total)
                 store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]) - total)
@@ -268,7 +268,7 @@ def _split_moment(jets, lam2, series, work):
 
 @inline_kernel
 def evaluate_functions(jets, z, series, work):
-    """Write g/z, h/z and m of both bodies at z > 0 into ``work.found``.
+    """Write g/z, h/z and m of both bodies at z > 0 into ``work.functions``.
 
     jets : whether vectors are jets.  z : vector of four z, or the jet of one.  series : a :class:`Series`.
     work : its :class:`Workspace` with the ratios at z, written.
@@ -277,19 +277,19 @@ def evaluate_functions(jets, z, series, work):
     by roundings of alpha times the size of one.
     """
     solve_modes(jets, series, work)
-    one = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)
+    unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)
     g = h = pressed = broadcast(0.0)
     for i in range(series.a.size):
         at = LANES * i
         ey = multiply(jets, _strength(jets, series.e[i], series.a[i]), load(work.y, at))
-        X = multiply(jets, ey, load(work.per_r, at))
+        X = multiply(jets, ey, load(work.inverse_r, at))
         store(work.y, at, X)
         h += ey
         g += multiply(jets, _strength(jets, series.t[i], series.b[i]), load(work.kf, at))
         pressed += multiply(jets, X, load(work.i2, at))
-    per_z = reciprocal(jets, z)
-    h_over_z = multiply(jets, h, per_z)
-    lam2 = reciprocal(jets, one + 2.0 * h_over_z)
+    inverse_z = reciprocal(jets, z)
+    h_over_z = multiply(jets, h, inverse_z)
+    lam2 = reciprocal(jets, unit + 2.0 * h_over_z)
     m = g + multiply(jets, lam2, pressed)
     half_space = cylinder = 0.5 * m
     if series.weights.size > 0:
@@ -297,8 +297,8 @@ def evaluate_functions(jets, z, series, work):
         factor = multiply(jets, m, reciprocal(jets, half_space + cylinder))
         half_space = multiply(jets, half_space, factor)
         cylinder = multiply(jets, cylinder, factor)
-    store(work.found, G_OVER_Z, multiply(jets, g, per_z))
-    store(work.found, H_OVER_Z, h_over_z)
-    store(work.found, M_HALF_SPACE, half_space)
-    store(work.found, M_CYLINDER, cylinder)
+    store(work.functions, G_OVER_Z, multiply(jets, g, inverse_z))
+    store(work.functions, H_OVER_Z, h_over_z)
+    store(work.functions, M_HALF_SPACE, half_space)
+    store(work.functions, M_CYLINDER, cylinder)
     return g, h, pressed

@@ -39,7 +39,7 @@ def _make_sums(count: int, orders: int):
             power = broadcast_value(builder, arguments[2])
             while len(level) > 1:  # by Estrin's scheme, whose parts do not wait for one another
                 pairs = [level[n : n + 2] for n in range(0, len(level), 2)]
-                level = [fma_vectors(builder, two[1], power, two[0]) if len(two) > 1 else two[0] for two in pairs]
+                level = [fma_vectors(builder, odd[0], power, even) if odd else even for even, *odd in pairs]
                 power = builder.fmul(power, power)
             sums.append(level[0])
             terms = [builder.fmul(_constant([k] * LANES), term) for k, term in enumerate(terms)][1:]
@@ -51,6 +51,7 @@ def _make_sums(count: int, orders: int):
 def _lower_secants(context, builder, signature, arguments):
     """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its slope.
 
+    context, builder, signature, arguments : of numba's lowering.
     p is the polynomial with vectors for coefficients, x and z are fourth powers of two arguments.
     """
     terms = load_vectors(context, builder, signature, arguments, _ONE)
@@ -64,7 +65,7 @@ def _lower_secants(context, builder, signature, arguments):
         sums += [fma_vectors(builder, x, value, terms[0]), total]
         # the coefficients of the slope: each moves down by one power
         following = zip(terms, [*terms[1:], _constant([0.0] * LANES)])
-        moved = [shuffle(builder, *two, range(1, LANES + 1)) for two in following]
+        moved = [shuffle(builder, *neighbours, range(1, LANES + 1)) for neighbours in following]
         terms = [builder.fmul(_constant(range(n, n + LANES)), term) for n, term in zip(range(1, TERMS, LANES), moved)]
     return context.make_tuple(builder, signature.return_type, sums)
 
@@ -82,11 +83,11 @@ def evaluate_pair(table, start, t):
     """
     twice = 2.0 * t
     square = t * t
-    value, rise, bend = _pair_sums(table, start, square)
+    value, first_derivative, second_derivative = _pair_sums(table, start, square)
     # each function is E + t O, with polynomials E and O of t^2
     a_even, a_odd, b_even, b_odd = unpack(value)
-    a_even_1, a_odd_1, b_even_1, b_odd_1 = unpack(rise)
-    a_even_2, a_odd_2, b_even_2, b_odd_2 = unpack(bend)
+    a_even_1, a_odd_1, b_even_1, b_odd_1 = unpack(first_derivative)
+    a_even_2, a_odd_2, b_even_2, b_odd_2 = unpack(second_derivative)
     a_1 = fma(t, a_odd_1, a_even_1)
     b_1 = fma(t, b_odd_1, b_even_1)
     a_2 = 2.0 * fma(twice, a_odd_1 + fma(square, a_odd_2, t * a_even_2), a_1)
@@ -105,30 +106,30 @@ def _join(sums, t, square):
 
 
 @inline_kernel
-def evaluate_one(table, start, t):
+def evaluate_single(table, start, t):
     """Return (value, slope) at t of one function.
 
     table : vector of coefficients.  start : where those of the function begin.  t : argument, dimensionless.
     """
     square = t * t
-    value, rise = _one_sums(table, start, square * square)
+    value, first_derivative = _one_sums(table, start, square * square)
     _, b, c, d = unpack(value)
-    slope = fma(4.0 * t * square, _join(rise, t, square), fma(t, fma(3.0 * t, d, 2.0 * c), b))
+    slope = fma(4.0 * t * square, _join(first_derivative, t, square), fma(t, fma(3.0 * t, d, 2.0 * c), b))
     return _join(value, t, square), slope
 
 
 @inline_kernel
-def _join_secant(sums, rises, t, s):
+def _join_secant(sums, secants, t, s):
     """Return p(t) and (p(t) - p(s))/(t - s) from the four polynomials of the coefficients modulo four.
 
-    sums : their values at t^4, one vector.  rises : their secants between t^4 and s^4.  t, s : the arguments.
+    sums : their values at t^4, one vector.  secants : theirs between t^4 and s^4.  t, s : the arguments.
     """
     square = t * t
-    other = s * s
+    s_square = s * s
     # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
     _, first, second, third = unpack(sums)
-    first = fma(fma(t, s, square + other), third, fma(t + s, second, first))
-    return _join(sums, t, square), (t + s) * (square + other) * _join(rises, s, other) + first
+    first = fma(fma(t, s, square + s_square), third, fma(t + s, second, first))
+    return _join(sums, t, square), (t + s) * (square + s_square) * _join(secants, s, s_square) + first
 
 
 @inline_kernel
@@ -140,7 +141,7 @@ def evaluate_secants(table, start, t, s):
     Returns (p(t), secant of p, p'(t), secant of p').
     """
     square = t * t
-    other = s * s
-    sums, rises, slope_sums, slope_rises = _one_secants(table, start, square * square, other * other)
-    value, rise = _join_secant(sums, rises, t, s)
-    return value, rise, *_join_secant(slope_sums, slope_rises, t, s)
+    s_square = s * s
+    sums, secants, slope_sums, slope_secants = _one_secants(table, start, square * square, s_square * s_square)
+    value, first_derivative = _join_secant(sums, secants, t, s)
+    return value, first_derivative, *_join_secant(slope_sums, slope_secants, t, s)

@@ -30,8 +30,10 @@ from .contact_states import element
 from .modes import set_alpha_of_state
 from .series import evaluate_functions, evaluate_ratios, new_workspace
 
-#: Nodes and weights on [0, 1]: 24 nodes leave 1e-11 of the peak, 28 leave rounding.
-_NODES, _WEIGHTS = gauss(28)
+#: Nodes of the Gauss-Legendre rule on [0, 1]: 24 nodes leave 1e-11 of the peak, 28 leave rounding.
+_NODES = gauss(28)[0]
+#: Weights of that rule.
+_WEIGHTS = gauss(28)[1]
 #: Exponent beyond which the integrand is nothing: exp(-38) = 3e-17.
 _DEEP = 38.0
 

@@ -249,7 +249,10 @@ def _is_times_u(function):
 
 @inline_kernel
 def _slow_limit(function, grid):
-    """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t."""
+    """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t.
+
+    function : _L to _ETA_OVER_F.  grid : the :class:`Grid`.
+    """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
     if function == _EPSILON:
@@ -264,7 +267,10 @@ def _slow_limit(function, grid):
 
 @inline_kernel
 def _z_of_node(node, grid):
-    """Return z of the node with this number: a power of 2^(1/10), or a point of the slow row."""
+    """Return z of a node: a power of 2^(1/10), or a point of the slow row.
+
+    node : its number.  grid : the :class:`Grid`.
+    """
     slow = node - (grid.node_count - POINT_COUNT)
     n = node + grid.lowest
     if slow < 0:
@@ -276,7 +282,10 @@ def _z_of_node(node, grid):
 
 @kernel
 def _fill_block(first, grid):
-    """Compute the functions at the four nodes from number ``first`` on."""
+    """Compute the functions at four nodes.
+
+    first : number of the first node, a multiple of four.  grid : the :class:`Grid`, written.
+    """
     places = pack(
         _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
     )
@@ -286,15 +295,15 @@ def _fill_block(first, grid):
     evaluate_ratios(places, series, work)
     evaluate_functions(False, places, series, work)
     for c in range(LANES):
-        shift = work.found[G_OVER_Z + c]
-        half_space = work.found[M_HALF_SPACE + c]
-        cylinder = work.found[M_CYLINDER + c]
-        per_z = 1.0 / z[c]
-        per_lam = np.sqrt(1.0 + 2.0 * work.found[H_OVER_Z + c])
-        share = 1.0 / (1.0 + shift)
-        lam = 1.0 / per_lam
-        ratio = share * per_lam
-        u = 0.5 * lam * per_z
+        shift = work.functions[G_OVER_Z + c]
+        half_space = work.functions[M_HALF_SPACE + c]
+        cylinder = work.functions[M_CYLINDER + c]
+        inverse_z = 1.0 / z[c]
+        inverse_lam = np.sqrt(1.0 + 2.0 * work.functions[H_OVER_Z + c])
+        eta_over_F = 1.0 / (1.0 + shift)
+        lam = 1.0 / inverse_lam
+        root_of_H_over_F2 = eta_over_F * inverse_lam
+        u = 0.5 * lam * inverse_z
         node = grid.functions[first + c]
         node[_L] = lam * (1.0 + shift)
         node[_M] = u * (half_space + cylinder)
@@ -302,12 +311,12 @@ def _fill_block(first, grid):
         node[_EPSILON] = shift
         node[_HALF_SPACE] = u * half_space
         node[_CYLINDER] = u * cylinder
-        node[_H_OVER_F2] = ratio * ratio
-        node[_ETA_OVER_F] = share
+        node[_H_OVER_F2] = root_of_H_over_F2 * root_of_H_over_F2
+        node[_ETA_OVER_F] = eta_over_F
         node[_U] = u
-        node[_V] = share * per_z
+        node[_V] = eta_over_F * inverse_z
         node[_LN_LAM] = np.log(lam)
-        node[_LN_ETA_OVER_F] = np.log(share)
+        node[_LN_ETA_OVER_F] = np.log(eta_over_F)
 
 
 @inline_kernel

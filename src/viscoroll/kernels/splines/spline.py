@@ -100,9 +100,9 @@ def _locate(spline, name, x):
 
 @inline_kernel
 def _basis(spline, position, n):
-    """Return (value of basis spline ``n`` at an :class:`AxisPosition`, its slope, its part of a coefficient's number).
+    """Return (value of a basis spline, its slope, what it adds to the number of a coefficient).
 
-    spline : the vector.
+    spline : the vector.  position : the :class:`AxisPosition`.  n : number of the basis spline in the interval.
     """
     axis = position.axis
     at = (position.interval * TERMS + n) * TERMS + EDGES + 1 + _integer_at(spline, axis + INTERVALS) + axis
