@@ -1,0 +1,213 @@
+"""Integration within one regime, step after step, to an event or to the end of a segment of the drive."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from .asymptotics import _may_be_at_equilibrium, continue_at_equilibrium, is_coasting_slow
+from .collocation import N, evaluate_dense_output, row_range
+from .drive import drive_rounding, evaluate_load, is_constant, is_undriven, is_unloaded, segment_end
+from .error_estimate import estimate_error
+from .events import (
+    NOT_FOUND,
+    ends_at_event,
+    evaluate_event_functions,
+    find_first_event,
+    find_missed_event,
+    locate_zero,
+    refine_event,
+)
+from .output import accept_step
+from .rhs import evaluate_rhs
+from .step import solve_step, store_rhs
+from .step_control import first_step_length, next_step_length, step_length_after_relaxation, time_to_V_zero
+from .workspace import (
+    BELOW_REST_SPEED,
+    NO_EVENT,
+    PRESCRIBED_V,
+    ROUNDING,
+    ROW_DENSE_OMEGA_OR_D,
+    ROW_DENSE_V,
+    ROW_OMEGA_OR_D,
+    ROW_P_DIAGONAL,
+    ROW_RELAXATION,
+    ROW_V,
+    ROW_V_RATE,
+    STEP_FAILED,
+    STICK_EDGE,
+    V_ZERO,
+    ZERO_SPEED,
+    Regime,
+    State,
+    Step,
+    StepState,
+    shorten_step,
+)
+
+#: largest number of successive rejections
+_MAX_REJECTIONS = 60
+#: error divided by its tolerance up to which a step is accepted where it cannot be shortened: the error of a motion
+#: grows by 2 to 3 rtol at most
+_ACCEPTED_AT_SHORTEST = 10.0
+#: V at the right end of a step divided by V at its left end, below which the step is ended at V = 0 if it was aimed
+#: at it
+_V_ZERO_DROP = 0.2
+#: error divided by its tolerance up to which a step shows where its regime ends
+_MAX_ERROR_FOR_EVENTS = 1e6
+#: largest number of trials until a step ends at the event
+_MAX_TRIALS = 8
+#: error divided by its tolerance that is assigned to a step that did not end at its event
+_ERROR_OF_FAILED_TRIAL = 10.0
+#: v of an event in full slip in the first quarter of a step, up to which the step is solved again with an end behind
+#: it: early on the interpolants are less accurate relative to the time so far
+_EARLY_EVENT = 0.5
+#: length of that step divided by the time to the event
+_BEYOND_EARLY_EVENT = 1.1
+#: shortest step divided by the time so far: a regime that ends where it begins
+SHORTEST_STEP = 1e-14
+#: fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next segment
+BEFORE_SEGMENT_END = 1.0 - 1e-13
+
+
+@kernel(inline=True)
+def _start_step(state, regime, step_state, work):
+    """Store the right-hand side at node 0; return the regime, at d = 0 that of the branch to which d moves."""
+    nodes = work.nodes
+    nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
+    rates = evaluate_rhs(state, evaluate_load(step_state.tau, step_state.segment, regime, work), regime, work.scene)
+    store_rhs(0, rates, nodes)
+    # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
+    nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
+    nodes[ROW_RELAXATION], nodes[ROW_P_DIAGONAL] = rates.drate_dd / rates.weight, rates.dp_rate_dV / rates.dp_dV
+    if not regime.full_slip and state.omega_or_d == 0.0 and regime.sigma * rates.weighted_rate < 0.0:
+        # both branches say the same here
+        return Regime(False, regime.direction, -regime.sigma, regime.spin_sign, regime.locked)
+    return regime
+
+
+@kernel(inline=True)
+def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
+    """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
+
+    step: Step; remaining: time to the end of the segment; aimed: whether its length was chosen to reach V = 0;
+    dense_step: Step whose dense output is stored.
+    Returns (event, v at which the regime ends, Step, its error divided by its tolerance, Step of the stored dense
+    output). A step whose error is too large and on which the regime ends contains a kink of the law; one that ends
+    at it may be good.
+    """
+    nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
+    for _ in range(_MAX_TRIALS):
+        if not solve_step(step, nodes[ROW_RELAXATION], dense_step, regime, work):
+            return NO_EVENT, 2.0, step, np.inf, dense_step
+        error, dense_step = estimate_error(step, regime, work), step
+        if not error <= _MAX_ERROR_FOR_EVENTS:
+            break
+        evaluate_event_functions(step, regime, work)
+        crossed, v = find_first_event(step, regime, work)
+        if (
+            crossed == V_ZERO
+            and v > 2.0 * BEFORE_SEGMENT_END
+            and step.h == remaining
+            and work.drive.prescribed == PRESCRIBED_V
+        ):
+            crossed = NO_EVENT
+        # in partial slip there is no motion behind V = 0, and none that goes on from there
+        V_negative = row_range(ROW_V, nodes)[0] < 0.0
+        missed = find_missed_event(step, regime, work)
+        if missed != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
+            return missed, 2.0, step, min(error, 1.0), dense_step
+        if missed != NO_EVENT or (crossed == NO_EVENT and V_negative and not regime.full_slip):
+            break
+        if crossed != NO_EVENT:
+            event = crossed
+        elif event == NO_EVENT and aimed and error <= 1.0 and nodes[ROW_V + N] < _V_ZERO_DROP * nodes[ROW_V]:
+            event = V_ZERO
+        if event == NO_EVENT or (crossed == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)):
+            return event, 2.0, step, error, dense_step
+        # partial slip does not go on beyond V = 0, and |V| in the edge and in the speeds of full slip has a kink there
+        kinked = V_negative and (not regime.full_slip or crossed == STICK_EDGE or crossed == BELOW_REST_SPEED)
+        if crossed != NO_EVENT and error <= 1.0 and not kinked and crossed != V_ZERO:
+            if v > _EARLY_EVENT or not regime.full_slip:
+                return event, refine_event(event, v, regime, work), step, error, dense_step
+            v *= _BEYOND_EARLY_EVENT
+        if crossed == NO_EVENT:
+            v = locate_zero(event, 0, nodes)
+            if v >= NOT_FOUND:  # nowhere near
+                return NO_EVENT, 2.0, step, error, dense_step
+        h = min(step.h * 0.5 * v, upper)
+        if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
+            return NO_EVENT, 2.0, step, max(error, _ERROR_OF_FAILED_TRIAL), dense_step
+        upper = step.h if crossed != NO_EVENT else upper
+        step = shorten_step(step, h)
+    return NO_EVENT, 2.0, step, max(error, _ERROR_OF_FAILED_TRIAL), dense_step
+
+
+@kernel
+def integrate_regime(stick_formed, state, regime, step_state, work):
+    """Integrate one regime and return (event, State, Regime, StepState) at its end.
+
+    stick_formed: whether the stick zone has just formed; state, regime, step_state: at the start; work: Workspace.
+    The event is NO_EVENT at the end of the segment, or if the steps are used up or the rest is closed-form.
+    """
+    nodes, options = work.nodes, work.options
+    end, h, n_rejected, last_h, last_error = segment_end(step_state.segment, work), step_state.h, 0, 0.0, 1.0
+    h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
+    undriven, unloaded = is_undriven(step_state.segment, work.drive), is_unloaded(step_state.segment, work.drive)
+    constant, noise = not unloaded and is_constant(step_state.segment, work.drive.segments), 0.0
+    if constant:
+        # of p', which in full slip holds Q = mu
+        noise = drive_rounding(step_state.segment, work.drive.segments) + (
+            ROUNDING * work.scene.mu if regime.full_slip else 0.0
+        )
+    dense_step = Step(step_state.tau, 0.0, step_state.segment, False, undriven)
+    while (
+        step_state.tau < end
+        and step_state.n_steps < options.max_steps
+        and not (unloaded and is_coasting_slow(state, regime, work))
+    ):
+        regime = _start_step(state, regime, step_state, work)
+        if constant and _may_be_at_equilibrium(noise, work):
+            steady, state, step_state = continue_at_equilibrium(end, noise, state, regime, step_state, work)
+            if steady:
+                return NO_EVENT, state, regime, step_state
+        if h == 0.0:
+            h = max(first_step_length(stick_formed, step_state, regime, work), SHORTEST_STEP * step_state.tau)
+        remaining = end - step_state.tau
+        step = Step(
+            step_state.tau, min(h, remaining), step_state.segment, regime.full_slip or state.V > ZERO_SPEED, undriven
+        )
+        V_zero_time = time_to_V_zero(step, state, regime, work)
+        if V_zero_time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
+            V_zero_time = np.inf
+        aimed = V_zero_time <= step.h and n_rejected == 0
+        if V_zero_time < step.h:
+            step = shorten_step(step, V_zero_time)
+        event, v, step, error, dense_step = solve_trial_step(step, remaining, aimed, dense_step, regime, work)
+        h_tried, h = h, next_step_length(step, error, n_rejected, last_h, last_error)
+        h = max(h, h_tried) if error <= 1.0 and step.h == remaining else h
+        step_state = StepState(
+            step_state.tau, step_state.next_output, step_state.segment, step_state.n_steps + 1, step_state.n_ended, h
+        )
+        n_rejected += 1
+        if not error <= 1.0:
+            if n_rejected <= _MAX_REJECTIONS and step_state.tau + h > step_state.tau:
+                continue
+            if not error <= _ACCEPTED_AT_SHORTEST:
+                return STEP_FAILED, state, regime, step_state
+            h = step.h
+        at_segment_end = v == 2.0 and step.h == remaining
+        step_state = accept_step(
+            end if at_segment_end else step.tau + step.h * 0.5 * v, v, step, regime, step_state, work
+        )
+        state = State(nodes[ROW_V + N], nodes[ROW_OMEGA_OR_D + N])
+        if v < 2.0:
+            state = State(
+                nodes[ROW_V] + evaluate_dense_output(v, nodes, ROW_DENSE_V),
+                nodes[ROW_OMEGA_OR_D] + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D),
+            )
+        if event != NO_EVENT:
+            return event, state, regime, step_state
+        h = max(h, step_length_after_relaxation(step, regime, work))
+        n_rejected, last_h, last_error = 0, step.h, error
+    return NO_EVENT, state, regime, step_state

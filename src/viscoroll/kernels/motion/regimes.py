@@ -1,0 +1,215 @@
+"""Regimes: the regime of a start, and the one that follows an event or begins with a segment of the drive."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from .collocation import row_range
+from .drive import applied_forces, has_brake, is_undriven, prescribed_speed
+from .rhs import critical_creepage, evaluate_load_and_rhs, excess_slip
+from .workspace import (
+    AT_REST,
+    DELTA_ZERO,
+    FULL_SLIP,
+    HELD_AT_REST,
+    NOT_PRESCRIBED,
+    OMEGA_LOCKED,
+    OMEGA_ZERO,
+    PARTIAL_SLIP,
+    PRESCRIBED_OMEGA,
+    ROW_V,
+    STICK_EDGE,
+    V_ZERO,
+    Regime,
+    State,
+)
+
+#: V at the event divided by V at the left end of the step, below which V is 0: the stick zone closes at rest
+_STICK_ZONE_CLOSED = 1e-14
+#: omega/V in partial slip above which V follows a prescribed omega at fixed d
+_OMEGA_FOLLOWED = 0.5
+#: error of the position of an event, divided by rtol
+_EVENT_ERROR = 10.0
+#: V divided by the larger speed, below which it counts as 0 at the start
+ZERO_V_RATIO = 1e-150
+#: rounding error of a start on the edge of the stick zone, relative to the speeds
+_START_ON_EDGE = 2e-14
+
+
+@kernel
+def _torque_at_locked_wheel(state, regime, step_state, work):
+    """Return (torque that accelerates a wheel held at omega = 0, largest torque of the brake)."""
+    load, rates = evaluate_load_and_rhs(state, regime, step_state, work)
+    _, torque, _ = applied_forces(state.V, 0.0, load, regime)
+    return torque - rates.Q - rates.M_cylinder, load.brake
+
+
+@kernel
+def brake_holds_omega(state, regime, step_state, work):
+    """Return whether the brake holds omega at 0, at a state with omega = 0."""
+    torque, limit = _torque_at_locked_wheel(state, regime, step_state, work)
+    return abs(torque) <= limit
+
+
+@kernel
+def release_brake(state, regime, step_state, work):
+    """Return the regime after a brake has let go, or after omega has changed its sign under it."""
+    torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
+    spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive.segments) else 0.0
+    return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, False)
+
+
+@kernel
+def comes_to_rest(state, regime, step_state, work):
+    """Return whether full slip ends at rest: V = 0 at the stick edge, where omega is 0 too."""
+    omega_zero = regime.locked or (
+        work.drive.prescribed == PRESCRIBED_OMEGA
+        and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
+    )
+    if not omega_zero:
+        return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
+    # slip with omega = 0 ends with V, which is 0 but for the tolerance of the panel
+    return state.V <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol) * row_range(ROW_V, work.nodes)[1]
+
+
+@kernel
+def reverse_direction(state, regime):
+    """Return (state, regime) of full slip at V = 0 in the opposite direction."""
+    full_slip, direction, sigma, spin_sign, locked = regime
+    return State(0.0, -state.omega_or_d), Regime(full_slip, -direction, -sigma, -spin_sign, locked)
+
+
+@kernel
+def impose_prescribed_speed(state, regime, step_state, work):
+    """Set the prescribed speed to its given value, where a segment begins or the stick zone forms.
+
+    The error of the integration so far is small relative to the speeds so far, but may be large relative to the speed
+    prescribed from here on.
+
+    Parameters
+    ----------
+    state, regime : State, Regime
+        As integrated, with V >= 0.
+    step_state : StepState
+        At that time.
+    work : Workspace
+        Of the motion.
+
+    Returns
+    -------
+    (State, Regime)
+        With the prescribed speed, the direction reversed where V < 0 in full slip; in partial slip V is at least 0.
+        There V follows a prescribed omega at fixed d, except where friction is so strong that omega is far below V.
+    """
+    drive, (full_slip, direction, sigma, spin_sign, locked) = work.drive, regime
+    if drive.prescribed == NOT_PRESCRIBED:
+        return state, regime
+    speed = direction * prescribed_speed(step_state.tau, step_state.segment, drive)
+    if drive.prescribed == PRESCRIBED_OMEGA and full_slip:
+        return State(state.V, speed), regime
+    if drive.prescribed == PRESCRIBED_OMEGA:
+        omega = evaluate_load_and_rhs(state, regime, step_state, work)[1].omega
+        return (
+            State(state.V * max(speed / omega, 0.0), state.omega_or_d) if omega > _OMEGA_FOLLOWED * state.V else state
+        ), regime
+    if full_slip and speed < 0.0:
+        return State(-speed, -state.omega_or_d), Regime(full_slip, -direction, -sigma, -spin_sign, locked)
+    return State(speed if full_slip else max(speed, 0.0), state.omega_or_d), regime
+
+
+@kernel
+def apply_event(event, state, regime, step_state, work):
+    """Return (whether the cylinder moves, state, regime) behind an event."""
+    full_slip, direction, sigma, spin_sign, locked = regime
+    if event == STICK_EDGE and full_slip:
+        if comes_to_rest(state, regime, step_state, work):
+            return False, state, regime
+        rates = evaluate_load_and_rhs(state, regime, step_state, work)[1]
+        state, regime = State(state.V, sigma), Regime(False, direction, sigma, spin_sign, locked)
+        if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(rates.weighted_rate):
+            # the time of the event is known to the tolerance, and by it the slower speed better than the faster one
+            state, regime = impose_prescribed_speed(state, regime, step_state, work)
+        return state.V > 0.0, state, regime
+    if event == STICK_EDGE:
+        omega = evaluate_load_and_rhs(state, regime, step_state, work)[1].omega
+        return True, State(state.V, omega), Regime(True, direction, sigma, spin_sign, locked)
+    if event == DELTA_ZERO:
+        return True, state, Regime(False, direction, -sigma, spin_sign, locked)
+    if event == V_ZERO:
+        if not full_slip or state.omega_or_d == 0.0:
+            return False, state, regime
+        state, regime = reverse_direction(state, regime)
+        return True, state, regime
+    if event == OMEGA_ZERO:
+        still = State(state.V, 0.0) if full_slip else state
+        if brake_holds_omega(still, regime, step_state, work):
+            return True, still, Regime(full_slip, direction, sigma, spin_sign, True)
+        return True, still, release_brake(still, regime, step_state, work)
+    return True, state, release_brake(state, regime, step_state, work)
+
+
+@kernel
+def _orient_full_slip(state, regime, step_state, work):
+    """Return (state, regime) of full slip at the start of a segment: if V is 0, in the direction of V'."""
+    reverses = state.V == 0.0 and evaluate_load_and_rhs(state, regime, step_state, work)[1].V_rate < 0.0
+    return reverse_direction(state, regime) if reverses else (state, regime)
+
+
+@kernel
+def enter_segment(state, regime, step_state, work):
+    """Return (state, regime) at the start of a segment: brakes take hold or let go, V may reverse."""
+    if step_state.segment > 0:  # the start is as given
+        state, regime = impose_prescribed_speed(state, regime, step_state, work)
+    if regime.full_slip:
+        state, regime = _orient_full_slip(state, regime, step_state, work)
+    full_slip, direction, sigma, spin_sign, locked = regime
+    braked, omega = (
+        has_brake(step_state.segment, work.drive.segments),
+        evaluate_load_and_rhs(state, regime, step_state, work)[1].omega,
+    )
+    if locked or omega == 0.0:
+        if braked and brake_holds_omega(state, regime, step_state, work):
+            return state, Regime(full_slip, direction, sigma, spin_sign, True)
+        return state, release_brake(state, regime, step_state, work)
+    return state, Regime(full_slip, direction, sigma, np.sign(omega) if braked else 0.0, False)
+
+
+@kernel
+def initial_regime(V, omega, step_state, work):
+    """Return (state, regime, whether the stick zone just forms) of a start with V or omega not 0, without its brake."""
+    if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
+        # sliding ends within a time of that order: V + j omega is kept
+        V = omega = (V + work.scene.j * omega) / (1.0 + work.scene.j)
+    direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
+    V, omega = direction * V, direction * omega
+    slip, limit = excess_slip(omega - V, V, work.scene), critical_creepage(V, work.scene) * V
+    sigma = 1.0 if slip >= 0.0 else -1.0
+    state, regime = State(V, omega), Regime(True, direction, sigma, 0.0, False)
+    if V == 0.0:
+        if evaluate_load_and_rhs(state, regime, step_state, work)[1].V_rate < 0.0:  # the frame is that which V turns to
+            state, regime = reverse_direction(state, regime)
+        return state, regime, False
+    on_edge = abs(abs(slip) - limit) <= _START_ON_EDGE * max(V, abs(omega))
+    stick_state, stick_regime = (
+        State(V, sigma if on_edge else slip / limit),
+        Regime(False, direction, sigma, 0.0, False),
+    )
+    if on_edge:
+        on_edge = sigma * evaluate_load_and_rhs(stick_state, stick_regime, step_state, work)[1].rate < 0.0
+    elif abs(slip) < limit:
+        return stick_state, stick_regime, False
+    return (stick_state, stick_regime, True) if on_edge else (state, regime, False)
+
+
+@kernel
+def regime_code(regime):
+    """Return the code of the regime in the outputs."""
+    return OMEGA_LOCKED if regime.locked else FULL_SLIP if regime.full_slip else PARTIAL_SLIP
+
+
+@kernel
+def _rest_code(step_state, work):
+    """Return the code of V = omega = 0 in the outputs: held by brake or prescribed speed, or at rest."""
+    braked = has_brake(step_state.segment, work.drive.segments)
+    return HELD_AT_REST if braked or work.drive.prescribed != NOT_PRESCRIBED else AT_REST
