@@ -118,7 +118,7 @@ def relax_creep(state, regime, step_state, work):
         delta = creepage(state.V, d, work.scene)
         state = State(p / (inertia + load.inverse_mass * (1.0 + delta)), d)
         regime = Regime(False, regime.direction, 1.0 if d >= 0.0 else -1.0, regime.spin_sign, regime.locked)
-        if evaluate_load_and_rhs(state, regime, step_state, work)[1].rate > 0.0:
+        if evaluate_load_and_rhs(state, regime, step_state, work)[1].weighted_rate > 0.0:
             low = d
         else:
             high = d

@@ -196,7 +196,7 @@ def initial_regime(V, omega, step_state, work):
         Regime(False, direction, sigma, 0.0, False),
     )
     if on_edge:
-        on_edge = sigma * evaluate_load_and_rhs(stick_state, stick_regime, step_state, work)[1].rate < 0.0
+        on_edge = sigma * evaluate_load_and_rhs(stick_state, stick_regime, step_state, work)[1].weighted_rate < 0.0
     elif abs(slip) < limit:
         return stick_state, stick_regime, False
     return (stick_state, stick_regime, True) if on_edge else (state, regime, False)
