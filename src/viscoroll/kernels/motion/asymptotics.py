@@ -19,9 +19,9 @@ from ..compile.jit import kernel
 from ..rows.cover import of_cover
 from ..rows.law import creep_at_rest
 from .collocation import NODE_FRACTIONS, N
-from .drive import evaluate_load, is_unloaded, rest_threshold, store_drive
-from .output import _write_column, _write_quadrature, accept_step
-from .rhs import added_inertia, evaluate_rhs, low_speed_limits
+from .drive import current_load, is_unloaded, rest_threshold, store_drive
+from .output import accept_step, write_column, write_quadrature
+from .rhs import added_inertia, current_rates, low_speed_limits
 from .step_control import moderate_speed
 from .workspace import (
     AT_REST,
@@ -40,6 +40,7 @@ from .workspace import (
     State,
     Step,
     StepState,
+    count_step,
 )
 
 #: relative distance from an equilibrium at which a motion has reached it, divided by rtol: the distance adds nothing to
@@ -62,16 +63,13 @@ def equilibrium_tolerance(rtol):
 
 
 @kernel(inline=True)
-def _may_be_at_equilibrium(noise, work):
+def may_be_at_equilibrium(noise, work):
     """Return whether V at node 0 may be at its equilibrium, by the derivative of p' in V alone.
 
     noise: rounding error of p'.  p is about dp/dV times V.
     """
-    nodes = work.nodes
-    # p is about its slope over V times V
-    return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * equilibrium_tolerance(work.options.rtol) * nodes[
-        ROW_P_DIAGONAL
-    ] * abs(nodes[ROW_P])
+    nodes, tolerance = work.nodes, equilibrium_tolerance(work.options.rtol)
+    return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[ROW_P_DIAGONAL] * abs(nodes[ROW_P])
 
 
 @kernel
@@ -107,12 +105,8 @@ def find_equilibrium(state, regime, noise, step_state, work):
         of d, or below rounding, and the equilibrium is stable; the state after that step.  False in partial slip
         with a speed prescribed.
     """
-    load, V, tolerance = (
-        evaluate_load(step_state.tau, step_state.segment, regime, work),
-        state.V,
-        equilibrium_tolerance(work.options.rtol),
-    )
-    rates = evaluate_rhs(state, load, regime, work.scene)
+    load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
+    V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
     if regime.full_slip:
         return _equilibrium_full_slip(state, rates, regime, noise, tolerance)
     if load.inverse_mass == 0.0 or load.inverse_inertia == 0.0:  # one speed is given, and p' says nothing of the other
@@ -156,7 +150,7 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     if not steady:
         return False, state, step_state
     state = state_there
-    rates = evaluate_rhs(state, evaluate_load(step_state.tau, step_state.segment, regime, work), regime, work.scene)
+    rates = current_rates(state, regime, step_state, work)
     omega_change = rates.weighted_rate * (end - step_state.tau) if regime.full_slip else 0.0
     nodes, step = work.nodes, Step(step_state.tau, end - step_state.tau, step_state.segment, True, False)
     for i in range(N + 1):
@@ -164,28 +158,19 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
         nodes[ROW_DENSE_V + i] = nodes[ROW_DENSE_OMEGA_OR_D + i] = 0.0
     nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # of v = 0 ... 2
     store_drive(step, work)
-    step_state = StepState(
-        step_state.tau, step_state.next_output, step_state.segment, step_state.n_steps + 1, step_state.n_ended, 0.0
-    )
+    step_state = count_step(0.0, step_state)
     return True, State(state.V, state.omega_or_d + omega_change), accept_step(end, 2.0, step, regime, step_state, work)
 
 
 @kernel(inline=True)
-def is_coasting_slow(state, regime, work):
-    """Return whether V is so small that, with feedback only, it decays exponentially up to a fraction of the
-    tolerance.
-    """
+def is_coasting(state, regime, step_state, work):
+    """Return whether at most feedback drives any more and V decays exponentially up to a fraction of the tolerance."""
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
     half_space, cylinder, force, torque = low_speed_limits(work)
-    return half_space + cylinder > force + torque and abs(state.omega_or_d) < _COASTING_D * rtol
-
-
-@kernel
-def _coasts(state, regime, step_state, work):
-    """Return whether at most feedback drives any more, and V decays exponentially up to rounding."""
-    return is_coasting_slow(state, regime, work) and is_unloaded(step_state.segment, work.drive)
+    decays = half_space + cylinder > force + torque and abs(state.omega_or_d) < _COASTING_D * rtol
+    return decays and is_unloaded(step_state.segment, work.drive)
 
 
 @kernel
@@ -203,38 +188,31 @@ def coast_to_end(state, regime, step_state, work):
     rate, stiffness = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
     torque_difference = scene.j * omega_over_V * (half_space - force) - cylinder + torque
     creep = state.V * torque_difference / stiffness * L
-    largest_speed, rest_speed, end = (
-        max(state.V, abs(state.V * (omega_over_V + creep))),
-        rest_threshold(step_state.segment, work),
-        np.inf,
-    )
+    largest_speed = max(state.V, abs(state.V * (omega_over_V + creep)))
+    tau, rest_speed, end = work.output_tau, rest_threshold(step_state.segment, work), np.inf
     if rest_speed > 0.0:
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
     force_work, torque_work = force / rate, torque / rate
     energies = 0.0, 0.0, force_work, torque_work, 0.0, 0.0, 1.0 + scene.j + force_work + torque_work
     if of_cover(by_value(scene.law).free):
-        rolling, slipping = (
-            (half_space + cylinder * omega_over_V) / rate,
-            delta_0 * torque_difference / (inertia * rate),
-        )
+        rolling = (half_space + cylinder * omega_over_V) / rate
+        slipping = delta_0 * torque_difference / (inertia * rate)
         energies = 0.0, 0.0, force_work, torque_work * omega_over_V, 0.0, slipping, rolling
-    for column in range(step_state.next_output, work.output_tau.size):
-        moves = work.output_tau[column] <= end
-        expm1_decay = np.expm1(-rate * (min(work.output_tau[column], end) - step_state.tau))
-        decay = 1.0 + expm1_decay if expm1_decay > -0.5 else np.exp(-rate * (work.output_tau[column] - step_state.tau))
+    for column in range(step_state.next_output, tau.size):
+        moves = tau[column] <= end
+        expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
+        decay = 1.0 + expm1_decay if expm1_decay > -0.5 else np.exp(-rate * (tau[column] - step_state.tau))
         V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
         speeds = direction * V, direction * (V * (omega_over_V + delta)), delta + delta_0
-        _write_column(
-            column, speeds, PARTIAL_SLIP if moves else AT_REST, (force * direction * V, torque * direction * V), work
-        )
+        code = PARTIAL_SLIP if moves else AT_REST
+        write_column(column, speeds, code, (force * direction * V, torque * direction * V), work)
         distance = -direction * state.V * expm1_decay / (rate * scene.gamma)
         energy = 0.5 * state.V * state.V * (-expm1_decay * (1.0 + decay) if moves else 1.0)
         for n in range(N_QUADRATURES):
-            _write_quadrature(
-                column, n, distance * (omega_over_V if n == 1 else 1.0) if n < 2 else energies[n] * energy, work
-            )
-    last = work.output_tau[work.output_tau.size - 1]
-    step_state = StepState(last, work.output_tau.size, step_state.segment, step_state.n_steps, step_state.n_ended, 0.0)
+            path = distance * (omega_over_V if n == 1 else 1.0)
+            write_quadrature(column, n, path if n < 2 else energies[n] * energy, work)
+    last = tau[tau.size - 1]
+    step_state = StepState(last, tau.size, step_state.segment, step_state.n_steps, step_state.n_ended, 0.0)
     if end <= last:
         work.nodes[REST_TIME] = end / scene.gamma
     return CAME_TO_REST if end <= last else COMPLETED, step_state

@@ -79,11 +79,8 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
     motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
     (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes
     tau, quantities, segments = np.empty(t.size), np.empty((N_OUTPUTS, t.size)), np.empty(drives.segments.shape[1:])
-    nodes, p_matrix, d_matrix = (
-        np.empty(WORKSPACE_SIZE),
-        np.empty(ROW_LENGTH * ROW_LENGTH),
-        np.empty(ROW_LENGTH * ROW_LENGTH),
-    )
+    nodes = np.empty(WORKSPACE_SIZE)
+    p_matrix, d_matrix = np.empty(ROW_LENGTH * ROW_LENGTH), np.empty(ROW_LENGTH * ROW_LENGTH)
     for i in range(out.shape[1]):
         for row in quantities:
             fill(np.nan, row)

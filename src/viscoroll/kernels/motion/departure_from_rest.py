@@ -22,7 +22,7 @@ from ..rows.cover import of_cover
 from ..rows.law import creep_at_rest
 from .drive import evaluate_load, has_brake, is_constant, segment_end
 from .rhs import added_inertia
-from .workspace import Load, Regime
+from .workspace import REGIME_AT_REST, Load, Regime
 
 #: at rest for a time
 STAYS_AT_REST = 0
@@ -139,10 +139,8 @@ def _local_maximum_of_residual(load, scene):
     """
     L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
-    first, second = (
-        -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate,
-        -stiffness - 2.0 * scene.mu * load.inverse_mass,
-    )
+    first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
+    second = -stiffness - 2.0 * scene.mu * load.inverse_mass
     # the larger root of first + 2 second d - 3 mu per_V d^2, with second < 0
     discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
     return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
@@ -194,26 +192,26 @@ def holding_margin(load, mu):
 
 
 @kernel
-def _holding_margin_at(tau, segment, regime, work):
+def _holding_margin_at(tau, segment, work):
     """Return the holding margin at a time."""
-    return holding_margin(evaluate_load(tau, segment, regime, work), work.scene.mu)
+    return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene.mu)
 
 
 @kernel
 def find_departure_time(tau, segment, work):
     """Return the first time at which the drive moves a cylinder at rest; the end of the segment if it does not."""
-    regime, end = Regime(False, 1.0, 1.0, 0.0, False), segment_end(segment, work)
+    end = segment_end(segment, work)
     if is_constant(segment, work.drive.segments):
-        return end if _holding_margin_at(tau, segment, regime, work) >= 0.0 else tau
+        return end if _holding_margin_at(tau, segment, work) >= 0.0 else tau
     low = tau
     for n in range(1, _SCAN_INTERVALS + 1):
         high = tau + (end - tau) * n / _SCAN_INTERVALS
-        if _holding_margin_at(high, segment, regime, work) < 0.0:
+        if _holding_margin_at(high, segment, work) < 0.0:
             while True:
                 middle = 0.5 * (low + high)
                 if not low < middle < high:
                     return high
-                if _holding_margin_at(middle, segment, regime, work) < 0.0:
+                if _holding_margin_at(middle, segment, work) < 0.0:
                     high = middle
                 else:
                     low = middle
@@ -242,7 +240,7 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
         if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > stick_zone_slip * L * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return SLIDES_OFF, Regime(True, direction, direction * sigma, direction * spin_sign, locked), 0.0
-    return STAYS_AT_REST, Regime(False, 1.0, 1.0, 0.0, False), 0.0
+    return STAYS_AT_REST, REGIME_AT_REST, 0.0
 
 
 @kernel
@@ -252,18 +250,17 @@ def depart_from_rest(tau, segment, work):
     tau: time; segment: index of the segment of the drive; work: Workspace.
     """
     scene = work.scene
-    at_rest = Regime(False, 1.0, 1.0, 0.0, False)
     tau_drive = tau
-    load = evaluate_load(tau, segment, at_rest, work)
+    load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
     if holding_margin(load, scene.mu) >= -rounding and not is_constant(segment, work.drive.segments):
         # what begins to move the cylinder shows a little later
         tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
-        load = evaluate_load(tau_drive, segment, at_rest, work)
+        load = evaluate_load(tau_drive, segment, REGIME_AT_REST, work)
     braked = has_brake(segment, work.drive.segments)
     if holding_margin(load, scene.mu) >= 0.0:
-        return STAYS_AT_REST, at_rest, 0.0
-    kind, departure, d_start = STAYS_AT_REST, at_rest, 0.0
+        return STAYS_AT_REST, REGIME_AT_REST, 0.0
+    kind, departure, d_start = STAYS_AT_REST, REGIME_AT_REST, 0.0
     for direction in (1.0, -1.0):
         regime = Regime(False, direction, 1.0, 0.0, False)
         load = evaluate_load(tau_drive, segment, regime, work)
@@ -273,7 +270,7 @@ def depart_from_rest(tau, segment, work):
             load = evaluate_load(tau_drive, segment, regime, work)
         sticks, d = solve_d_at_departure(load, spin_sign, scene)
         if sticks and kind == ROLLS_OFF:
-            return AMBIGUOUS, at_rest, 0.0
+            return AMBIGUOUS, REGIME_AT_REST, 0.0
         if sticks:
             # d is that of now: the limit that the motion leaves from
             kind, d_start = (
@@ -288,4 +285,4 @@ def depart_from_rest(tau, segment, work):
     )
     if kind == STAYS_AT_REST:
         return slides
-    return (AMBIGUOUS, at_rest, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)
+    return (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)

@@ -55,6 +55,15 @@ def evaluate_polynomial(row, function, x):
     return total
 
 
+@kernel(inline=True)
+def _sum_of_moduli(row, first, last):
+    """Return the sum of the moduli of the coefficients of functions ``first`` up to before ``last`` of a segment."""
+    n_terms, total = n_coefficients(row), 0.0
+    for n in range(COL_COEFFICIENTS + first * n_terms, COL_COEFFICIENTS + last * n_terms):
+        total += abs(row[n])
+    return total
+
+
 @kernel
 def evaluate_drive(tau, segment, drive):
     """Return (force, torque, slope of the prescribed speed in tau, largest torque of the brake) at tau, not oriented.
@@ -92,10 +101,8 @@ def prescribed_speed(tau, segment, drive):
         its own segment.
     """
     row = drive.segments[segment]
-    n_terms = n_coefficients(row)
-    speed, size = evaluate_polynomial(row, DRIVE_SPEED, (tau - row[COL_START]) * row[COL_SCALE] - 1.0), 0.0
-    for n in range(n_terms):
-        size += abs(row[COL_COEFFICIENTS + DRIVE_SPEED * n_terms + n])
+    speed = evaluate_polynomial(row, DRIVE_SPEED, (tau - row[COL_START]) * row[COL_SCALE] - 1.0)
+    size = _sum_of_moduli(row, DRIVE_SPEED, N_DRIVE_FUNCTIONS)
     return speed if abs(speed) > _ZERO_SPEED_ROUNDINGS * ROUNDING * size else 0.0
 
 
@@ -129,6 +136,12 @@ def evaluate_load(tau, segment, regime, work):
 
 
 @kernel
+def current_load(regime, step_state, work):
+    """Return the Load at the time of the step state, oriented by the regime, without feedback."""
+    return evaluate_load(step_state.tau, step_state.segment, regime, work)
+
+
+@kernel
 def store_drive(step, work):
     """Store the functions of the drive at all nodes of a step; work: Workspace."""
     nodes = work.nodes
@@ -137,12 +150,8 @@ def store_drive(step, work):
     for i in range(N + 1):
         if changes:
             values = evaluate_drive(node_time(step, i), step.segment, work.drive)
-        (
-            nodes[ROW_DRIVE + i],
-            nodes[ROW_DRIVE + ROW_LENGTH + i],
-            nodes[ROW_DRIVE + ROW_LENGTH * 2 + i],
-            nodes[ROW_DRIVE + ROW_LENGTH * 3 + i],
-        ) = values
+        for n in range(N_NODE_FUNCTIONS):
+            nodes[ROW_DRIVE + ROW_LENGTH * n + i] = values[n]
 
 
 @kernel(inline=True)
@@ -171,10 +180,7 @@ def drive_rounding(segment, segments):
 
     They are sums of terms that may nearly cancel: the error is relative to the sum of the coefficients' moduli.
     """
-    row, size = segments[segment], 0.0
-    for n in range(COL_COEFFICIENTS, COL_COEFFICIENTS + (DRIVE_RATE + 1) * n_coefficients(row)):
-        size += abs(row[n])
-    return ROUNDING * size
+    return ROUNDING * _sum_of_moduli(segments[segment], DRIVE_FORCE, DRIVE_RATE + 1)
 
 
 @kernel
@@ -188,10 +194,8 @@ def continues_smoothly(segment, segments):
     for function in range(N_NODE_FUNCTIONS):
         size = jump = kink = 0.0
         for n in range(terms):
-            left, right = (
-                row[COL_COEFFICIENTS + function * terms + n],
-                next_row[COL_COEFFICIENTS + function * terms + n],
-            )
+            column = COL_COEFFICIENTS + function * terms + n
+            left, right = row[column], next_row[column]
             sign = 1.0 if n % 2 == 0 else -1.0
             jump += left - sign * right
             kink += n * (left * row[COL_SCALE] + sign * right * next_row[COL_SCALE])
@@ -217,21 +221,15 @@ def is_constant(segment, segments):
 @kernel
 def has_brake(segment, segments):
     """Return whether a brake acts anywhere on a segment."""
-    row, size = segments[segment], 0.0
-    for n in range(
-        COL_COEFFICIENTS + DRIVE_BRAKE * n_coefficients(row), COL_COEFFICIENTS + (DRIVE_BRAKE + 1) * n_coefficients(row)
-    ):
-        size += abs(row[n])
-    return size > 0.0
+    return _sum_of_moduli(segments[segment], DRIVE_BRAKE, DRIVE_BRAKE + 1) > 0.0
 
 
 @kernel
 def is_unloaded(segment, drive):
     """Return whether from this segment on there is no force, torque, brake or prescribed speed; feedback may act."""
     for row in drive.segments[segment:]:
-        for n in range(COL_COEFFICIENTS, row.size):
-            if row[n] != 0.0:
-                return False
+        if _sum_of_moduli(row, DRIVE_FORCE, N_DRIVE_FUNCTIONS) > 0.0:
+            return False
     return drive.prescribed == NOT_PRESCRIBED
 
 
@@ -262,18 +260,17 @@ def applied_forces(V, omega, load, regime):
 
 
 @kernel(inline=True)
-def required_forces(speeds, moments, load, regime, j):
+def required_forces(V, omega, rates, load, regime, j):
     """Return (force, torque of the motor, torque of the brake): the given ones, or those that hold a prescribed speed.
 
-    speeds: (V, omega); moments: (Q, M_half_space, M_cylinder); load: Load; regime: Regime; j: moment of inertia.
+    V, omega: speeds; rates: Rates there; load: Load; regime: Regime; j: moment of inertia.
     """
-    Q, M_half_space, M_cylinder = moments
-    force, torque, _ = applied_forces(speeds[0], speeds[1], load, regime)
+    force, torque, _ = applied_forces(V, omega, load, regime)
     brake = -load.brake * regime.spin_sign
     if regime.locked:
-        brake = Q + M_cylinder - torque
+        brake = rates.Q + rates.M_cylinder - torque
     elif load.inverse_inertia == 0.0:
-        torque = j * load.prescribed_omega_rate + Q + M_cylinder - brake
+        torque = j * load.prescribed_omega_rate + rates.Q + rates.M_cylinder - brake
     if load.inverse_mass == 0.0:
-        force = load.prescribed_V_rate - Q + M_half_space
+        force = load.prescribed_V_rate - rates.Q + rates.M_half_space
     return force, torque, brake

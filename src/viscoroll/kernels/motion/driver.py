@@ -9,13 +9,13 @@ import numpy as np
 
 from ..compile.by_reference import by_reference
 from ..compile.jit import kernel
-from .asymptotics import _coasts, coast_to_end
+from .asymptotics import coast_to_end, is_coasting
 from .departure_from_rest import AMBIGUOUS, ROLLS_OFF, SLIDES_OFF, STAYS_AT_REST, depart_from_rest, find_departure_time
-from .drive import continues_smoothly, is_undriven, rest_threshold, segment_end
+from .drive import continues_smoothly, current_load, is_undriven, rest_threshold, segment_end
 from .output import record_switch, write_due_outputs, write_outputs_at_rest
 from .regime_solver import integrate_regime
-from .regimes import ZERO_V_RATIO, _rest_code, apply_event, enter_segment, initial_regime, regime_code
-from .rhs import added_inertia, added_mass_margin, creepage, evaluate_load_and_rhs, omega_and_delta
+from .regimes import ZERO_V_RATIO, apply_event, enter_segment, initial_regime, regime_code, rest_code
+from .rhs import added_inertia, added_mass_margin, creepage, current_rates, omega_and_delta
 from .workspace import (
     ADDED_MASS_EXHAUSTED,
     AT_REST,
@@ -30,6 +30,7 @@ from .workspace import (
     NOT_UNIQUE,
     ONSET_TIME,
     QUADRATURE_TOTALS,
+    REGIME_AT_REST,
     REST_TIME,
     STEP_FAILED,
     STEP_LIMIT,
@@ -60,12 +61,8 @@ def _advance_at_rest(step_state, work):
         return kind, State(0.0, d), regime, with_step_length(0.0, step_state)
     end = find_departure_time(step_state.tau, step_state.segment, work) if kind == STAYS_AT_REST else step_state.tau
     closed = kind == AMBIGUOUS or end == work.output_tau[work.output_tau.size - 1]
-    return (
-        kind,
-        State(0.0, 0.0),
-        regime,
-        write_outputs_at_rest(end, closed, _rest_code(step_state, work), step_state, work),
-    )
+    step_state = write_outputs_at_rest(end, closed, rest_code(step_state, work), step_state, work)
+    return kind, State(0.0, 0.0), regime, step_state
 
 
 @kernel
@@ -90,7 +87,7 @@ def _relaxes_within_rounding(state, regime, step_state, work):
     """Return whether d relaxes within the rounding of time, in partial slip."""
     if regime.full_slip:
         return False
-    _, rates = evaluate_load_and_rhs(state, regime, step_state, work)
+    rates = current_rates(state, regime, step_state, work)
     return state.V < _TIME_ROUNDING * step_state.tau * max(abs(rates.drate_dd), abs(rates.weighted_rate))
 
 
@@ -99,7 +96,7 @@ def _vanishes_within_rounding(state, regime, step_state, work):
     """Return whether V falls to 0 within the rounding of time, or counts as 0 where something drives."""
     if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
         return True
-    return state.V < -_TIME_ROUNDING * step_state.tau * evaluate_load_and_rhs(state, regime, step_state, work)[1].V_rate
+    return state.V < -_TIME_ROUNDING * step_state.tau * current_rates(state, regime, step_state, work).V_rate
 
 
 @kernel
@@ -110,7 +107,7 @@ def relax_creep(state, regime, step_state, work):
     """
     if _vanishes_within_rounding(state, regime, step_state, work):
         return False, state, regime, step_state
-    load, rates = evaluate_load_and_rhs(state, regime, step_state, work)
+    load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     n = added_inertia(state.V, work.scene)[0]
     inertia = load.inverse_inertia + load.inverse_mass * load.inverse_inertia * n
     p, d, low, high = inertia * state.V + load.inverse_mass * rates.omega, 0.0, -1.0, 1.0
@@ -118,7 +115,7 @@ def relax_creep(state, regime, step_state, work):
         delta = creepage(state.V, d, work.scene)
         state = State(p / (inertia + load.inverse_mass * (1.0 + delta)), d)
         regime = Regime(False, regime.direction, 1.0 if d >= 0.0 else -1.0, regime.spin_sign, regime.locked)
-        if evaluate_load_and_rhs(state, regime, step_state, work)[1].weighted_rate > 0.0:
+        if current_rates(state, regime, step_state, work).weighted_rate > 0.0:
             low = d
         else:
             high = d
@@ -127,12 +124,8 @@ def relax_creep(state, regime, step_state, work):
     if low > -1.0 and high < 1.0:
         return True, state, regime, step_state
     omega = state.V * (1.0 + creepage(state.V, regime.sigma, work.scene))
-    return (
-        True,
-        State(state.V, omega),
-        Regime(True, regime.direction, regime.sigma, regime.spin_sign, regime.locked),
-        step_state,
-    )
+    regime = Regime(True, regime.direction, regime.sigma, regime.spin_sign, regime.locked)
+    return True, State(state.V, omega), regime, step_state
 
 
 @kernel
@@ -144,9 +137,8 @@ def _advance_segment(moving, state, regime, step_state, work):
     if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == segments.shape[0]:
         return moving, state, regime, step_state
     h = step_state.h if continues_smoothly(step_state.segment, segments) else 0.0
-    step_state = StepState(
-        step_state.tau, step_state.next_output, step_state.segment + 1, step_state.n_steps, step_state.n_ended, h
-    )
+    tau, next_output, segment, n_steps, n_ended, _ = step_state
+    step_state = StepState(tau, next_output, segment + 1, n_steps, n_ended, h)
     if moving:
         state, regime = enter_segment(state, regime, step_state, work)
         # in partial slip omega is 0 where V is
@@ -194,7 +186,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             moving = departure != STAYS_AT_REST
         elif step_state.tau >= work.output_tau[work.output_tau.size - 1]:
             step_state = write_due_outputs(state, regime, step_state, work)
-        elif _coasts(state, regime, step_state, work):
+        elif is_coasting(state, regime, step_state, work):
             return coast_to_end(state, regime, step_state, work)
         else:
             event, state, regime, step_state = integrate_regime(stick_formed, state, regime, step_state, work)
@@ -212,7 +204,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             step_state = with_step_length(step_state.h if event == DELTA_ZERO else 0.0, step_state)
         if moving and code >= 0 and regime.direction != direction:
             record_switch(DIRECTION_REVERSED, step_state, work)
-        new_code = regime_code(regime) if moving else _rest_code(step_state, work)
+        new_code = regime_code(regime) if moving else rest_code(step_state, work)
         if new_code != code and (moving or event == NO_EVENT):
             if code >= 0:
                 record_switch(new_code, step_state if moving else last_state, work)
@@ -233,13 +225,12 @@ def integrate_motion(V0, omega0, record):
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)
     nodes[ONSET_TIME] = nodes[REST_TIME] = np.nan
-    state, regime, stick_formed = State(0.0, 0.0), Regime(False, 1.0, 1.0, 0.0, False), False
+    state, regime, stick_formed = State(0.0, 0.0), REGIME_AT_REST, False
     largest_speed = max(abs(V0), abs(omega0))
     moving = largest_speed >= _NEGLIGIBLE_SPEED or (largest_speed > 0.0 and is_undriven(0, work.drive))
     if moving:
-        state, regime, stick_formed = initial_regime(
-            V0 if abs(V0) > ZERO_V_RATIO * abs(omega0) else 0.0, omega0, step_state, work
-        )
+        V0 = V0 if abs(V0) > ZERO_V_RATIO * abs(omega0) else 0.0
+        state, regime, stick_formed = initial_regime(V0, omega0, step_state, work)
         state, regime = enter_segment(state, regime, step_state, work)
     status, step_state = _integrate_regimes(moving, stick_formed, state, regime, step_state, work)
     return status, step_state.n_steps, nodes[N_SWITCHES], nodes[ONSET_TIME], nodes[REST_TIME]

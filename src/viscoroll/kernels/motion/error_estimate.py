@@ -54,13 +54,13 @@ _D_WEIGHT_FLOOR = 0.04
 
 
 @kernel(inline=True)
-def _d_weight(abs_d):
-    """Return the weight of an error of d at |d| = abs_d, dimensionless.
+def _d_weight(d):
+    """Return the weight of an error of d at this d, dimensionless.
 
     d acts through omega - V and V', whose error is that of V, and its errors decay.  The error is held relative to the
     critical creepage, as an error of Q/mu, and less strictly relative to d itself.
     """
-    return max(_D_WEIGHT_FLOOR, abs_d * abs_d) / (abs(abs_d) + _D_WEIGHT_FLOOR)
+    return max(_D_WEIGHT_FLOOR, d * d) / (abs(d) + _D_WEIGHT_FLOOR)
 
 
 @kernel
@@ -71,9 +71,8 @@ def _rounding_scale_of_V(step, work):
     relaxation time of V if that is shorter.
     """
     nodes = work.nodes
-    V_error = (
-        ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h / (1.0 + abs(nodes[ROW_P_DIAGONAL + N]))
-    )
+    V_error = ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h
+    V_error /= 1.0 + abs(nodes[ROW_P_DIAGONAL + N])
     return V_error / max(NEWTON_FRACTION * ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
 
 
@@ -92,9 +91,9 @@ def error_scales(step, regime, work):
         # that is right beside omega alone may leave the speed at which it settles
         if step.undriven:
             return largest_V, largest_speed
-        return largest_speed if work.drive.gains.force_omega != 0.0 else max(
-            largest_V, _rounding_scale_of_V(step, work)
-        ), largest_speed
+        if work.drive.gains.force_omega != 0.0:
+            return largest_speed, largest_speed
+        return max(largest_V, _rounding_scale_of_V(step, work)), largest_speed
     # an error of d is one of omega, and of V where p is given
     for i in range(1, N + 1):
         V_change = max(V_change, abs(nodes[ROW_DP_DD + i] * nodes[ROW_DV_DP + i]))
@@ -148,11 +147,8 @@ def _strong_friction_rounding(regime, work):
 
     V' may be a small difference of Q and f.  Friction is strong only where mu > kappa.
     """
-    return (
-        _STRONG_FRICTION_ROUNDING * work.scene.mu
-        if has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
-        else 0.0
-    )
+    strong = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
+    return _STRONG_FRICTION_ROUNDING * work.scene.mu if strong else 0.0
 
 
 @kernel(inline=True)

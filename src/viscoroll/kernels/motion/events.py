@@ -12,21 +12,18 @@ from .workspace import (
     BRAKE_RELEASE,
     DELTA_ZERO,
     DRIVE_BRAKE,
-    N_EVENTS,
     NO_EVENT,
     OMEGA_ZERO,
     PRESCRIBED_V,
     ROW_DENSE_EVENT,
-    ROW_DENSE_OMEGA_OR_D,
-    ROW_DENSE_V,
     ROW_DRIVE,
-    ROW_EVENTS,
     ROW_OMEGA_OR_D,
     ROW_SPEED,
     ROW_V,
     STICK_EDGE,
     V_ZERO,
     State,
+    dense_state,
 )
 
 #: an event ends a step where its function is below this times rtol, relative to the scale of the function
@@ -62,11 +59,9 @@ def is_event_active(event, step, regime, work):
         return not regime.full_slip
     if event == OMEGA_ZERO:
         return regime.spin_sign != 0.0 and not regime.locked
-    return (
-        regime.locked
-        if event == BRAKE_RELEASE
-        else event != BELOW_REST_SPEED or (step.undriven and work.options.rest_speed > 0.0)
-    )
+    if event == BRAKE_RELEASE:
+        return regime.locked
+    return event != BELOW_REST_SPEED or (step.undriven and work.options.rest_speed > 0.0)
 
 
 @kernel(inline=True)
@@ -75,33 +70,28 @@ def evaluate_event_functions(step, regime, work):
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):
         V, omega_or_d = nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i]
-        nodes[ROW_EVENTS + ROW_LENGTH * V_ZERO + i] = V
-        nodes[ROW_EVENTS + ROW_LENGTH * STICK_EDGE + i] = stick_edge_function(V, omega_or_d, regime, scene)
+        nodes[V_ZERO + i] = V
+        nodes[STICK_EDGE + i] = stick_edge_function(V, omega_or_d, regime, scene)
         if not regime.full_slip:
-            nodes[ROW_EVENTS + ROW_LENGTH * DELTA_ZERO + i] = regime.sigma * omega_or_d + BRANCH_OVERLAP
+            nodes[DELTA_ZERO + i] = regime.sigma * omega_or_d + BRANCH_OVERLAP
         if regime.spin_sign != 0.0 or (step.undriven and rest > 0.0):
             omega, delta = omega_and_delta(State(V, omega_or_d), regime, scene)
             # in partial slip omega vanishes with V, which is another event, and by its own
             spin_function = omega if regime.full_slip else 1.0 + delta if V > 0.0 else 1.0
-            nodes[ROW_EVENTS + ROW_LENGTH * OMEGA_ZERO + i] = regime.spin_sign * spin_function
-            nodes[ROW_EVENTS + ROW_LENGTH * BELOW_REST_SPEED + i] = max(abs(V), abs(omega)) - rest
+            nodes[OMEGA_ZERO + i] = regime.spin_sign * spin_function
+            nodes[BELOW_REST_SPEED + i] = max(abs(V), abs(omega)) - rest
         if regime.locked:  # of squares: smooth where what the brake takes changes its sign
-            brake_torque_limit, brake_torque = (
-                load_at_node(i, regime, work).brake,
-                rhs_and_forces_at_node(i, regime, work)[1][2],
-            )
-            nodes[ROW_EVENTS + ROW_LENGTH * BRAKE_RELEASE + i] = (
-                brake_torque_limit * brake_torque_limit - brake_torque * brake_torque
-            )
+            limit, torque = load_at_node(i, regime, work).brake, rhs_and_forces_at_node(i, regime, work)[1][2]
+            nodes[BRAKE_RELEASE + i] = limit * limit - torque * torque
 
 
 @kernel
 def _first_negative_node(event, last, nodes):
     """Return the first node, up to ``last``, at which an event function has fallen below 0; 0 for none."""
-    _, largest = row_range(ROW_EVENTS + ROW_LENGTH * event, nodes)
-    positive = nodes[ROW_EVENTS + ROW_LENGTH * event] > _START_ROUNDING * max(largest, 0.0)
+    _, largest = row_range(event, nodes)
+    positive = nodes[event] > _START_ROUNDING * max(largest, 0.0)
     for i in range(1, last + 1):
-        value = nodes[ROW_EVENTS + ROW_LENGTH * event + i]
+        value = nodes[event + i]
         if value < 0.0 and positive and (event != STICK_EDGE or value < -_EDGE_ROUNDING * _event_scale(event, nodes)):
             return i
         positive = positive or value > 0.0
@@ -113,9 +103,9 @@ def locate_zero(event, node, nodes):
     """Return the v at which the interpolant of an event function is 0, before ``node``, or beyond the step if that
     is 0.
     """
-    fit_dense_output(ROW_EVENTS + ROW_LENGTH * event, ROW_DENSE_EVENT, nodes)
+    fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
-    return _bisect(nodes[ROW_EVENTS + ROW_LENGTH * event], low, high, nodes)
+    return _bisect(nodes[event], low, high, nodes)
 
 
 @kernel
@@ -137,10 +127,9 @@ def _bisect(start, low, high, nodes):
 @kernel
 def _locate_double_crossing(event, nodes):
     """Return the v at which an event function falls through 0 between nodes at which it is positive; 0 for none."""
-    row = ROW_EVENTS + ROW_LENGTH * event
     for i in range(1, N):
-        if 0.0 < nodes[row + i] < min(nodes[row + i - 1], nodes[row + i + 1]):
-            fit_dense_output(row, ROW_DENSE_EVENT, nodes)
+        if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
+            fit_dense_output(event, ROW_DENSE_EVENT, nodes)
             start, low, high = 1.0 + NODES[i - 1], 1.0 + NODES[i - 1], 1.0 + NODES[i + 1]
             for _ in range(_TERNARY_STEPS):
                 third = (high - low) / 3.0
@@ -150,8 +139,8 @@ def _locate_double_crossing(event, nodes):
                     high -= third
                 else:
                     low += third
-            if nodes[row] + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT) < 0.0:
-                return _bisect(nodes[row], start, low, nodes)
+            if nodes[event] + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT) < 0.0:
+                return _bisect(nodes[event], start, low, nodes)
     return 0.0
 
 
@@ -162,7 +151,7 @@ def find_first_event(step, regime, work):
     Between the same two nodes the interpolants tell which event is first.
     """
     event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
-    for row in range(N_EVENTS):
+    for row in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
         node = _first_negative_node(row, last, nodes) if is_event_active(row, step, regime, work) else 0
         if node == 0:
             continue
@@ -183,22 +172,16 @@ def find_missed_event(step, regime, work):
     The regime has then ended before the first node.
     """
     nodes = work.nodes
-    for row in range(N_EVENTS):
+    for row in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
         # full slip is a case of the equations of partial slip
-        if (
-            row == BELOW_REST_SPEED
-            or (row == STICK_EDGE and not regime.full_slip)
-            or not is_event_active(row, step, regime, work)
-        ):
+        excluded = row == BELOW_REST_SPEED or (row == STICK_EDGE and not regime.full_slip)
+        if excluded or not is_event_active(row, step, regime, work):
             continue
-        (_, largest), scale = row_range(ROW_EVENTS + ROW_LENGTH * row, nodes), _event_scale(row, nodes)
+        (_, largest), scale = row_range(row, nodes), _event_scale(row, nodes)
         # V passes 0 beside omega, but for one that is prescribed: that is known beside itself
         if row == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
             scale = max(scale, nodes[ROW_SPEED + N])
-        if (
-            largest <= _START_ROUNDING * scale
-            and nodes[ROW_EVENTS + ROW_LENGTH * row + N] < -_event_tolerance(work.options.rtol) * scale
-        ):
+        if largest <= _START_ROUNDING * scale and nodes[row + N] < -_event_tolerance(work.options.rtol) * scale:
             return row
     return NO_EVENT
 
@@ -206,11 +189,7 @@ def find_missed_event(step, regime, work):
 @kernel
 def _event_function(event, v, regime, work):
     """Evaluate an event function at v from the dense output of the unknowns, not from its own interpolant."""
-    nodes = work.nodes
-    V, omega_or_d = (
-        nodes[ROW_V] + evaluate_dense_output(v, nodes, ROW_DENSE_V),
-        nodes[ROW_OMEGA_OR_D] + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D),
-    )
+    V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:
         return max(abs(V), abs(omega_or_d)) - work.options.rest_speed
     if event == OMEGA_ZERO:
@@ -225,14 +204,10 @@ def refine_event(event, v, regime, work):
 
     These are the stick edge and the larger speed in full slip, and omega in partial slip; else v is returned unchanged.
     """
-    if not (
-        ((event == STICK_EDGE or event == BELOW_REST_SPEED) and regime.full_slip)
-        or (event == OMEGA_ZERO and not regime.full_slip)
-    ):
+    if event not in ((STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)):
         return v
-    difference = _event_function(event, v + _SECANT_OFFSET, regime, work) - _event_function(
-        event, v - _SECANT_OFFSET, regime, work
-    )
+    difference = _event_function(event, v + _SECANT_OFFSET, regime, work)
+    difference -= _event_function(event, v - _SECANT_OFFSET, regime, work)
     for _ in range(_SECANT_STEPS):
         correction = _event_function(event, v, regime, work) * (2.0 * _SECANT_OFFSET) / difference
         if not abs(correction) < _MAX_SECANT_MOVE:
@@ -246,15 +221,13 @@ def _event_scale(event, nodes):
     """Return the scale of an event function on a step: the largest modulus of the quantities of which it is a
     difference.
     """
-    smallest, largest = row_range(ROW_EVENTS + ROW_LENGTH * event, nodes)
+    smallest, largest = row_range(event, nodes)
     largest = max(largest, -smallest)
     if event in (STICK_EDGE, OMEGA_ZERO, BELOW_REST_SPEED):
         return max(largest, row_range(ROW_SPEED, nodes)[1])
-    return (
-        max(largest, row_range(ROW_DRIVE + ROW_LENGTH * DRIVE_BRAKE, nodes)[1] ** 2)
-        if event == BRAKE_RELEASE
-        else largest
-    )
+    if event == BRAKE_RELEASE:
+        return max(largest, row_range(ROW_DRIVE + ROW_LENGTH * DRIVE_BRAKE, nodes)[1] ** 2)
+    return largest
 
 
 @kernel(inline=True)
@@ -266,6 +239,5 @@ def _event_tolerance(rtol):
 @kernel
 def ends_at_event(event, nodes, rtol):
     """Return whether the step ends at an event: its function has fallen to 0, and has not only started there."""
-    row, scale = ROW_EVENTS + ROW_LENGTH * event, _event_scale(event, nodes)
-    last, (_, largest) = nodes[row + N], row_range(row, nodes)
+    scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
     return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

@@ -7,7 +7,7 @@ losses in the brake 10, in slip 11, in rolling 12.
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_dense_output, evaluate_integral, fit_integral
+from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
 from .drive import evaluate_load, required_forces
 from .regimes import regime_code
 from .rhs import evaluate_rhs, omega_and_delta, rhs_and_forces_at_node
@@ -17,16 +17,13 @@ from .workspace import (
     N_RECORDED,
     N_SWITCHES,
     QUADRATURE_TOTALS,
-    ROW_DENSE_OMEGA_OR_D,
+    REGIME_AT_REST,
     ROW_DENSE_QUADRATURES,
-    ROW_DENSE_V,
     ROW_INTEGRANDS,
-    ROW_OMEGA_OR_D,
     ROW_V,
-    Regime,
-    State,
     StepState,
     dense_position,
+    dense_state,
 )
 
 #: number of output quantities
@@ -50,7 +47,7 @@ def requested_groups(rows):
 
 
 @kernel
-def _write_column(column, speeds, code, forces, work):
+def write_column(column, speeds, code, forces, work):
     """Write (V, omega, delta), the code of the regime, and (force, torque) to one output column."""
     out, (V, omega, delta), (force, torque) = work.outputs, speeds, forces
     out[0, column], out[1, column], out[4, column], out[5, column] = V, omega, delta, code
@@ -58,7 +55,7 @@ def _write_column(column, speeds, code, forces, work):
 
 
 @kernel
-def _write_quadrature(column, n, increase, work):
+def write_quadrature(column, n, increase, work):
     """Write quadrature ``n``, its total so far plus ``increase``, to one output column."""
     work.outputs[OUT_X + n if n < 2 else OUT_WORK + n - 2, column] = work.nodes[QUADRATURE_TOTALS + n] + increase
 
@@ -67,7 +64,7 @@ def _write_quadrature(column, n, increase, work):
 def _write_totals(column, work):
     """Write the totals of all quadratures to one output column."""
     for n in range(N_QUADRATURES):
-        _write_quadrature(column, n, 0.0, work)
+        write_quadrature(column, n, 0.0, work)
 
 
 @kernel
@@ -88,12 +85,10 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
 
     code: regime in the outputs.
     """
-    column, at_rest = step_state.next_output, Regime(False, 1.0, 1.0, 0.0, False)
-    while column < work.output_tau.size and (
-        work.output_tau[column] < end or (inclusive and work.output_tau[column] == end)
-    ):
-        load = evaluate_load(work.output_tau[column], step_state.segment, at_rest, work)
-        _write_column(column, (0.0, 0.0, 0.0), code, (load.force, load.torque), work)
+    column, tau = step_state.next_output, work.output_tau
+    while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
+        load = evaluate_load(tau[column], step_state.segment, REGIME_AT_REST, work)
+        write_column(column, (0.0, 0.0, 0.0), code, (load.force, load.torque), work)
         _write_totals(column, work)
         column += 1
     return StepState(end, column, step_state.segment, step_state.n_steps + 1, step_state.n_ended, 0.0)
@@ -107,10 +102,9 @@ def _write_state(column, state, segment, regime, work):
     if work.with_forces:
         load = evaluate_load(work.output_tau[column], segment, regime, work)
         rates = evaluate_rhs(state, load, regime, work.scene)
-        moments = rates.Q, rates.M_half_space, rates.M_cylinder
-        force, torque, _ = required_forces((state.V, omega), moments, load, regime, work.scene.j)
+        force, torque, _ = required_forces(state.V, omega, rates, load, regime, work.scene.j)
     speeds, forces = (direction * state.V, direction * omega, delta), (direction * force, direction * torque)
-    _write_column(column, speeds, regime_code(regime), forces, work)
+    write_column(column, speeds, regime_code(regime), forces, work)
 
 
 @kernel
@@ -134,14 +128,9 @@ def _quadrature_at(n, v, step, nodes):
 @kernel(inline=True)
 def _write_dense_output(column, v, step, regime, work):
     """Write one output column from the dense output of a step at v."""
-    nodes = work.nodes
-    state = State(
-        nodes[ROW_V] + evaluate_dense_output(v, nodes, ROW_DENSE_V),
-        nodes[ROW_OMEGA_OR_D] + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D),
-    )
-    _write_state(column, state, step.segment, regime, work)
+    _write_state(column, dense_state(v, work.nodes), step.segment, regime, work)
     for n in range(N_QUADRATURES if work.with_quadratures else 0):
-        _write_quadrature(column, n, _quadrature_at(n, v, step, nodes), work)
+        write_quadrature(column, n, _quadrature_at(n, v, step, work.nodes), work)
 
 
 @kernel(inline=True)
@@ -153,17 +142,12 @@ def _evaluate_integrands(regime, work):
     for i in range(N + 1):
         rates, (force, torque, brake) = rhs_and_forces_at_node(i, regime, work)
         V, omega = nodes[ROW_V + i], rates.omega
-        nodes[ROW_INTEGRANDS + i], nodes[ROW_INTEGRANDS + ROW_LENGTH + i] = (
-            direction_over_gamma * V,
-            direction_over_gamma * omega,
-        )
-        nodes[ROW_INTEGRANDS + ROW_LENGTH * 2 + i], nodes[ROW_INTEGRANDS + ROW_LENGTH * 3 + i] = (
-            force * V,
-            torque * omega,
-        )
-        nodes[ROW_INTEGRANDS + ROW_LENGTH * 4 + i] = -brake * omega
-        nodes[ROW_INTEGRANDS + ROW_LENGTH * 5 + i] = (omega - V) * rates.Q
-        nodes[ROW_INTEGRANDS + ROW_LENGTH * 6 + i] = V * rates.M_half_space + omega * rates.M_cylinder
+        integrands = (
+            direction_over_gamma * V, direction_over_gamma * omega, force * V, torque * omega, -brake * omega,
+            (omega - V) * rates.Q, V * rates.M_half_space + omega * rates.M_cylinder,
+        )  # fmt: skip
+        for n in range(N_QUADRATURES):
+            nodes[ROW_INTEGRANDS + ROW_LENGTH * n + i] = integrands[n]
 
 
 @kernel
@@ -192,17 +176,15 @@ def accept_step(end, v, step, regime, step_state, work):
     if due or v < 2.0:
         for n in range(n_quadratures):
             fit_integral(ROW_INTEGRANDS + ROW_LENGTH * n, ROW_DENSE_QUADRATURES + ROW_LENGTH * n, work.nodes)
-    if due:
-        while column < tau.size and (tau[column] < end or is_last):
-            _write_dense_output(column, min(dense_position(tau[column], step), 2.0), step, regime, work)
-            column += 1
+    while column < tau.size and (tau[column] < end or is_last):
+        _write_dense_output(column, min(dense_position(tau[column], step), 2.0), step, regime, work)
+        column += 1
     if step_state.n_ended < work.step_ends.size:
         work.step_ends[step_state.n_ended] = end / work.scene.gamma
     for n in range(n_quadratures):
-        increase = (
-            _quadrature_at(n, v, step, work.nodes)
-            if v < 2.0
-            else _integral_over_step(ROW_INTEGRANDS + ROW_LENGTH * n, step, work.nodes)
-        )
-        work.nodes[QUADRATURE_TOTALS + n] += increase
+        if v < 2.0:
+            work.nodes[QUADRATURE_TOTALS + n] += _quadrature_at(n, v, step, work.nodes)
+        else:
+            row = ROW_INTEGRANDS + ROW_LENGTH * n
+            work.nodes[QUADRATURE_TOTALS + n] += _integral_over_step(row, step, work.nodes)
     return StepState(end, column, step_state.segment, step_state.n_steps, step_state.n_ended + 1, step_state.h)

@@ -56,10 +56,8 @@ def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
 def _extrapolate(step, dense_step, regime, nodes):
     """Predict by the dense output of ``dense_step``, extrapolated beyond its right end."""
     v_start = dense_position(step.tau, dense_step)
-    V0, omega_or_d0 = (
-        nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V),
-        nodes[ROW_OMEGA_OR_D] - evaluate_dense_output(v_start, nodes, ROW_DENSE_OMEGA_OR_D),
-    )
+    V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
+    omega_or_d0 = nodes[ROW_OMEGA_OR_D] - evaluate_dense_output(v_start, nodes, ROW_DENSE_OMEGA_OR_D)
     for i in range(1, N + 1):
         v = dense_position(node_time(step, i), dense_step)
         _store_unknowns(

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .asymptotics import _may_be_at_equilibrium, continue_at_equilibrium, is_coasting_slow
-from .collocation import N, evaluate_dense_output, row_range
-from .drive import drive_rounding, evaluate_load, is_constant, is_undriven, is_unloaded, segment_end
+from .asymptotics import continue_at_equilibrium, is_coasting, may_be_at_equilibrium
+from .collocation import N, row_range
+from .drive import drive_rounding, is_constant, is_undriven, is_unloaded, segment_end
 from .error_estimate import estimate_error
 from .events import (
     NOT_FOUND,
@@ -19,7 +19,7 @@ from .events import (
     refine_event,
 )
 from .output import accept_step
-from .rhs import evaluate_rhs
+from .rhs import current_rates
 from .step import solve_step, store_rhs
 from .step_control import first_step_length, next_step_length, step_length_after_relaxation, time_to_V_zero
 from .workspace import (
@@ -27,8 +27,6 @@ from .workspace import (
     NO_EVENT,
     PRESCRIBED_V,
     ROUNDING,
-    ROW_DENSE_OMEGA_OR_D,
-    ROW_DENSE_V,
     ROW_OMEGA_OR_D,
     ROW_P_DIAGONAL,
     ROW_RELAXATION,
@@ -41,7 +39,8 @@ from .workspace import (
     Regime,
     State,
     Step,
-    StepState,
+    count_step,
+    dense_state,
     shorten_step,
 )
 
@@ -75,7 +74,7 @@ def _start_step(state, regime, step_state, work):
     """Store the right-hand side at node 0; return the regime, at d = 0 that of the branch to which d moves."""
     nodes = work.nodes
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
-    rates = evaluate_rhs(state, evaluate_load(step_state.tau, step_state.segment, regime, work), regime, work.scene)
+    rates = current_rates(state, regime, step_state, work)
     store_rhs(0, rates, nodes)
     # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
     nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
@@ -105,12 +104,8 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
             break
         evaluate_event_functions(step, regime, work)
         crossed, v = find_first_event(step, regime, work)
-        if (
-            crossed == V_ZERO
-            and v > 2.0 * BEFORE_SEGMENT_END
-            and step.h == remaining
-            and work.drive.prescribed == PRESCRIBED_V
-        ):
+        V_given, at_end = work.drive.prescribed == PRESCRIBED_V, step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
+        if V_given and at_end and crossed == V_ZERO:
             crossed = NO_EVENT
         # in partial slip there is no motion behind V = 0, and none that goes on from there
         V_negative = row_range(ROW_V, nodes)[0] < 0.0
@@ -137,7 +132,7 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
                 return NO_EVENT, 2.0, step, error, dense_step
         h = min(step.h * 0.5 * v, upper)
         if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
-            return NO_EVENT, 2.0, step, max(error, _ERROR_OF_FAILED_TRIAL), dense_step
+            break
         upper = step.h if crossed != NO_EVENT else upper
         step = shorten_step(step, h)
     return NO_EVENT, 2.0, step, max(error, _ERROR_OF_FAILED_TRIAL), dense_step
@@ -150,35 +145,29 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     stick_formed: whether the stick zone has just formed; state, regime, step_state: at the start; work: Workspace.
     The event is NO_EVENT at the end of the segment, or if the steps are used up or the rest is closed-form.
     """
-    nodes, options = work.nodes, work.options
-    end, h, n_rejected, last_h, last_error = segment_end(step_state.segment, work), step_state.h, 0, 0.0, 1.0
+    nodes, segment, drive = work.nodes, step_state.segment, work.drive
+    end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0
     h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
-    undriven, unloaded = is_undriven(step_state.segment, work.drive), is_unloaded(step_state.segment, work.drive)
-    constant, noise = not unloaded and is_constant(step_state.segment, work.drive.segments), 0.0
-    if constant:
-        # of p', which in full slip holds Q = mu
-        noise = drive_rounding(step_state.segment, work.drive.segments) + (
-            ROUNDING * work.scene.mu if regime.full_slip else 0.0
-        )
-    dense_step = Step(step_state.tau, 0.0, step_state.segment, False, undriven)
-    while (
-        step_state.tau < end
-        and step_state.n_steps < options.max_steps
-        and not (unloaded and is_coasting_slow(state, regime, work))
-    ):
+    undriven = is_undriven(segment, drive)
+    constant = is_constant(segment, drive.segments) and not is_unloaded(segment, drive)
+    # rounding error of p', which contains Q = mu in full slip
+    noise = drive_rounding(segment, drive.segments) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
+    dense_step = Step(step_state.tau, 0.0, segment, False, undriven)
+    while step_state.tau < end and step_state.n_steps < work.options.max_steps:
+        if is_coasting(state, regime, step_state, work):
+            break
         regime = _start_step(state, regime, step_state, work)
-        if constant and _may_be_at_equilibrium(noise, work):
+        if constant and may_be_at_equilibrium(noise, work):
             steady, state, step_state = continue_at_equilibrium(end, noise, state, regime, step_state, work)
             if steady:
                 return NO_EVENT, state, regime, step_state
         if h == 0.0:
             h = max(first_step_length(stick_formed, step_state, regime, work), SHORTEST_STEP * step_state.tau)
         remaining = end - step_state.tau
-        step = Step(
-            step_state.tau, min(h, remaining), step_state.segment, regime.full_slip or state.V > ZERO_SPEED, undriven
-        )
+        slope_known = regime.full_slip or state.V > ZERO_SPEED
+        step = Step(step_state.tau, min(h, remaining), segment, slope_known, undriven)
         V_zero_time = time_to_V_zero(step, state, regime, work)
-        if V_zero_time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
+        if V_zero_time > BEFORE_SEGMENT_END * remaining and drive.prescribed == PRESCRIBED_V:
             V_zero_time = np.inf
         aimed = V_zero_time <= step.h and n_rejected == 0
         if V_zero_time < step.h:
@@ -186,9 +175,7 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
         event, v, step, error, dense_step = solve_trial_step(step, remaining, aimed, dense_step, regime, work)
         h_tried, h = h, next_step_length(step, error, n_rejected, last_h, last_error)
         h = max(h, h_tried) if error <= 1.0 and step.h == remaining else h
-        step_state = StepState(
-            step_state.tau, step_state.next_output, step_state.segment, step_state.n_steps + 1, step_state.n_ended, h
-        )
+        step_state = count_step(h, step_state)
         n_rejected += 1
         if not error <= 1.0:
             if n_rejected <= _MAX_REJECTIONS and step_state.tau + h > step_state.tau:
@@ -196,16 +183,9 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
             if not error <= _ACCEPTED_AT_SHORTEST:
                 return STEP_FAILED, state, regime, step_state
             h = step.h
-        at_segment_end = v == 2.0 and step.h == remaining
-        step_state = accept_step(
-            end if at_segment_end else step.tau + step.h * 0.5 * v, v, step, regime, step_state, work
-        )
-        state = State(nodes[ROW_V + N], nodes[ROW_OMEGA_OR_D + N])
-        if v < 2.0:
-            state = State(
-                nodes[ROW_V] + evaluate_dense_output(v, nodes, ROW_DENSE_V),
-                nodes[ROW_OMEGA_OR_D] + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D),
-            )
+        tau = end if v == 2.0 and step.h == remaining else step.tau + step.h * 0.5 * v
+        step_state = accept_step(tau, v, step, regime, step_state, work)
+        state = dense_state(v, nodes) if v < 2.0 else State(nodes[ROW_V + N], nodes[ROW_OMEGA_OR_D + N])
         if event != NO_EVENT:
             return event, state, regime, step_state
         h = max(h, step_length_after_relaxation(step, regime, work))

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..compile.jit import kernel
 from .collocation import row_range
-from .drive import applied_forces, has_brake, is_undriven, prescribed_speed
-from .rhs import critical_creepage, evaluate_load_and_rhs, excess_slip
+from .drive import applied_forces, current_load, has_brake, is_undriven, prescribed_speed
+from .rhs import critical_creepage, current_rates, excess_slip
 from .workspace import (
     AT_REST,
     DELTA_ZERO,
@@ -40,7 +40,7 @@ _START_ON_EDGE = 2e-14
 @kernel
 def _torque_at_locked_wheel(state, regime, step_state, work):
     """Return (torque that accelerates a wheel held at omega = 0, largest torque of the brake)."""
-    load, rates = evaluate_load_and_rhs(state, regime, step_state, work)
+    load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     _, torque, _ = applied_forces(state.V, 0.0, load, regime)
     return torque - rates.Q - rates.M_cylinder, load.brake
 
@@ -63,11 +63,9 @@ def release_brake(state, regime, step_state, work):
 @kernel
 def comes_to_rest(state, regime, step_state, work):
     """Return whether full slip ends at rest: V = 0 at the stick edge, where omega is 0 too."""
-    omega_zero = regime.locked or (
-        work.drive.prescribed == PRESCRIBED_OMEGA
-        and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
-    )
-    if not omega_zero:
+    prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
+    omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
+    if not (regime.locked or omega_zero):
         return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
     # slip with omega = 0 ends with V, which is 0 but for the tolerance of the panel
     return state.V <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol) * row_range(ROW_V, work.nodes)[1]
@@ -109,10 +107,9 @@ def impose_prescribed_speed(state, regime, step_state, work):
     if drive.prescribed == PRESCRIBED_OMEGA and full_slip:
         return State(state.V, speed), regime
     if drive.prescribed == PRESCRIBED_OMEGA:
-        omega = evaluate_load_and_rhs(state, regime, step_state, work)[1].omega
-        return (
-            State(state.V * max(speed / omega, 0.0), state.omega_or_d) if omega > _OMEGA_FOLLOWED * state.V else state
-        ), regime
+        omega = current_rates(state, regime, step_state, work).omega
+        factor = max(speed / omega, 0.0) if omega > _OMEGA_FOLLOWED * state.V else 1.0
+        return State(state.V * factor, state.omega_or_d), regime
     if full_slip and speed < 0.0:
         return State(-speed, -state.omega_or_d), Regime(full_slip, -direction, -sigma, -spin_sign, locked)
     return State(speed if full_slip else max(speed, 0.0), state.omega_or_d), regime
@@ -125,14 +122,14 @@ def apply_event(event, state, regime, step_state, work):
     if event == STICK_EDGE and full_slip:
         if comes_to_rest(state, regime, step_state, work):
             return False, state, regime
-        rates = evaluate_load_and_rhs(state, regime, step_state, work)[1]
+        rates = current_rates(state, regime, step_state, work)
         state, regime = State(state.V, sigma), Regime(False, direction, sigma, spin_sign, locked)
         if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(rates.weighted_rate):
             # the time of the event is known to the tolerance, and by it the slower speed better than the faster one
             state, regime = impose_prescribed_speed(state, regime, step_state, work)
         return state.V > 0.0, state, regime
     if event == STICK_EDGE:
-        omega = evaluate_load_and_rhs(state, regime, step_state, work)[1].omega
+        omega = current_rates(state, regime, step_state, work).omega
         return True, State(state.V, omega), Regime(True, direction, sigma, spin_sign, locked)
     if event == DELTA_ZERO:
         return True, state, Regime(False, direction, -sigma, spin_sign, locked)
@@ -150,24 +147,15 @@ def apply_event(event, state, regime, step_state, work):
 
 
 @kernel
-def _orient_full_slip(state, regime, step_state, work):
-    """Return (state, regime) of full slip at the start of a segment: if V is 0, in the direction of V'."""
-    reverses = state.V == 0.0 and evaluate_load_and_rhs(state, regime, step_state, work)[1].V_rate < 0.0
-    return reverse_direction(state, regime) if reverses else (state, regime)
-
-
-@kernel
 def enter_segment(state, regime, step_state, work):
     """Return (state, regime) at the start of a segment: brakes take hold or let go, V may reverse."""
     if step_state.segment > 0:  # the start is as given
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
-    if regime.full_slip:
-        state, regime = _orient_full_slip(state, regime, step_state, work)
+    if regime.full_slip and state.V == 0.0 and current_rates(state, regime, step_state, work).V_rate < 0.0:
+        state, regime = reverse_direction(state, regime)
     full_slip, direction, sigma, spin_sign, locked = regime
-    braked, omega = (
-        has_brake(step_state.segment, work.drive.segments),
-        evaluate_load_and_rhs(state, regime, step_state, work)[1].omega,
-    )
+    braked = has_brake(step_state.segment, work.drive.segments)
+    omega = current_rates(state, regime, step_state, work).omega
     if locked or omega == 0.0:
         if braked and brake_holds_omega(state, regime, step_state, work):
             return state, Regime(full_slip, direction, sigma, spin_sign, True)
@@ -187,16 +175,12 @@ def initial_regime(V, omega, step_state, work):
     sigma = 1.0 if slip >= 0.0 else -1.0
     state, regime = State(V, omega), Regime(True, direction, sigma, 0.0, False)
     if V == 0.0:
-        if evaluate_load_and_rhs(state, regime, step_state, work)[1].V_rate < 0.0:  # the frame is that which V turns to
-            state, regime = reverse_direction(state, regime)
         return state, regime, False
     on_edge = abs(abs(slip) - limit) <= _START_ON_EDGE * max(V, abs(omega))
-    stick_state, stick_regime = (
-        State(V, sigma if on_edge else slip / limit),
-        Regime(False, direction, sigma, 0.0, False),
-    )
+    stick_state = State(V, sigma if on_edge else slip / limit)
+    stick_regime = Regime(False, direction, sigma, 0.0, False)
     if on_edge:
-        on_edge = sigma * evaluate_load_and_rhs(stick_state, stick_regime, step_state, work)[1].weighted_rate < 0.0
+        on_edge = sigma * current_rates(stick_state, stick_regime, step_state, work).weighted_rate < 0.0
     elif abs(slip) < limit:
         return stick_state, stick_regime, False
     return (stick_state, stick_regime, True) if on_edge else (state, regime, False)
@@ -209,7 +193,7 @@ def regime_code(regime):
 
 
 @kernel
-def _rest_code(step_state, work):
+def rest_code(step_state, work):
     """Return the code of V = omega = 0 in the outputs: held by brake or prescribed speed, or at rest."""
     braked = has_brake(step_state.segment, work.drive.segments)
     return HELD_AT_REST if braked or work.drive.prescribed != NOT_PRESCRIBED else AT_REST

@@ -36,7 +36,7 @@ from ..compile.jit import kernel
 from ..rows.added import added_mass
 from ..rows.cover import free_kinematics
 from ..rows.law import bodies, creep_at_rest, place, press, press_secants, shift, speed
-from .drive import applied_forces, evaluate_load, load_at_node, required_forces
+from .drive import applied_forces, current_load, load_at_node, required_forces
 from .workspace import ROW_OMEGA_OR_D, ROW_V, State
 
 #: k relative to the smallest k at which dp/dV may vanish at d = -1; above it V is collocated, dimensionless
@@ -100,12 +100,8 @@ def low_speed_limits(work):
     gains = work.drive.gains
     delta_0 = creep_at_rest(work.scene.kappa, by_value(work.scene.law))[1]
     omega_over_V = 1.0 + delta_0
-    return (
-        half_space,
-        cylinder,
-        gains.force_V + gains.force_omega * omega_over_V,
-        gains.torque_V + gains.torque_omega * omega_over_V,
-    )
+    force, torque = gains.force_V + gains.force_omega * omega_over_V, gains.torque_V + gains.torque_omega * omega_over_V
+    return half_space, cylinder, force, torque
 
 
 @kernel(inline=True)
@@ -171,11 +167,8 @@ def stick_edge_function(V, omega_or_d, regime, scene):
 def has_strong_friction(load, regime, scene):
     """Return whether friction is so strong that V is collocated in place of p, with Q in its rate."""
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
-    return (
-        not regime.full_slip
-        and regime.sigma < 0.0
-        and k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
-    )
+    strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
+    return strong and regime.sigma < 0.0 and not regime.full_slip
 
 
 @kernel(inline=True)
@@ -207,23 +200,13 @@ def partial_slip_rates(V, d, load, regime, scene):
     omega, omega_V, omega_d = V * (1.0 + k * L * d + cover.creep), 1.0 + k * d_total * dVdelta_star, k * V * L
     force, _, torque = applied_forces(V, omega, load, regime)
     M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
-    inverse_mass, inverse_inertia, inverse_product = (
-        load.inverse_mass,
-        load.inverse_inertia,
-        load.inverse_mass * load.inverse_inertia,
-    )
+    inverse_mass, inverse_inertia = load.inverse_mass, load.inverse_inertia
+    inverse_product = inverse_mass * inverse_inertia
     force_V, torque_V = gains.force_V + gains.force_omega * omega_V, gains.torque_V + gains.torque_omega * omega_V
-    p, p_V, p_d, p_rate_d = (
-        inverse_inertia * V + inverse_mass * omega,
-        inverse_inertia + inverse_mass * omega_V,
-        inverse_mass * omega_d,
-        0.0,
-    )
-    p_rate = (
-        inverse_product * (force + torque - M_half_space - M_cylinder)
-        + inverse_inertia * load.prescribed_V_rate
-        + inverse_mass * load.prescribed_omega_rate
-    )
+    p, p_V = inverse_inertia * V + inverse_mass * omega, inverse_inertia + inverse_mass * omega_V
+    p_d, p_rate_d = inverse_mass * omega_d, 0.0
+    p_rate = inverse_product * (force + torque - M_half_space - M_cylinder)
+    p_rate = p_rate + inverse_inertia * load.prescribed_V_rate + inverse_mass * load.prescribed_omega_rate
     p_rate_V = inverse_product * (force_V + torque_V - half_space_slope - cylinder_slope)
     V_rate = inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
     V_V, V_d = inverse_mass * (Q_V - half_space_slope + force_V), inverse_mass * (Q_d + gains.force_omega * omega_d)
@@ -283,10 +266,9 @@ def evaluate_rhs(state, load, regime, scene):
 
 
 @kernel
-def evaluate_load_and_rhs(state, regime, step_state, work):
-    """Return (Load, Rates) at a state and the time of the step state."""
-    load = evaluate_load(step_state.tau, step_state.segment, regime, work)
-    return load, evaluate_rhs(state, load, regime, work.scene)
+def current_rates(state, regime, step_state, work):
+    """Return the Rates at a state and the time of the step state."""
+    return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
 
 
 @kernel
@@ -294,5 +276,4 @@ def rhs_and_forces_at_node(i, regime, work):
     """Return (Rates, (force, torque, torque of the brake)) at node i, evaluated from the unknowns stored there."""
     state, load = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i]), load_at_node(i, regime, work)
     rates = evaluate_rhs(state, load, regime, work.scene)
-    moments = rates.Q, rates.M_half_space, rates.M_cylinder
-    return rates, required_forces((state.V, rates.omega), moments, load, regime, work.scene.j)
+    return rates, required_forces(state.V, rates.omega, rates, load, regime, work.scene.j)

@@ -85,9 +85,8 @@ def _evaluate_residuals(refactor, step, regime, work):
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
     for i in range(1, ROW_LENGTH):
-        rates = evaluate_rhs_inline(
-            nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i], load_at_node(i, regime, values), regime, values.scene
-        )
+        load = load_at_node(i, regime, values)
+        rates = evaluate_rhs_inline(nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i], load, regime, values.scene)
         store_rhs(i, rates, nodes)
         slope = nodes[ROW_D_SLOPE + i]
         nodes[ROW_D_RESIDUAL + i] = half * rates.weighted_rate - rates.weight * slope
@@ -96,10 +95,8 @@ def _evaluate_residuals(refactor, step, regime, work):
             coupling = dV_dp * (rates.dweight_dV * slope - half * rates.drate_dV)
             nodes[ROW_DV_DP + i], nodes[ROW_DP_DD + i], nodes[ROW_COUPLING + i] = dV_dp, rates.dp_dd, coupling
             nodes[ROW_WEIGHT + i], nodes[ROW_RELAXATION + i] = rates.weight, rates.drate_dd / rates.weight
-            nodes[ROW_P_DIAGONAL + i], nodes[ROW_FEEDBACK + i] = (
-                half * rates.dp_rate_dV * dV_dp,
-                half * rates.dp_rate_dd,
-            )
+            nodes[ROW_P_DIAGONAL + i] = half * rates.dp_rate_dV * dV_dp
+            nodes[ROW_FEEDBACK + i] = half * rates.dp_rate_dd
             nodes[ROW_D_DIAGONAL + i] = half * rates.drate_dd + coupling * rates.dp_dd
     multiply_matrix(DIFFERENTIATION, ROW_P, nodes[ROW_P], nodes, ROW_P_SLOPE, nodes)
     for i in range(1, ROW_LENGTH):
@@ -140,10 +137,8 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     for i in range(1, ROW_LENGTH):
         nodes[ROW_D_RESIDUAL + i] -= nodes[ROW_COUPLING + i] * nodes[ROW_P_UPDATE + i]
     multiply_matrix(d_matrix, ROW_D_RESIDUAL, 0.0, nodes, ROW_D_UPDATE, nodes)
-    change_d, change_V = (
-        0.0 * (nodes[ROW_P_UPDATE + N] + nodes[ROW_D_UPDATE + N]),
-        0.0,
-    )  # a NaN is lost in any other place
+    # a NaN of an update must reach the result: max() loses it in its second argument
+    change_d, change_V = 0.0 * (nodes[ROW_P_UPDATE + N] + nodes[ROW_D_UPDATE + N]), 0.0
     for i in range(1, ROW_LENGTH):
         d_update = nodes[ROW_D_UPDATE + i]
         V_update = (nodes[ROW_P_UPDATE + i] - nodes[ROW_DP_DD + i] * d_update) * nodes[ROW_DV_DP + i]
@@ -167,18 +162,14 @@ def solve_step(step, relaxation, dense_step, regime, work):
     store_drive(step, work)
     predict(step, relaxation, dense_step, regime, work)
     last_change, refactor = np.inf, True
-    coupled = (
-        work.drive.gains.force_omega != 0.0
-        if regime.full_slip
-        else has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
-    )
+    coupled = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
+    if regime.full_slip:
+        coupled = work.drive.gains.force_omega != 0.0
     for n in range(_MAX_ITERATIONS):
         change = _newton_iteration(refactor, coupled, step, regime, work)
-        contraction = (
-            min(_FIRST_CONTRACTION, _QUADRATIC_CONTRACTION * change + _REFACTOR_CONTRACTION)
-            if n == 0
-            else change / last_change
-        )
+        contraction = change / last_change
+        if n == 0:
+            contraction = min(_FIRST_CONTRACTION, _QUADRATIC_CONTRACTION * change + _REFACTOR_CONTRACTION)
         if not (change < 1e6 and contraction < 2.0):
             return False
         if change * contraction <= stop:

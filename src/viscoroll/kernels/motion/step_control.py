@@ -8,7 +8,7 @@ from ..compile.jit import kernel
 from ..rows.record import ALPHA, E0
 from .collocation import N
 from .departure_from_rest import solve_d_at_departure
-from .drive import evaluate_load, segment_end
+from .drive import current_load, evaluate_load, segment_end
 from .rhs import evaluate_rhs
 from .workspace import (
     ROW_DV_DP,
@@ -109,7 +109,7 @@ def first_step_length(stick_formed, step_state, regime, work):
     h = _FIRST_RELAXATION_TIMES / abs(nodes[ROW_RELAXATION])
     if stick_formed:
         # as far as d may go until what is left of slip feeds back on it
-        load = evaluate_load(step_state.tau, step_state.segment, regime, work)
+        load = current_load(regime, step_state, work)
         feedback = scene.kappa * max(load.inverse_mass + load.inverse_inertia, 1.0)
         d_scale = (work.options.rtol * rate / (feedback * scene.law.rows[ALPHA])) ** (1.0 / 3.0)
         return min(h, _ONSET_CHANGE * d_scale * V / max(rate, 1e-300), V / (4.0 * feedback))

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..compile.jit import kernel
-from .collocation import NODE_FRACTIONS, ROW_LENGTH
+from .collocation import NODE_FRACTIONS, ROW_LENGTH, evaluate_dense_output
 
 #: regime of an output: full slip
 FULL_SLIP = 0
@@ -26,25 +26,6 @@ OMEGA_LOCKED = 3
 HELD_AT_REST = 4
 #: entry among the regime changes: V changed its sign
 DIRECTION_REVERSED = -1
-
-#: event: in full slip the stick zone forms, in partial slip it vanishes
-STICK_EDGE = 0
-#: event: delta, less that of free rolling, passes 0 in partial slip
-DELTA_ZERO = 1
-#: event: V passes 0
-V_ZERO = 2
-#: event: omega passes 0 under a brake
-OMEGA_ZERO = 3
-#: event: both speeds fall below the rest threshold
-BELOW_REST_SPEED = 4
-#: event: a brake that holds omega at 0 lets go
-BRAKE_RELEASE = 5
-#: number of event functions; the events above number their rows
-N_EVENTS = 6
-#: no event: the segment of the drive or the allowed number of steps ended
-NO_EVENT = 6
-#: no event: every step, however short, was rejected
-STEP_FAILED = 7
 
 #: neither speed is prescribed
 NOT_PRESCRIBED = 0
@@ -144,6 +125,10 @@ class Regime(NamedTuple):
     sigma: float
     spin_sign: float
     locked: bool
+
+
+#: regime of a cylinder at rest, before its departure is known
+REGIME_AT_REST = Regime(False, 1.0, 1.0, 0.0, False)
 
 
 class State(NamedTuple):
@@ -309,10 +294,24 @@ ROW_D_DIAGONAL = ROW_LENGTH * 20
 ROW_FEEDBACK = ROW_LENGTH * 21
 #: rows: integrands of the quadratures
 ROW_INTEGRANDS = ROW_LENGTH * 22
-#: rows: event functions
-ROW_EVENTS = ROW_INTEGRANDS + ROW_LENGTH * N_QUADRATURES
+#: event, and row of its function: in full slip the stick zone forms, in partial slip it vanishes
+STICK_EDGE = ROW_INTEGRANDS + ROW_LENGTH * N_QUADRATURES
+#: event and row: delta, less that of free rolling, passes 0 in partial slip
+DELTA_ZERO = STICK_EDGE + ROW_LENGTH
+#: event and row: V passes 0
+V_ZERO = DELTA_ZERO + ROW_LENGTH
+#: event and row: omega passes 0 under a brake
+OMEGA_ZERO = V_ZERO + ROW_LENGTH
+#: event and row: both speeds fall below the rest threshold
+BELOW_REST_SPEED = OMEGA_ZERO + ROW_LENGTH
+#: event and row: a brake that holds omega at 0 lets go
+BRAKE_RELEASE = BELOW_REST_SPEED + ROW_LENGTH
+#: no event: the segment of the drive or the allowed number of steps ended
+NO_EVENT = 0
+#: no event: every step, however short, was rejected
+STEP_FAILED = -1
 #: rows: functions of the drive
-ROW_DRIVE = ROW_EVENTS + ROW_LENGTH * N_EVENTS
+ROW_DRIVE = BRAKE_RELEASE + ROW_LENGTH
 #: row: dense output of V
 ROW_DENSE_V = ROW_DRIVE + ROW_LENGTH * N_NODE_FUNCTIONS
 #: row: dense output of the second unknown
@@ -354,8 +353,23 @@ def dense_position(tau, step):
 
 
 @kernel(inline=True)
+def count_step(h, step_state):
+    """Return the step state after one more trial step, with ``h`` as the length of the next one; 0: not known."""
+    tau, next_output, segment, n_steps, n_ended, _ = step_state
+    return StepState(tau, next_output, segment, n_steps + 1, n_ended, h)
+
+
+@kernel(inline=True)
 def with_step_length(h, step_state):
     """Return the step state with ``h`` as the length of the next trial step; 0: not known."""
-    return StepState(
-        step_state.tau, step_state.next_output, step_state.segment, step_state.n_steps, step_state.n_ended, h
+    tau, next_output, segment, n_steps, n_ended, _ = step_state
+    return StepState(tau, next_output, segment, n_steps, n_ended, h)
+
+
+@kernel(inline=True)
+def dense_state(v, nodes):
+    """Return the State at position v in [0, 2] of the step whose dense output is stored in ``nodes``."""
+    return State(
+        nodes[ROW_V] + evaluate_dense_output(v, nodes, ROW_DENSE_V),
+        nodes[ROW_OMEGA_OR_D] + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D),
     )
