@@ -109,10 +109,12 @@ def find_equilibrium(state, regime, noise, step_state, work):
     V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
     if regime.full_slip:
         return _equilibrium_full_slip(state, rates, regime, noise, tolerance)
-    if load.inverse_mass == 0.0 or load.inverse_inertia == 0.0:  # one speed is given, and p' says nothing of the other
+    if (
+        load.inverse_mass == 0.0 or load.inverse_inertia == 0.0
+    ):  # one speed is prescribed: p' does not depend on the other
         return False, state
     gains, p_d = load.gains, rates.dp_dd
-    # gains on omega feed p' with d, which Newton's matrix of a panel leaves out
+    # p' depends on d by the feedback of omega; Newton's matrix of a step neglects this
     p_rate_d = rates.dp_rate_dd + load.inverse_inertia * (gains.force_omega + gains.torque_omega) * p_d
     d_rate, d_V, d_d = rates.weighted_rate / V, rates.drate_dV / V, rates.drate_dd / V
     V_rate = (rates.p_rate - p_d * d_rate) / rates.dp_dV
@@ -123,7 +125,7 @@ def find_equilibrium(state, regime, noise, step_state, work):
     V_off, d_off = (V_rate * d_d - d_rate * V_d) / determinant, (d_rate * V_V - V_rate * d_V) / determinant
     rounding = abs(noise / (rates.dp_dV * determinant))
     steady = abs(V_off) <= tolerance * V + rounding * abs(d_d) and abs(d_off) <= tolerance + rounding * abs(d_V)
-    # force and torque that cancel leave V = 0 but for rounding
+    # where force and torque cancel, V = 0 but for rounding
     return steady, State(max(V - V_off, 0.0), state.omega_or_d - d_off)
 
 
@@ -156,7 +158,7 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     for i in range(N + 1):
         nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i] = state.V, state.omega_or_d + omega_change * NODE_FRACTIONS[i]
         nodes[ROW_DENSE_V + i] = nodes[ROW_DENSE_OMEGA_OR_D + i] = 0.0
-    nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # of v = 0 ... 2
+    nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # linear in v = 0 ... 2
     store_drive(step, work)
     step_state = count_step(0.0, step_state)
     return True, State(state.V, state.omega_or_d + omega_change), accept_step(end, 2.0, step, regime, step_state, work)
@@ -184,7 +186,7 @@ def coast_to_end(state, regime, step_state, work):
     L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
     omega_over_V = 1.0 + delta_0
     inertia = 1.0 + scene.j * omega_over_V + added_inertia(0.0, scene)[0]
-    # V and omega fall together: Q = 4 kappa (delta - delta_0)/L takes what the moments differ by
+    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments
     rate, stiffness = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
     torque_difference = scene.j * omega_over_V * (half_space - force) - cylinder + torque
     creep = state.V * torque_difference / stiffness * L

@@ -18,7 +18,6 @@ import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.jit import kernel
-from ..rows.cover import of_cover
 from ..rows.law import creep_at_rest
 from .drive import evaluate_load, has_brake, is_constant, segment_end
 from .rhs import added_inertia
@@ -54,7 +53,7 @@ def _residual_of_d(d, load, scene):
     omega_rate = load.inverse_inertia * (load.torque - Q) + load.prescribed_omega_rate
     L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
     inverse_k = 2.0 * scene.kappa / scene.mu / L
-    d_total = d + delta_0 * inverse_k if of_cover(by_value(scene.law).free) else d
+    d_total = d + delta_0 * inverse_k
     slope = -(load.inverse_inertia + load.inverse_mass) * Q_d * inverse_k - V_rate - d_total * load.inverse_mass * Q_d
     return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
 
@@ -62,10 +61,7 @@ def _residual_of_d(d, load, scene):
 @kernel(inline=True)
 def _d_at_zero_omega(scene):
     """Return the d at which omega stays 0 as V grows from 0; above -1 only where mu > 2 kappa."""
-    law = by_value(scene.law)
-    if law.free is None:
-        return -2.0 * scene.kappa / scene.mu
-    L, delta_0 = creep_at_rest(scene.kappa, law)
+    L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
     return -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
 
 
@@ -108,9 +104,8 @@ def _absorb_added_mass(load, scene):
     mass_ratio = 1.0 / (1.0 + half_n * inverse_mass)
     inertia_ratio = 1.0 + half_n * mass_ratio * inverse_mass
     torque = (torque - half_n * (mass_ratio * inverse_mass * force + V_rate)) / inertia_ratio
-    return Load(
-        force, torque, V_rate, omega_rate, brake, inverse_mass * mass_ratio, inverse_inertia * inertia_ratio, gains
-    )
+    inverse_mass, inverse_inertia = inverse_mass * mass_ratio, inverse_inertia * inertia_ratio
+    return Load(force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains)
 
 
 @kernel(inline=True)
@@ -141,7 +136,7 @@ def _local_maximum_of_residual(load, scene):
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
     first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
     second = -stiffness - 2.0 * scene.mu * load.inverse_mass
-    # the larger root of first + 2 second d - 3 mu per_V d^2, with second < 0
+    # the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0
     discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
     return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
 
@@ -153,17 +148,17 @@ def solve_d_at_departure(load, spin_sign, scene):
     load: Load at V = 0; spin_sign: sign of omega against a brake, 0 without one; scene: Scene.
     """
     load, low, high = _absorb_added_mass(_add_brake_torque(load, spin_sign), scene), -1.0, 1.0
-    d_zero = _d_at_zero_omega(scene)  # from there on the left less the right side falls
+    d_zero = _d_at_zero_omega(scene)  # above this d the residual decreases
     if d_zero > -1.0 and load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
         return _residual_of_d(d_zero, load, scene)[2] > 0.0, d_zero
     if d_zero > -1.0 and _residual_of_d(d_zero, load, scene)[0] > 0.0:
         low = d_zero
-    elif d_zero > -1.0:  # before it, it may rise first
+    elif d_zero > -1.0:  # below this d the residual may have a maximum
         low, high = min(max(low, _local_maximum_of_residual(load, scene)), d_zero), d_zero
     if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
         return False, 0.0
     d, V_rate = 0.5 * (low + high), 0.0
-    for _ in range(_MAX_ITERATIONS):  # Newton's iteration, within a bracket
+    for _ in range(_MAX_ITERATIONS):  # Newton's iteration with a bracket
         residual, slope, V_rate = _residual_of_d(d, load, scene)
         low, high = (d, high) if residual > 0.0 else (low, d)
         d_next = d - residual / slope
@@ -201,7 +196,7 @@ def _holding_margin_at(tau, segment, work):
 def find_departure_time(tau, segment, work):
     """Return the first time at which the drive moves a cylinder at rest; the end of the segment if it does not."""
     end = segment_end(segment, work)
-    if is_constant(segment, work.drive.segments):
+    if is_constant(segment, work.drive):
         return end if _holding_margin_at(tau, segment, work) >= 0.0 else tau
     low = tau
     for n in range(1, _SCAN_INTERVALS + 1):
@@ -234,9 +229,9 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
         torque = load.torque - Q
         spin_sign = np.sign(torque) if braked and abs(torque) > load.brake else 0.0
         locked = braked and spin_sign == 0.0
-        omega_rate = (
-            0.0 if locked else load.inverse_inertia * (torque - spin_sign * load.brake) + load.prescribed_omega_rate
-        )
+        omega_rate = load.inverse_inertia * (torque - spin_sign * load.brake) + load.prescribed_omega_rate
+        if locked:
+            omega_rate = 0.0
         if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > stick_zone_slip * L * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return SLIDES_OFF, Regime(True, direction, direction * sigma, direction * spin_sign, locked), 0.0
@@ -253,11 +248,11 @@ def depart_from_rest(tau, segment, work):
     tau_drive = tau
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
-    if holding_margin(load, scene.mu) >= -rounding and not is_constant(segment, work.drive.segments):
-        # what begins to move the cylinder shows a little later
+    if holding_margin(load, scene.mu) >= -rounding and not is_constant(segment, work.drive):
+        # whether the drive moves the cylinder is seen a little later
         tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
         load = evaluate_load(tau_drive, segment, REGIME_AT_REST, work)
-    braked = has_brake(segment, work.drive.segments)
+    braked = has_brake(segment, work.drive)
     if holding_margin(load, scene.mu) >= 0.0:
         return STAYS_AT_REST, REGIME_AT_REST, 0.0
     kind, departure, d_start = STAYS_AT_REST, REGIME_AT_REST, 0.0
@@ -272,17 +267,14 @@ def depart_from_rest(tau, segment, work):
         if sticks and kind == ROLLS_OFF:
             return AMBIGUOUS, REGIME_AT_REST, 0.0
         if sticks:
-            # d is that of now: the limit that the motion leaves from
-            kind, d_start = (
-                ROLLS_OFF,
-                solve_d_at_departure(evaluate_load(tau, segment, regime, work), spin_sign, scene)[1],
-            )
+            # d at the present time is the limit from which the motion departs
+            load = evaluate_load(tau, segment, regime, work)
+            kind, d_start = ROLLS_OFF, solve_d_at_departure(load, spin_sign, scene)[1]
             departure = Regime(False, direction, 1.0 if d >= 0.0 else -1.0, spin_sign, locked)
             if scene.mu <= 2.0 * scene.kappa:
                 return kind, departure, d_start
-    slides = _slide_from_rest(
-        tau_drive, segment, braked, 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa, work
-    )
+    stick_zone_slip = 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa
+    slides = _slide_from_rest(tau_drive, segment, braked, stick_zone_slip, work)
     if kind == STAYS_AT_REST:
         return slides
     return (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)

@@ -25,6 +25,7 @@ from .workspace import (
     ROUNDING,
     ROW_DRIVE,
     Load,
+    last_output_tau,
     node_time,
 )
 
@@ -146,7 +147,7 @@ def store_drive(step, work):
     """Store the functions of the drive at all nodes of a step; work: Workspace."""
     nodes = work.nodes
     values = evaluate_drive(step.tau, step.segment, work.drive)
-    changes = not is_constant(step.segment, work.drive.segments)
+    changes = not is_constant(step.segment, work.drive)
     for i in range(N + 1):
         if changes:
             values = evaluate_drive(node_time(step, i), step.segment, work.drive)
@@ -170,26 +171,26 @@ def load_at_node(i, regime, work):
 @kernel
 def segment_end(segment, work):
     """Return tau at the end of a segment of the drive or of the motion, whichever comes first."""
-    end = work.output_tau[work.output_tau.size - 1]
+    end = last_output_tau(work)
     return min(work.drive.segments[segment + 1, COL_START], end) if segment + 1 < work.drive.segments.shape[0] else end
 
 
 @kernel
-def drive_rounding(segment, segments):
+def drive_rounding(segment, drive):
     """Return the rounding error of force, torque and slope of the prescribed speed on a segment, dimensionless.
 
     They are sums of terms that may nearly cancel: the error is relative to the sum of the coefficients' moduli.
     """
-    return ROUNDING * _sum_of_moduli(segments[segment], DRIVE_FORCE, DRIVE_RATE + 1)
+    return ROUNDING * _sum_of_moduli(drive.segments[segment], DRIVE_FORCE, DRIVE_RATE + 1)
 
 
 @kernel
-def continues_smoothly(segment, segments):
+def continues_smoothly(segment, drive):
     """Return whether no function of the drive jumps or has a kink at the end of a segment.
 
     A jump or kink below _SMOOTH_JUMP does not count: the length of the last step is then a good one for the next.
     """
-    row, next_row = segments[segment], segments[segment + 1]
+    row, next_row = drive.segments[segment], drive.segments[segment + 1]
     terms = n_coefficients(row)
     for function in range(N_NODE_FUNCTIONS):
         size = jump = kink = 0.0
@@ -208,9 +209,9 @@ def continues_smoothly(segment, segments):
 
 
 @kernel
-def is_constant(segment, segments):
+def is_constant(segment, drive):
     """Return whether all functions of the drive are constant on a segment."""
-    row, variation = segments[segment], 0.0
+    row, variation = drive.segments[segment], 0.0
     terms = n_coefficients(row)
     for function in range(N_NODE_FUNCTIONS):
         for n in range(1, terms):
@@ -219,9 +220,9 @@ def is_constant(segment, segments):
 
 
 @kernel
-def has_brake(segment, segments):
+def has_brake(segment, drive):
     """Return whether a brake acts anywhere on a segment."""
-    return _sum_of_moduli(segments[segment], DRIVE_BRAKE, DRIVE_BRAKE + 1) > 0.0
+    return _sum_of_moduli(drive.segments[segment], DRIVE_BRAKE, DRIVE_BRAKE + 1) > 0.0
 
 
 @kernel

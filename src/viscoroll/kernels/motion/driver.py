@@ -39,6 +39,7 @@ from .workspace import (
     Regime,
     State,
     StepState,
+    last_output_tau,
     with_step_length,
 )
 
@@ -60,7 +61,7 @@ def _advance_at_rest(step_state, work):
     if kind == ROLLS_OFF or kind == SLIDES_OFF:
         return kind, State(0.0, d), regime, with_step_length(0.0, step_state)
     end = find_departure_time(step_state.tau, step_state.segment, work) if kind == STAYS_AT_REST else step_state.tau
-    closed = kind == AMBIGUOUS or end == work.output_tau[work.output_tau.size - 1]
+    closed = kind == AMBIGUOUS or end == last_output_tau(work)
     step_state = write_outputs_at_rest(end, closed, rest_code(step_state, work), step_state, work)
     return kind, State(0.0, 0.0), regime, step_state
 
@@ -133,15 +134,15 @@ def _advance_segment(moving, state, regime, step_state, work):
     """Return (whether the cylinder moves, State, Regime, StepState) in the next segment if one ends here and there
     is a next.
     """
-    segments = work.drive.segments
-    if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == segments.shape[0]:
+    drive = work.drive
+    if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:
         return moving, state, regime, step_state
-    h = step_state.h if continues_smoothly(step_state.segment, segments) else 0.0
+    h = step_state.h if continues_smoothly(step_state.segment, drive) else 0.0
     tau, next_output, segment, n_steps, n_ended, _ = step_state
     step_state = StepState(tau, next_output, segment + 1, n_steps, n_ended, h)
     if moving:
         state, regime = enter_segment(state, regime, step_state, work)
-        # in partial slip omega is 0 where V is
+        # in partial slip omega = 0 where V = 0
         moving = state.V != 0.0 or (regime.full_slip and state.omega_or_d != 0.0)
     return moving, state, regime, step_state
 
@@ -157,7 +158,7 @@ def _come_to_rest(code, state, regime, step_state, work):
         record_switch(AT_REST, step_state, work)
     nodes[REST_TIME] = step_state.tau / work.scene.gamma
     nodes[QUADRATURE_TOTALS + N_QUADRATURES - 1] += 0.5 * (state.V * state.V + work.scene.j * omega * omega)
-    return write_outputs_at_rest(work.output_tau[work.output_tau.size - 1], True, AT_REST, step_state, work)
+    return write_outputs_at_rest(last_output_tau(work), True, AT_REST, step_state, work)
 
 
 @kernel
@@ -184,7 +185,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             if departure == AMBIGUOUS:
                 return NOT_UNIQUE, step_state
             moving = departure != STAYS_AT_REST
-        elif step_state.tau >= work.output_tau[work.output_tau.size - 1]:
+        elif step_state.tau >= last_output_tau(work):
             step_state = write_due_outputs(state, regime, step_state, work)
         elif is_coasting(state, regime, step_state, work):
             return coast_to_end(state, regime, step_state, work)

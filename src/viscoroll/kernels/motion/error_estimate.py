@@ -30,6 +30,7 @@ from .workspace import (
     ROW_SPEED,
     ROW_V,
     ROW_WEIGHTED_RATE,
+    last_output_tau,
     node_time,
 )
 
@@ -87,14 +88,14 @@ def error_scales(step, regime, work):
         largest_speed, largest_V = max(largest_speed, nodes[ROW_SPEED + i]), max(largest_V, abs(nodes[ROW_V + i]))
     largest_speed = max(largest_speed, largest_V)
     if regime.full_slip:
-        # where no gain feeds omega into V', V is measured beside itself: omega may be larger by any factor, and a V
-        # that is right beside omega alone may leave the speed at which it settles
+        # without feedback of omega on V', V is measured relative to itself: omega may be larger by any factor, and a V
+        # that is accurate relative to omega alone may leave its equilibrium
         if step.undriven:
             return largest_V, largest_speed
         if work.drive.gains.force_omega != 0.0:
             return largest_speed, largest_speed
         return max(largest_V, _rounding_scale_of_V(step, work)), largest_speed
-    # an error of d is one of omega, and of V where p is given
+    # an error of d is an error of omega, and at given p an error of V
     for i in range(1, N + 1):
         V_change = max(V_change, abs(nodes[ROW_DP_DD + i] * nodes[ROW_DV_DP + i]))
     V_change = max(V_change, 0.5 * work.scene.mu / work.scene.kappa * largest_V) / largest_speed
@@ -128,7 +129,7 @@ def _relative_speed_at_first_output(step, work):
     """Return V at the first output time of the step divided by the largest V of it: outputs are accurate relative to
     V there.
     """
-    nodes, output_time = work.nodes, work.output_tau[work.output_tau.size - 1]
+    nodes, output_time = work.nodes, last_output_tau(work)
     for i in range(work.output_tau.size):
         if work.output_tau[i] > step.tau:
             output_time = work.output_tau[i]
@@ -166,19 +167,19 @@ def estimate_error(step, regime, work):
     error *= dV_dp
     variation = _variation_of_p_rate(half, nodes) * dV_dp + work.options.rtol * scale_V
     error *= min(max(_UNRESOLVED_DEFECT * error / variation, 1.0), 1.0 / _DEFECT_FACTOR)
-    # a mismatch may happen to be small where the last of Chebyshev's terms is not
+    # the defect may be small by chance where the last Chebyshev coefficient is not
     error = max(error, _LAST_COEFFICIENT_FACTOR * abs(work.nodes[ROW_DENSE_V + N - 1]))
-    # shorter panels do not mend what the rounding of the drive moves V by
-    error = max(error - step.h * drive_rounding(step.segment, work.drive.segments), 0.0) / scale_V
+    # shorter steps do not reduce the change of V by the rounding of the drive
+    error = max(error - step.h * drive_rounding(step.segment, work.drive), 0.0) / scale_V
     if nodes[ROW_SPEED] == 0.0:
         error /= _relative_speed_at_first_output(step, work)
-    elif not step.undriven:  # early on speeds are to be right beside those so far
+    elif not step.undriven:  # speeds that grow are accurate relative to those at the left end
         error *= np.sqrt(max(nodes[ROW_SPEED + N] / nodes[ROW_SPEED], 1.0))
     if step.initial_slope_known:
         weight = 1.0 if regime.full_slip else nodes[ROW_V]
         defect = _defect_at_start(ROW_OMEGA_OR_D, ROW_D_SLOPE, nodes[ROW_WEIGHTED_RATE] / weight * half, nodes)
-        # near the edge of the stick zone relaxation comes to an end
+        # the relaxation of d reduces its error; near the edge of the stick zone it ends
         error = max(error, defect / ((1.0 + step.h * abs(nodes[ROW_RELAXATION])) * scale_d))
-    if not regime.full_slip:  # between the nodes
+    if not regime.full_slip:  # error of d between the nodes
         error = max(error, _LAST_COEFFICIENT_FACTOR * abs(work.nodes[ROW_DENSE_OMEGA_OR_D + N - 1]) / scale_d)
     return _DEFECT_FACTOR * error / (ERROR_FRACTION * work.options.rtol)

@@ -76,11 +76,11 @@ def evaluate_event_functions(step, regime, work):
             nodes[DELTA_ZERO + i] = regime.sigma * omega_or_d + BRANCH_OVERLAP
         if regime.spin_sign != 0.0 or (step.undriven and rest > 0.0):
             omega, delta = omega_and_delta(State(V, omega_or_d), regime, scene)
-            # in partial slip omega vanishes with V, which is another event, and by its own
+            # in partial slip omega = V (1 + delta): V = 0 is another event, delta = -1 is this one
             spin_function = omega if regime.full_slip else 1.0 + delta if V > 0.0 else 1.0
             nodes[OMEGA_ZERO + i] = regime.spin_sign * spin_function
             nodes[BELOW_REST_SPEED + i] = max(abs(V), abs(omega)) - rest
-        if regime.locked:  # of squares: smooth where what the brake takes changes its sign
+        if regime.locked:  # squares: smooth where the torque of the brake changes its sign
             limit, torque = load_at_node(i, regime, work).brake, rhs_and_forces_at_node(i, regime, work)[1][2]
             nodes[BRAKE_RELEASE + i] = limit * limit - torque * torque
 
@@ -173,12 +173,12 @@ def find_missed_event(step, regime, work):
     """
     nodes = work.nodes
     for row in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
-        # full slip is a case of the equations of partial slip
+        # the equations of partial slip continue into full slip: a missed edge does no harm there
         excluded = row == BELOW_REST_SPEED or (row == STICK_EDGE and not regime.full_slip)
         if excluded or not is_event_active(row, step, regime, work):
             continue
         (_, largest), scale = row_range(row, nodes), _event_scale(row, nodes)
-        # V passes 0 beside omega, but for one that is prescribed: that is known beside itself
+        # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself
         if row == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
             scale = max(scale, nodes[ROW_SPEED + N])
         if largest <= _START_ROUNDING * scale and nodes[row + N] < -_event_tolerance(work.options.rtol) * scale:

@@ -24,6 +24,7 @@ from .workspace import (
     StepState,
     dense_position,
     dense_state,
+    last_output_tau,
 )
 
 #: number of output quantities
@@ -168,7 +169,7 @@ def accept_step(end, v, step, regime, step_state, work):
     last one.
     """
     tau, column = work.output_tau, step_state.next_output
-    is_last = end == tau[tau.size - 1]
+    is_last = end == last_output_tau(work)
     due = column < tau.size and (tau[column] < end or is_last)
     n_quadratures = N_QUADRATURES if work.with_quadratures else 0
     if n_quadratures > 0:

@@ -60,13 +60,9 @@ def _extrapolate(step, dense_step, regime, nodes):
     omega_or_d0 = nodes[ROW_OMEGA_OR_D] - evaluate_dense_output(v_start, nodes, ROW_DENSE_OMEGA_OR_D)
     for i in range(1, N + 1):
         v = dense_position(node_time(step, i), dense_step)
-        _store_unknowns(
-            i,
-            V0 + evaluate_dense_output(v, nodes, ROW_DENSE_V),
-            omega_or_d0 + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D),
-            regime.full_slip,
-            nodes,
-        )
+        V = V0 + evaluate_dense_output(v, nodes, ROW_DENSE_V)
+        omega_or_d = omega_or_d0 + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D)
+        _store_unknowns(i, V, omega_or_d, regime.full_slip, nodes)
 
 
 @kernel
@@ -78,13 +74,8 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     for i in range(1, N + 1):
         time = step.h * NODE_FRACTIONS[i]
         effective_time = np.expm1(relaxation * time) / relaxation if relaxation * time < -1e-8 else time
-        _store_unknowns(
-            i,
-            nodes[ROW_V] + nodes[ROW_V_RATE] * time,
-            nodes[ROW_OMEGA_OR_D] + omega_or_d_rate * effective_time,
-            regime.full_slip,
-            nodes,
-        )
+        V = nodes[ROW_V] + nodes[ROW_V_RATE] * time
+        _store_unknowns(i, V, nodes[ROW_OMEGA_OR_D] + omega_or_d_rate * effective_time, regime.full_slip, nodes)
 
 
 @kernel
@@ -102,9 +93,6 @@ def _predict_from_rest(step, regime, work):
     for i in range(1, N + 1):
         time, half = NODE_FRACTIONS[i] * step.h, 0.5 * NODE_FRACTIONS[i]
         change = (nodes[ROW_WEIGHTED_RATE] + half * (rates.weighted_rate - nodes[ROW_WEIGHTED_RATE])) * time
-        omega_or_d = (
-            change if regime.full_slip else nodes[ROW_OMEGA_OR_D] + NODE_FRACTIONS[i] * (d - nodes[ROW_OMEGA_OR_D])
-        )
-        _store_unknowns(
-            i, (nodes[ROW_V_RATE] + half * (V_rate_end - nodes[ROW_V_RATE])) * time, omega_or_d, regime.full_slip, nodes
-        )
+        V = (nodes[ROW_V_RATE] + half * (V_rate_end - nodes[ROW_V_RATE])) * time
+        d_i = nodes[ROW_OMEGA_OR_D] + NODE_FRACTIONS[i] * (d - nodes[ROW_OMEGA_OR_D])
+        _store_unknowns(i, V, change if regime.full_slip else d_i, regime.full_slip, nodes)

@@ -76,11 +76,11 @@ def _start_step(state, regime, step_state, work):
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
     rates = current_rates(state, regime, step_state, work)
     store_rhs(0, rates, nodes)
-    # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
+    # at V = 0 d has its relaxed value and Q is a rounding error of it: V' then follows from p'
     nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
     nodes[ROW_RELAXATION], nodes[ROW_P_DIAGONAL] = rates.drate_dd / rates.weight, rates.dp_rate_dV / rates.dp_dV
     if not regime.full_slip and state.omega_or_d == 0.0 and regime.sigma * rates.weighted_rate < 0.0:
-        # both branches say the same here
+        # both branches agree at d = 0
         return Regime(False, regime.direction, -regime.sigma, regime.spin_sign, regime.locked)
     return regime
 
@@ -107,7 +107,7 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
         V_given, at_end = work.drive.prescribed == PRESCRIBED_V, step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
         if V_given and at_end and crossed == V_ZERO:
             crossed = NO_EVENT
-        # in partial slip there is no motion behind V = 0, and none that goes on from there
+        # in partial slip the motion ends at V = 0: the equations have no continuation
         V_negative = row_range(ROW_V, nodes)[0] < 0.0
         missed = find_missed_event(step, regime, work)
         if missed != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
@@ -120,7 +120,7 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
             event = V_ZERO
         if event == NO_EVENT or (crossed == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)):
             return event, 2.0, step, error, dense_step
-        # partial slip does not go on beyond V = 0, and |V| in the edge and in the speeds of full slip has a kink there
+        # partial slip ends at V = 0, and |V| in two event functions of full slip has a kink there
         kinked = V_negative and (not regime.full_slip or crossed == STICK_EDGE or crossed == BELOW_REST_SPEED)
         if crossed != NO_EVENT and error <= 1.0 and not kinked and crossed != V_ZERO:
             if v > _EARLY_EVENT or not regime.full_slip:
@@ -128,7 +128,7 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
             v *= _BEYOND_EARLY_EVENT
         if crossed == NO_EVENT:
             v = locate_zero(event, 0, nodes)
-            if v >= NOT_FOUND:  # nowhere near
+            if v >= NOT_FOUND:  # the event is not near the step
                 return NO_EVENT, 2.0, step, error, dense_step
         h = min(step.h * 0.5 * v, upper)
         if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
@@ -149,9 +149,9 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0
     h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
     undriven = is_undriven(segment, drive)
-    constant = is_constant(segment, drive.segments) and not is_unloaded(segment, drive)
+    constant = is_constant(segment, drive) and not is_unloaded(segment, drive)
     # rounding error of p', which contains Q = mu in full slip
-    noise = drive_rounding(segment, drive.segments) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
+    noise = drive_rounding(segment, drive) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
     dense_step = Step(step_state.tau, 0.0, segment, False, undriven)
     while step_state.tau < end and step_state.n_steps < work.options.max_steps:
         if is_coasting(state, regime, step_state, work):

@@ -56,7 +56,7 @@ def brake_holds_omega(state, regime, step_state, work):
 def release_brake(state, regime, step_state, work):
     """Return the regime after a brake has let go, or after omega has changed its sign under it."""
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
-    spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive.segments) else 0.0
+    spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
     return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, False)
 
 
@@ -67,7 +67,7 @@ def comes_to_rest(state, regime, step_state, work):
     omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
     if not (regime.locked or omega_zero):
         return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
-    # slip with omega = 0 ends with V, which is 0 but for the tolerance of the panel
+    # with omega = 0 slip ends at V = 0, to the tolerance of the step
     return state.V <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol) * row_range(ROW_V, work.nodes)[1]
 
 
@@ -125,7 +125,7 @@ def apply_event(event, state, regime, step_state, work):
         rates = current_rates(state, regime, step_state, work)
         state, regime = State(state.V, sigma), Regime(False, direction, sigma, spin_sign, locked)
         if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(rates.weighted_rate):
-            # the time of the event is known to the tolerance, and by it the slower speed better than the faster one
+            # of both speeds at the event, whose time has an error, the one that changes more slowly is more accurate
             state, regime = impose_prescribed_speed(state, regime, step_state, work)
         return state.V > 0.0, state, regime
     if event == STICK_EDGE:
@@ -149,12 +149,12 @@ def apply_event(event, state, regime, step_state, work):
 @kernel
 def enter_segment(state, regime, step_state, work):
     """Return (state, regime) at the start of a segment: brakes take hold or let go, V may reverse."""
-    if step_state.segment > 0:  # the start is as given
+    if step_state.segment > 0:  # a start keeps its given speeds
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
     if regime.full_slip and state.V == 0.0 and current_rates(state, regime, step_state, work).V_rate < 0.0:
         state, regime = reverse_direction(state, regime)
     full_slip, direction, sigma, spin_sign, locked = regime
-    braked = has_brake(step_state.segment, work.drive.segments)
+    braked = has_brake(step_state.segment, work.drive)
     omega = current_rates(state, regime, step_state, work).omega
     if locked or omega == 0.0:
         if braked and brake_holds_omega(state, regime, step_state, work):
@@ -167,7 +167,7 @@ def enter_segment(state, regime, step_state, work):
 def initial_regime(V, omega, step_state, work):
     """Return (state, regime, whether the stick zone just forms) of a start with V or omega not 0, without its brake."""
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
-        # sliding ends within a time of that order: V + j omega is kept
+        # sliding ends within a time of that order, at constant V + j omega
         V = omega = (V + work.scene.j * omega) / (1.0 + work.scene.j)
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
@@ -195,5 +195,5 @@ def regime_code(regime):
 @kernel
 def rest_code(step_state, work):
     """Return the code of V = omega = 0 in the outputs: held by brake or prescribed speed, or at rest."""
-    braked = has_brake(step_state.segment, work.drive.segments)
+    braked = has_brake(step_state.segment, work.drive)
     return HELD_AT_REST if braked or work.drive.prescribed != NOT_PRESCRIBED else AT_REST

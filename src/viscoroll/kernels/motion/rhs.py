@@ -87,7 +87,7 @@ def evaluate_moments(u, scene):
     if not scene.moments_differ:
         return law_at_u.L, law_at_u.dL, law_at_u.ddL, 0.5 * m, 0.5 * m, 0.5 * slope, 0.5 * slope
     half_space, cylinder, half_space_slope, cylinder_slope = bodies(index, u, law)
-    scale = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or z in the fast limit
+    scale = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or less in the fast limit
     return law_at_u.L, law_at_u.dL, law_at_u.ddL, scale * half_space, scale * cylinder, half_space_slope, cylinder_slope
 
 
@@ -189,7 +189,7 @@ def partial_slip_rates(V, d, load, regime, scene):
         value, slope = press(index, v, law)
         A = value - 0.5 * v * slope
         Q *= 1.0 - w * w * value
-        if unlikely(abs(d) < _SMALL_D):  # no digits cancel
+        if unlikely(abs(d) < _SMALL_D):  # Q by a secant of H, without cancellation
             D = abs(d) * L
             value, _, secant, _ = press_secants(index, place(2.0 * u / L, law), v, D / w, law)
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)

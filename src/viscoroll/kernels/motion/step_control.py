@@ -75,9 +75,9 @@ def _time_to_reach_V(V_change, step_state, regime, work):
     rates = evaluate_rhs(State(0.0, d if d != 0.0 else work.nodes[ROW_OMEGA_OR_D]), load, regime, work.scene)
     V_rate, V_rate_slope = max(V_rate, 0.0), (rates.p_rate / rates.dp_dV - V_rate) / lookahead
     discriminant = V_rate**2 + 2.0 * V_rate_slope * V_change
-    if discriminant < 0.0:  # it does not rise so far, and falls from here on
+    if discriminant < 0.0:  # V does not reach V_change: the step ends at its maximum
         return -V_rate / V_rate_slope
-    # at d = 1 there may be neither
+    # at d = 1 both rates may be 0
     return 2.0 * V_change / (V_rate + np.sqrt(discriminant) + 1e-300)
 
 
@@ -89,26 +89,19 @@ def first_step_length(stick_formed, step_state, regime, work):
     node 0 stored.
     """
     nodes, scene = work.nodes, work.scene
-    V, largest_speed, V_rate, rate = (
-        nodes[ROW_V],
-        nodes[ROW_SPEED],
-        abs(nodes[ROW_V_RATE]),
-        abs(nodes[ROW_WEIGHTED_RATE]),
-    )
+    V, V_rate, rate = nodes[ROW_V], abs(nodes[ROW_V_RATE]), abs(nodes[ROW_WEIGHTED_RATE])
     if regime.full_slip:
-        h = (
-            _FIRST_CHANGE * largest_speed / max(V_rate, rate)
-            if largest_speed > 0.0 and max(V_rate, rate) > 0.0
-            else np.inf
-        )
-        return min(h, (V + moderate_speed(scene)) / V_rate) if V_rate > 0.0 and largest_speed > 0.0 else h
-    if not V > ZERO_SPEED:  # from V = 0 on
-        return _time_to_reach_V(
-            _START_SPEED * work.options.rtol ** (1.0 / N) * moderate_speed(scene), step_state, regime, work
-        )
+        largest_speed, largest_rate = nodes[ROW_SPEED], max(V_rate, rate)
+        if not (largest_speed > 0.0 and largest_rate > 0.0):
+            return np.inf
+        h = _FIRST_CHANGE * largest_speed / largest_rate
+        return min(h, (V + moderate_speed(scene)) / V_rate) if V_rate > 0.0 else h
+    if not V > ZERO_SPEED:  # the step starts from V = 0
+        V_end = _START_SPEED * work.options.rtol ** (1.0 / N) * moderate_speed(scene)
+        return _time_to_reach_V(V_end, step_state, regime, work)
     h = _FIRST_RELAXATION_TIMES / abs(nodes[ROW_RELAXATION])
     if stick_formed:
-        # as far as d may go until what is left of slip feeds back on it
+        # d may change until the slip that is left feeds back on it
         load = current_load(regime, step_state, work)
         feedback = scene.kappa * max(load.inverse_mass + load.inverse_inertia, 1.0)
         d_scale = (work.options.rtol * rate / (feedback * scene.law.rows[ALPHA])) ** (1.0 / 3.0)
@@ -144,10 +137,8 @@ def step_length_after_relaxation(step, regime, work):
     nodes = work.nodes
     if regime.full_slip or not nodes[ROW_RELAXATION + N] * step.h < -_RELAXED_TIMES:
         return 0.0
-    relative_rate = max(
-        abs(nodes[ROW_P_RATE + N] * nodes[ROW_DV_DP + N] / nodes[ROW_V + N]),
-        abs(2.0 * nodes[ROW_P_DIAGONAL + N] / step.h),
-    )
+    relative_rate = abs(nodes[ROW_P_RATE + N] * nodes[ROW_DV_DP + N] / nodes[ROW_V + N])
+    relative_rate = max(relative_rate, abs(2.0 * nodes[ROW_P_DIAGONAL + N] / step.h))
     return _RELAXED_CHANGE * work.options.rtol ** (1.0 / (N + 1)) / relative_rate
 
 

@@ -335,6 +335,12 @@ WORKSPACE_SIZE = N_SWITCHES + 4
 
 
 @kernel(inline=True)
+def last_output_tau(work):
+    """Return tau of the last output, at which the motion ends; work: Workspace."""
+    return work.output_tau[work.output_tau.size - 1]
+
+
+@kernel(inline=True)
 def shorten_step(step, h):
     """Return the step with another length ``length`` in tau."""
     return Step(step.tau, h, step.segment, step.initial_slope_known, step.undriven)
