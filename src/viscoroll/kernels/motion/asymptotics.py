@@ -76,8 +76,9 @@ def may_be_at_equilibrium(noise, work):
 def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
     """Return (whether V has reached its equilibrium in full slip, State there).
 
-    Only where omega does not approach V, nor 0 under a brake, and no feedback of omega acts.  rates: Rates at the
-    state.
+    state, rates: State and Rates at the present time; regime: Regime; noise: rounding error of p'; tolerance:
+    relative distance of V at which it has reached its equilibrium. Only where omega does not approach V, nor 0 under
+    a brake, and no feedback of omega acts; else (False, state).
     """
     if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
         return False, state
@@ -166,7 +167,10 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
 
 @kernel(inline=True)
 def is_coasting(state, regime, step_state, work):
-    """Return whether at most feedback drives any more and V decays exponentially up to a fraction of the tolerance."""
+    """Return whether at most feedback drives any more and V decays exponentially up to a fraction of the tolerance.
+
+    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    """
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
@@ -179,7 +183,8 @@ def is_coasting(state, regime, step_state, work):
 def coast_to_end(state, regime, step_state, work):
     """Write the outputs of the exponential decay (1 + j + gamma N) V' = -rate V with delta/V constant.
 
-    state: State in partial slip at the time of ``step_state``.  Returns (status, StepState at the last output).
+    state, regime, step_state: State in partial slip, Regime and StepState at the present time; work: Workspace.
+    Returns (status COMPLETED or CAME_TO_REST, StepState at the last output).
     """
     scene, direction = work.scene, regime.direction
     half_space, cylinder, force, torque = low_speed_limits(work)

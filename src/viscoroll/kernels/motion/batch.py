@@ -54,7 +54,10 @@ def _value_of_motion(array, i):
 
 @kernel
 def _drive_of_motion(drives, gamma, i, segments):
-    """Write the segments of motion i over tau = gamma t to ``segments`` and return its Gains."""
+    """Write the segments of motion i over tau = gamma t to ``segments`` and return its Gains.
+
+    drives: Drives over t; gamma: scale of time of the motion; segments: (k, columns), filled.
+    """
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
     for k in range(segments.shape[0]):
         copy(source[k], segments[k])

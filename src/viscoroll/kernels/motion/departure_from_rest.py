@@ -47,7 +47,11 @@ _NEGLIGIBLE_FORCE = 1e-75
 
 @kernel(inline=True)
 def _residual_of_d(d, load, scene):
-    """Return (left side less right side of the equation of d, its slope in d, V') at V = 0."""
+    """Return (residual of the equation of d, its slope in d, V') at V = 0; the residual is the left less the right
+    side.
+
+    d: delta/delta_star; load: Load at V = 0; scene: Scene.
+    """
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (load.torque - Q) + load.prescribed_omega_rate
@@ -98,7 +102,10 @@ def _add_brake_torque(load, spin_sign):
 
 @kernel
 def _absorb_added_mass(load, scene):
-    """Return the load for which V' and omega' follow from Q at V = 0 without the added mass."""
+    """Return the Load for which V' and omega' follow from Q at V = 0 as without added mass.
+
+    load: Load at V = 0; scene: Scene, whose law gives the added mass.
+    """
     force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
     half_n = 0.5 * added_inertia(0.0, scene)[0]
     mass_ratio = 1.0 / (1.0 + half_n * inverse_mass)
@@ -194,7 +201,11 @@ def _holding_margin_at(tau, segment, work):
 
 @kernel
 def find_departure_time(tau, segment, work):
-    """Return the first time at which the drive moves a cylinder at rest; the end of the segment if it does not."""
+    """Return the first time at which the drive moves a cylinder at rest; the end of the segment if it does not.
+
+    tau: time from which the search starts; segment: index of the segment that holds it; work: Workspace.
+    A sign change of the holding margin is searched in _SCAN_INTERVALS intervals, then bisected to rounding.
+    """
     end = segment_end(segment, work)
     if is_constant(segment, work.drive):
         return end if _holding_margin_at(tau, segment, work) >= 0.0 else tau
@@ -216,9 +227,10 @@ def find_departure_time(tau, segment, work):
 
 @kernel
 def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
-    """Return (SLIDES_OFF or STAYS_AT_REST, regime, 0) of full slip from rest, with the sign of slip that persists.
+    """Return (SLIDES_OFF or STAYS_AT_REST, Regime, 0) of full slip from rest, with the sign of slip that persists.
 
-    stick_zone_slip: |omega - V|/V that full slip must exceed, for the limit V -> 0; braked: whether a brake acts.
+    tau, segment: time at which the drive is evaluated and its segment; braked: whether a brake acts on the segment;
+    stick_zone_slip: |omega - V|/V that full slip must exceed in the limit V -> 0, divided by L; work: Workspace.
     """
     scene = work.scene
     L, free_creep = creep_at_rest(scene.kappa, by_value(scene.law))

@@ -157,7 +157,10 @@ def store_drive(step, work):
 
 @kernel(inline=True)
 def load_at_node(i, regime, work):
-    """Return the Load at node i of the step whose drive is stored, oriented by the regime."""
+    """Return the Load at node i of the step whose drive is stored, oriented by the regime.
+
+    regime: Regime; work: Workspace.
+    """
     nodes = work.nodes
     values = (
         nodes[ROW_DRIVE + i],

@@ -53,9 +53,10 @@ _STEP_AFTER_RELAXATION = 1e-11
 
 @kernel
 def _advance_at_rest(step_state, work):
-    """Advance a cylinder at V = omega = 0 until it departs or the segment ends.
+    """Advance a cylinder at V = omega = 0 until it departs or the segment ends, and write the outputs on the way.
 
-    Returns (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; State; Regime; StepState).
+    step_state: StepState at the present time; work: Workspace.
+    Returns (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; State; Regime; StepState) then.
     """
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
     if kind == ROLLS_OFF or kind == SLIDES_OFF:
@@ -104,7 +105,8 @@ def _vanishes_within_rounding(state, regime, step_state, work):
 def relax_creep(state, regime, step_state, work):
     """Relax d to its equilibrium at a fixed time and fixed p, by bisection.
 
-    Returns (whether the cylinder still moves, State, Regime, StepState); full slip if d would exceed 1.
+    state, regime, step_state: State, Regime and StepState at the present time, in partial slip; work: Workspace.
+    Returns (whether the cylinder still moves, State, Regime, StepState); full slip if |d| would exceed 1.
     """
     if _vanishes_within_rounding(state, regime, step_state, work):
         return False, state, regime, step_state
@@ -131,8 +133,10 @@ def relax_creep(state, regime, step_state, work):
 
 @kernel
 def _advance_segment(moving, state, regime, step_state, work):
-    """Return (whether the cylinder moves, State, Regime, StepState) in the next segment if one ends here and there
-    is a next.
+    """Enter the next segment of the drive if one ends at the present time and there is a next one.
+
+    moving: whether the cylinder moves; state, regime, step_state: at the present time; work: Workspace.
+    Returns (whether the cylinder moves, State, Regime, StepState), unchanged where no segment ends.
     """
     drive = work.drive
     if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:
@@ -151,7 +155,8 @@ def _advance_segment(moving, state, regime, step_state, work):
 def _come_to_rest(code, state, regime, step_state, work):
     """Write the outputs of a motion that comes below the rest threshold now; return the StepState at its end.
 
-    code: regime in the outputs before.
+    code: regime in the outputs before, -1 before the first one; state, regime, step_state: at the present time;
+    work: Workspace. The kinetic energy that is left is added to the loss in rolling.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
     if code >= 0 and code != AT_REST:
@@ -165,7 +170,8 @@ def _come_to_rest(code, state, regime, step_state, work):
 def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     """Integrate regime after regime until the last output time; return (status, StepState).
 
-    moving: whether the cylinder moves; stick_formed: whether the stick zone has just formed.
+    moving: whether the cylinder moves; stick_formed: whether the stick zone has just formed; state, regime,
+    step_state: at the start; work: Workspace.
     """
     event, relaxed_at, nodes, code = NO_EVENT, -1.0, work.nodes, regime_code(regime) if moving else -1
     while step_state.next_output < work.output_tau.size:

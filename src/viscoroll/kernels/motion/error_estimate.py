@@ -68,8 +68,8 @@ def _d_weight(d):
 def _rounding_scale_of_V(step, work):
     """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration.
 
-    V' = Q - M + f may be a small difference of Q and f.  Its rounding changes V during the step, or during the
-    relaxation time of V if that is shorter.
+    step: Step; work: Workspace with the values at its nodes. V' = Q - M + f may be a small difference of Q and f.
+    Its rounding changes V during the step, or during the relaxation time of V if that is shorter.
     """
     nodes = work.nodes
     V_error = ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h
@@ -81,6 +81,7 @@ def _rounding_scale_of_V(step, work):
 def error_scales(step, regime, work):
     """Return (scale of V, scale of the second unknown) by which errors and updates of a step are divided.
 
+    step: Step; regime: Regime; work: Workspace with the values at its nodes.
     Speeds are measured by the largest one of the step; d by its weight.
     """
     nodes, largest_speed, largest_V, V_change = work.nodes, 0.0, 0.0, 0.0
@@ -126,8 +127,10 @@ def _variation_of_p_rate(half, nodes):
 
 @kernel
 def _relative_speed_at_first_output(step, work):
-    """Return V at the first output time of the step divided by the largest V of it: outputs are accurate relative to
-    V there.
+    """Return V at the first output time of a step divided by the largest V of the step: V is accurate relative to
+    itself there.
+
+    step: Step from V = 0 on; work: Workspace with the values at its nodes.
     """
     nodes, output_time = work.nodes, last_output_tau(work)
     for i in range(work.output_tau.size):
@@ -154,8 +157,10 @@ def _strong_friction_rounding(regime, work):
 
 @kernel(inline=True)
 def estimate_error(step, regime, work):
-    """Return the estimated error of the dense output of a step divided by its tolerance; 1 is the limit of acceptance.
+    """Return the estimated error of the dense output of a step divided by its tolerance; 1 is the limit of
+    acceptance.
 
+    step: Step that is solved; regime: Regime; work: Workspace with the values at its nodes.
     Of an error of d only the part that its relaxation leaves at the end of the step counts.
     """
     nodes, half = work.nodes, 0.5 * step.h

@@ -54,7 +54,10 @@ BRANCH_OVERLAP = 1e-8
 
 @kernel(inline=True)
 def is_event_active(event, step, regime, work):
-    """Return whether an event may end the regime on this step."""
+    """Return whether an event may end the regime on this step.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; step: Step; regime: Regime; work: Workspace.
+    """
     if event == DELTA_ZERO:
         return not regime.full_slip
     if event == OMEGA_ZERO:
@@ -66,7 +69,10 @@ def is_event_active(event, step, regime, work):
 
 @kernel(inline=True)
 def evaluate_event_functions(step, regime, work):
-    """Store the event functions at all nodes of a solved step: positive within the regime, 0 at its end."""
+    """Store the event functions at all nodes of a solved step: positive within the regime, 0 at its end.
+
+    step: Step; regime: Regime; work: Workspace with the unknowns at the nodes.
+    """
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):
         V, omega_or_d = nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i]
@@ -87,7 +93,11 @@ def evaluate_event_functions(step, regime, work):
 
 @kernel
 def _first_negative_node(event, last, nodes):
-    """Return the first node, up to ``last``, at which an event function has fallen below 0; 0 for none."""
+    """Return the first node, up to ``last``, at which an event function has fallen below 0; 0 for none.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    A function that begins at 0, to rounding, must have been positive before.
+    """
     _, largest = row_range(event, nodes)
     positive = nodes[event] > _START_ROUNDING * max(largest, 0.0)
     for i in range(1, last + 1):
@@ -102,6 +112,8 @@ def _first_negative_node(event, last, nodes):
 def locate_zero(event, node, nodes):
     """Return the v at which the interpolant of an event function is 0, before ``node``, or beyond the step if that
     is 0.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
@@ -110,8 +122,9 @@ def locate_zero(event, node, nodes):
 
 @kernel
 def _bisect(start, low, high, nodes):
-    """Return the v in [low, high] at which the stored interpolant, with the value ``start`` at v = 0, falls through
-    0.
+    """Return the v in [low, high] at which the stored interpolant of an event function falls through 0.
+
+    start: value of the function at v = 0; nodes: Workspace.nodes with the interpolant.
     """
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -126,7 +139,10 @@ def _bisect(start, low, high, nodes):
 
 @kernel
 def _locate_double_crossing(event, nodes):
-    """Return the v at which an event function falls through 0 between nodes at which it is positive; 0 for none."""
+    """Return the v at which an event function falls through 0 between nodes at which it is positive; 0 for none.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    """
     for i in range(1, N):
         if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
             fit_dense_output(event, ROW_DENSE_EVENT, nodes)
@@ -148,6 +164,7 @@ def _locate_double_crossing(event, nodes):
 def find_first_event(step, regime, work):
     """Return (event whose function falls below 0 first, v there); (NO_EVENT, 2) for none.
 
+    step: Step; regime: Regime; work: Workspace with the event functions.
     Between the same two nodes the interpolants tell which event is first.
     """
     event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
@@ -169,6 +186,7 @@ def find_first_event(step, regime, work):
 def find_missed_event(step, regime, work):
     """Return the event whose function begins at 0 and is negative at all nodes; NO_EVENT for none.
 
+    step: Step; regime: Regime; work: Workspace with the event functions.
     The regime has then ended before the first node.
     """
     nodes = work.nodes
@@ -188,7 +206,10 @@ def find_missed_event(step, regime, work):
 
 @kernel
 def _event_function(event, v, regime, work):
-    """Evaluate an event function at v from the dense output of the unknowns, not from its own interpolant."""
+    """Evaluate an event function at v from the dense output of the unknowns, not from its own interpolant.
+
+    event: STICK_EDGE, OMEGA_ZERO or BELOW_REST_SPEED; regime: Regime; work: Workspace with the dense output.
+    """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:
         return max(abs(V), abs(omega_or_d)) - work.options.rest_speed
@@ -199,10 +220,12 @@ def _event_function(event, v, regime, work):
 
 @kernel
 def refine_event(event, v, regime, work):
-    """Return the refined v of an event whose function is no polynomial of the unknowns, by a secant method on the
-    function.
+    """Return the refined v of an event whose function is no polynomial of the unknowns, by the difference quotient
+    of it.
 
-    These are the stick edge and the larger speed in full slip, and omega in partial slip; else v is returned unchanged.
+    event, v: the event and its position by the interpolant; regime: Regime; work: Workspace with the dense output.
+    Such functions are the stick edge and the larger speed in full slip, and omega in partial slip; else v is
+    unchanged.
     """
     if event not in ((STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)):
         return v
@@ -220,6 +243,8 @@ def refine_event(event, v, regime, work):
 def _event_scale(event, nodes):
     """Return the scale of an event function on a step: the largest modulus of the quantities of which it is a
     difference.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with event functions, speeds and drive.
     """
     smallest, largest = row_range(event, nodes)
     largest = max(largest, -smallest)
@@ -238,6 +263,9 @@ def _event_tolerance(rtol):
 
 @kernel
 def ends_at_event(event, nodes, rtol):
-    """Return whether the step ends at an event: its function has fallen to 0, and has not only started there."""
+    """Return whether the step ends at an event: its function has fallen to 0, and has not only started there.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions; rtol: relative tolerance.
+    """
     scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
     return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

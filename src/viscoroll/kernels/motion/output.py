@@ -70,7 +70,10 @@ def _write_totals(column, work):
 
 @kernel
 def record_switch(code, step_state, work):
-    """Record a change of regime (its code) or of the sign of V (DIRECTION_REVERSED) at the time of the step state."""
+    """Record a change of regime, or of the sign of V, at the time of the step state.
+
+    code: regime behind it, or DIRECTION_REVERSED; step_state: StepState; work: Workspace.
+    """
     nodes, switches = work.nodes, work.switches
     n = int(nodes[N_RECORDED])
     if n < switches.shape[0]:
@@ -81,10 +84,10 @@ def record_switch(code, step_state, work):
 
 @kernel
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
-    """Write the outputs before the time ``end`` (with ``inclusive`` also at it) of a cylinder at rest; return the
-    StepState then.
+    """Write the outputs before a time of a cylinder at rest; return the StepState then.
 
-    code: regime in the outputs.
+    end: tau of that time; inclusive: whether an output at ``end`` itself is written too; code: regime in the
+    outputs; step_state: StepState at the present time; work: Workspace.
     """
     column, tau = step_state.next_output, work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
@@ -97,7 +100,11 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
 
 @kernel
 def _write_state(column, state, segment, regime, work):
-    """Write one output column but for the quadratures, from a state within a segment."""
+    """Write one output column but for the quadratures.
+
+    column: index of the output time; state: State then; segment: index of the segment of the drive; regime: Regime;
+    work: Workspace.
+    """
     direction, force, torque = regime.direction, 0.0, 0.0
     omega, delta = omega_and_delta(state, regime, work.scene)
     if work.with_forces:
@@ -110,7 +117,10 @@ def _write_state(column, state, segment, regime, work):
 
 @kernel
 def write_due_outputs(state, regime, step_state, work):
-    """Write the outputs due at the present time, to the tolerance; return the StepState."""
+    """Write the outputs due at the present time, to the tolerance; return the StepState.
+
+    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    """
     column = step_state.next_output
     while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (1.0 + work.options.rtol):
         _write_state(column, state, step_state.segment, regime, work)
@@ -136,8 +146,10 @@ def _write_dense_output(column, v, step, regime, work):
 
 @kernel(inline=True)
 def _evaluate_integrands(regime, work):
-    """Store the integrands of the quadratures at all nodes: distance and angle are integrals over t, the others over
-    tau.
+    """Store the integrands of the quadratures at all nodes of an accepted step.
+
+    regime: Regime; work: Workspace with the unknowns at the nodes.
+    Distance and angle are integrals over t, the energies over tau.
     """
     nodes, direction_over_gamma = work.nodes, regime.direction / work.scene.gamma
     for i in range(N + 1):
@@ -162,11 +174,11 @@ def _integral_over_step(row, step, nodes):
 
 @kernel(inline=True)
 def accept_step(end, v, step, regime, step_state, work):
-    """Accept a step up to the position v: write the outputs before its end, add up the quadratures; return the
-    StepState there.
+    """Accept a step up to the position v: write the outputs before its end and add up the quadratures.
 
-    end: tau at v.  An output at the end itself is left to what follows, as the drive may jump there, but for the
-    last one.
+    end: tau at v; step: Step; regime: Regime; step_state: StepState at its left end; work: Workspace with the solved
+    step. Returns the StepState at ``end``.  An output at ``end`` itself is written with the next step, as the drive
+    may jump there, but for the last one.
     """
     tau, column = work.output_tau, step_state.next_output
     is_last = end == last_output_tau(work)

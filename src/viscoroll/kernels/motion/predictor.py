@@ -54,7 +54,10 @@ def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
 
 @kernel
 def _extrapolate(step, dense_step, regime, nodes):
-    """Predict by the dense output of ``dense_step``, extrapolated beyond its right end."""
+    """Store the unknowns by the dense output of ``dense_step``, extrapolated beyond its right end.
+
+    step: Step to predict; regime: Regime; nodes: Workspace.nodes with the dense output.
+    """
     v_start = dense_position(step.tau, dense_step)
     V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
     omega_or_d0 = nodes[ROW_OMEGA_OR_D] - evaluate_dense_output(v_start, nodes, ROW_DENSE_OMEGA_OR_D)
@@ -67,8 +70,9 @@ def _extrapolate(step, dense_step, regime, nodes):
 
 @kernel
 def _predict_relaxation(step, relaxation, regime, nodes):
-    """Predict V linearly and the second unknown by its exponential relaxation, at rate ``relaxation``, from the left
-    end on.
+    """Store the unknowns with V linear and the second unknown relaxing exponentially from the left end on.
+
+    step: Step to predict; relaxation: rate of the relaxation; regime: Regime; nodes: Workspace.nodes with node 0.
     """
     omega_or_d_rate = nodes[ROW_WEIGHTED_RATE] if regime.full_slip else nodes[ROW_WEIGHTED_RATE] / nodes[ROW_V]
     for i in range(1, N + 1):
@@ -80,8 +84,10 @@ def _predict_relaxation(step, relaxation, regime, nodes):
 
 @kernel
 def _predict_from_rest(step, regime, work):
-    """Predict from V = 0 on, where V' may start at 0 and follow the drive, and d moves to its value at the end of
-    the step.
+    """Store the unknowns from V = 0 on, where V' may start at 0 and follow the drive, and d moves to its value at
+    the end.
+
+    step: Step to predict; regime: Regime; work: Workspace with node 0.
     """
     nodes = work.nodes
     load, d = evaluate_load(step.tau + step.h, step.segment, regime, work), 0.0

@@ -71,7 +71,11 @@ BEFORE_SEGMENT_END = 1.0 - 1e-13
 
 @kernel(inline=True)
 def _start_step(state, regime, step_state, work):
-    """Store the right-hand side at node 0; return the regime, at d = 0 that of the branch to which d moves."""
+    """Store the right-hand side at node 0; return the Regime, at d = 0 that of the branch of the law to which d
+    moves.
+
+    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    """
     nodes = work.nodes
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
     rates = current_rates(state, regime, step_state, work)
@@ -90,10 +94,9 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 
     step: Step; remaining: time to the end of the segment; aimed: whether its length was chosen to reach V = 0;
-    dense_step: Step whose dense output is stored.
-    Returns (event, v at which the regime ends, Step, its error divided by its tolerance, Step of the stored dense
-    output). A step whose error is too large and on which the regime ends contains a kink of the law; one that ends
-    at it may be good.
+    dense_step: Step whose dense output is stored; regime: Regime; work: Workspace with node 0. Returns (event, v at
+    which the regime ends, Step, its error divided by its tolerance, Step of the stored dense output). A step with
+    too large an error, on which the regime ends, contains a kink of the law: a step that ends at it may be accurate.
     """
     nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
     for _ in range(_MAX_TRIALS):

@@ -62,7 +62,11 @@ def release_brake(state, regime, step_state, work):
 
 @kernel
 def comes_to_rest(state, regime, step_state, work):
-    """Return whether full slip ends at rest: V = 0 at the stick edge, where omega is 0 too."""
+    """Return whether full slip ends at rest: V = 0 at the stick edge, where omega is 0 too.
+
+    state, regime, step_state: State, Regime and StepState at the event; work: Workspace with the step that ends
+    there.
+    """
     prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
     omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
     if not (regime.locked or omega_zero):
@@ -117,7 +121,10 @@ def impose_prescribed_speed(state, regime, step_state, work):
 
 @kernel
 def apply_event(event, state, regime, step_state, work):
-    """Return (whether the cylinder moves, state, regime) behind an event."""
+    """Return (whether the cylinder moves, State, Regime) behind an event.
+
+    event: the event; state, regime, step_state: State, Regime and StepState at the event; work: Workspace.
+    """
     full_slip, direction, sigma, spin_sign, locked = regime
     if event == STICK_EDGE and full_slip:
         if comes_to_rest(state, regime, step_state, work):
@@ -148,7 +155,10 @@ def apply_event(event, state, regime, step_state, work):
 
 @kernel
 def enter_segment(state, regime, step_state, work):
-    """Return (state, regime) at the start of a segment: brakes take hold or let go, V may reverse."""
+    """Return (State, Regime) at the start of a segment of the drive: brakes take hold or let go, V may reverse.
+
+    state, regime, step_state: State, Regime and StepState there, with the index of the new segment; work: Workspace.
+    """
     if step_state.segment > 0:  # a start keeps its given speeds
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
     if regime.full_slip and state.V == 0.0 and current_rates(state, regime, step_state, work).V_rate < 0.0:
@@ -165,7 +175,10 @@ def enter_segment(state, regime, step_state, work):
 
 @kernel
 def initial_regime(V, omega, step_state, work):
-    """Return (state, regime, whether the stick zone just forms) of a start with V or omega not 0, without its brake."""
+    """Return (State, Regime, whether the stick zone just forms) of a start with V or omega not 0, without its brake.
+
+    V, omega: initial speeds; step_state: StepState at the start; work: Workspace.
+    """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
         # sliding ends within a time of that order, at constant V + j omega
         V = omega = (V + work.scene.j * omega) / (1.0 + work.scene.j)

@@ -93,8 +93,10 @@ def evaluate_moments(u, scene):
 
 @kernel
 def low_speed_limits(work):
-    """Return the limits for V -> 0 in free rolling of (M_half_space, M_cylinder, force, torque of feedback), divided
-    by V.
+    """Return (M_half_space, M_cylinder, force and torque of feedback), each divided by V, for V -> 0 in free
+    rolling.
+
+    work: Workspace of the motion.
     """
     _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
     gains = work.drive.gains

@@ -79,8 +79,10 @@ def store_rhs(i, rates, nodes):
 
 @kernel(inline=True)
 def _evaluate_residuals(refactor, step, regime, work):
-    """Evaluate the right-hand side and the residuals at nodes 1 ... N; with ``refactor`` also what the Newton
-    matrices contain.
+    """Evaluate the right-hand side and the residuals at nodes 1 ... N.
+
+    refactor: whether to store also the numbers of the Newton matrices; step: Step; regime: Regime; work: Workspace
+    with the unknowns and the drive at the nodes.
     """
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
@@ -116,7 +118,8 @@ def _add_feedback_to_matrix(work):
 def _newton_iteration(refactor, coupled, step, regime, work):
     """Do one Newton iteration at nodes 1 ... N and return its largest update relative to the error scales.
 
-    refactor: whether to evaluate the Newton matrices again; coupled: whether p' depends on the second unknown.
+    refactor: whether to evaluate the Newton matrices again; coupled: whether p' depends on the second unknown; step:
+    Step; regime: Regime; work: Workspace with the unknowns and the drive at the nodes.
     """
     nodes, p_matrix, d_matrix = work.nodes, work.p_matrix, work.d_matrix
     if refactor:

@@ -68,7 +68,10 @@ def moderate_speed(scene):
 
 @kernel
 def _time_to_reach_V(V_change, step_state, regime, work):
-    """Return the time in which V rises from 0 to about ``V_change``, with V' changing linearly as the drive does."""
+    """Return the time in which V rises from 0 to about ``V_change``, with V' changing linearly as the drive does.
+
+    step_state, regime: StepState and Regime at V = 0; work: Workspace with node 0.
+    """
     lookahead, V_rate = _LOOKAHEAD * (segment_end(step_state.segment, work) - step_state.tau), work.nodes[ROW_V_RATE]
     load = evaluate_load(step_state.tau + lookahead, step_state.segment, regime, work)
     _, d = solve_d_at_departure(load, regime.spin_sign, work.scene)
@@ -113,7 +116,8 @@ def first_step_length(stick_formed, step_state, regime, work):
 def time_to_V_zero(step, state, regime, work):
     """Return the time until V = 0 at the initial V', inf if V does not decrease; there the law has a kink.
 
-    In partial slip V only comes to 0 against the drive.  step: Step; state: State at its left end.
+    step: Step; state: State at its left end; regime: Regime; work: Workspace with node 0.
+    In partial slip V only comes to 0 against the drive.
     """
     V_rate = work.nodes[ROW_V_RATE]
     if not V_rate < 0.0:
@@ -129,9 +133,9 @@ def time_to_V_zero(step, state, regime, work):
 
 @kernel(inline=True)
 def step_length_after_relaxation(step, regime, work):
-    """Return the length of the step after one along which d has relaxed: from there on d follows V, which changes
-    slowly.
+    """Return the length of the step after one along which d has relaxed: there d follows V, which changes slowly.
 
+    step: Step that was accepted; regime: Regime; work: Workspace with its nodes.
     Returns 0 in full slip, or if d has not relaxed.
     """
     nodes = work.nodes
