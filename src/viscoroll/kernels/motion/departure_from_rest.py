@@ -86,7 +86,7 @@ def _spin_against_brake(load, scene):
         The sign of omega, and whether the brake holds it at 0 instead: so it does where mu > 2 kappa and the traction
         at omega = 0 leaves less torque than the brake can take.
     """
-    d_zero, load = _d_at_zero_omega(scene), _absorb_added_mass(load, scene)
+    d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
         return 1.0, False
     torque = load.torque - scene.mu * d_zero * (2.0 + d_zero)
@@ -94,23 +94,16 @@ def _spin_against_brake(load, scene):
 
 
 @kernel
-def _add_brake_torque(load, spin_sign):
-    """Return the load with the torque of the brake, which opposes the sign of omega."""
-    force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
-    return Load(force, torque - spin_sign * brake, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains)
+def _effective_load(load, spin_sign, scene):
+    """Return the Load that contains the torque of the brake and the effect of the added mass on V' and omega'.
 
-
-@kernel
-def _absorb_added_mass(load, scene):
-    """Return the Load for which V' and omega' follow from Q at V = 0 as without added mass.
-
-    load: Load at V = 0; scene: Scene, whose law gives the added mass.
+    load: Load at V = 0; spin_sign: sign of omega against the brake, 0 without one; scene: Scene with the added mass.
     """
     force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
     half_n = 0.5 * added_inertia(0.0, scene)[0]
     mass_ratio = 1.0 / (1.0 + half_n * inverse_mass)
     inertia_ratio = 1.0 + half_n * mass_ratio * inverse_mass
-    torque = (torque - half_n * (mass_ratio * inverse_mass * force + V_rate)) / inertia_ratio
+    torque = (torque - spin_sign * brake - half_n * (mass_ratio * inverse_mass * force + V_rate)) / inertia_ratio
     inverse_mass, inverse_inertia = inverse_mass * mass_ratio, inverse_inertia * inertia_ratio
     return Load(force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains)
 
@@ -154,7 +147,7 @@ def solve_d_at_departure(load, spin_sign, scene):
 
     load: Load at V = 0; spin_sign: sign of omega against a brake, 0 without one; scene: Scene.
     """
-    load, low, high = _absorb_added_mass(_add_brake_torque(load, spin_sign), scene), -1.0, 1.0
+    load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
     d_zero = _d_at_zero_omega(scene)  # above this d the residual decreases
     if d_zero > -1.0 and load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
         return _residual_of_d(d_zero, load, scene)[2] > 0.0, d_zero

@@ -36,9 +36,9 @@ from .workspace import (
     STEP_LIMIT,
     STEP_TOO_SMALL,
     STICK_EDGE,
-    Regime,
     State,
     StepState,
+    change_slip,
     last_output_tau,
     with_step_length,
 )
@@ -117,7 +117,7 @@ def relax_creep(state, regime, step_state, work):
     while low < d < high:
         delta = creepage(state.V, d, work.scene)
         state = State(p / (inertia + load.inverse_mass * (1.0 + delta)), d)
-        regime = Regime(False, regime.direction, 1.0 if d >= 0.0 else -1.0, regime.spin_sign, regime.locked)
+        regime = change_slip(regime, False, 1.0 if d >= 0.0 else -1.0)
         if current_rates(state, regime, step_state, work).weighted_rate > 0.0:
             low = d
         else:
@@ -127,8 +127,7 @@ def relax_creep(state, regime, step_state, work):
     if low > -1.0 and high < 1.0:
         return True, state, regime, step_state
     omega = state.V * (1.0 + creepage(state.V, regime.sigma, work.scene))
-    regime = Regime(True, regime.direction, regime.sigma, regime.spin_sign, regime.locked)
-    return True, State(state.V, omega), regime, step_state
+    return True, State(state.V, omega), change_slip(regime, True, regime.sigma), step_state
 
 
 @kernel

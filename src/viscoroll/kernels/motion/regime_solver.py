@@ -36,9 +36,9 @@ from .workspace import (
     STICK_EDGE,
     V_ZERO,
     ZERO_SPEED,
-    Regime,
     State,
     Step,
+    change_slip,
     count_step,
     dense_state,
     shorten_step,
@@ -85,7 +85,7 @@ def _start_step(state, regime, step_state, work):
     nodes[ROW_RELAXATION], nodes[ROW_P_DIAGONAL] = rates.drate_dd / rates.weight, rates.dp_rate_dV / rates.dp_dV
     if not regime.full_slip and state.omega_or_d == 0.0 and regime.sigma * rates.weighted_rate < 0.0:
         # both branches agree at d = 0
-        return Regime(False, regime.direction, -regime.sigma, regime.spin_sign, regime.locked)
+        return change_slip(regime, False, -regime.sigma)
     return regime
 
 

@@ -23,6 +23,7 @@ from .workspace import (
     V_ZERO,
     Regime,
     State,
+    change_slip,
 )
 
 #: V at the event divided by V at the left end of the step, below which V is 0: the stick zone closes at rest
@@ -46,6 +47,18 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
 
 
 @kernel
+def lock_wheel(regime):
+    """Return the Regime with omega held at 0 by the brake."""
+    return Regime(regime.full_slip, regime.direction, regime.sigma, regime.spin_sign, True)
+
+
+@kernel
+def free_wheel(regime, spin_sign):
+    """Return the Regime with omega not held, and its sign where a brake acts (0 where none does)."""
+    return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, False)
+
+
+@kernel
 def brake_holds_omega(state, regime, step_state, work):
     """Return whether the brake holds omega at 0, at a state with omega = 0."""
     torque, limit = _torque_at_locked_wheel(state, regime, step_state, work)
@@ -57,7 +70,7 @@ def release_brake(state, regime, step_state, work):
     """Return the regime after a brake has let go, or after omega has changed its sign under it."""
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
-    return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, False)
+    return free_wheel(regime, spin_sign)
 
 
 @kernel
@@ -125,21 +138,21 @@ def apply_event(event, state, regime, step_state, work):
 
     event: the event; state, regime, step_state: State, Regime and StepState at the event; work: Workspace.
     """
-    full_slip, direction, sigma, spin_sign, locked = regime
+    full_slip, sigma = regime.full_slip, regime.sigma
     if event == STICK_EDGE and full_slip:
         if comes_to_rest(state, regime, step_state, work):
             return False, state, regime
         rates = current_rates(state, regime, step_state, work)
-        state, regime = State(state.V, sigma), Regime(False, direction, sigma, spin_sign, locked)
+        state, regime = State(state.V, sigma), change_slip(regime, False, sigma)
         if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(rates.weighted_rate):
             # of both speeds at the event, whose time has an error, the one that changes more slowly is more accurate
             state, regime = impose_prescribed_speed(state, regime, step_state, work)
         return state.V > 0.0, state, regime
     if event == STICK_EDGE:
         omega = current_rates(state, regime, step_state, work).omega
-        return True, State(state.V, omega), Regime(True, direction, sigma, spin_sign, locked)
+        return True, State(state.V, omega), change_slip(regime, True, sigma)
     if event == DELTA_ZERO:
-        return True, state, Regime(False, direction, -sigma, spin_sign, locked)
+        return True, state, change_slip(regime, False, -sigma)
     if event == V_ZERO:
         if not full_slip or state.omega_or_d == 0.0:
             return False, state, regime
@@ -148,7 +161,7 @@ def apply_event(event, state, regime, step_state, work):
     if event == OMEGA_ZERO:
         still = State(state.V, 0.0) if full_slip else state
         if brake_holds_omega(still, regime, step_state, work):
-            return True, still, Regime(full_slip, direction, sigma, spin_sign, True)
+            return True, still, lock_wheel(regime)
         return True, still, release_brake(still, regime, step_state, work)
     return True, state, release_brake(state, regime, step_state, work)
 
@@ -163,14 +176,13 @@ def enter_segment(state, regime, step_state, work):
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
     if regime.full_slip and state.V == 0.0 and current_rates(state, regime, step_state, work).V_rate < 0.0:
         state, regime = reverse_direction(state, regime)
-    full_slip, direction, sigma, spin_sign, locked = regime
     braked = has_brake(step_state.segment, work.drive)
     omega = current_rates(state, regime, step_state, work).omega
-    if locked or omega == 0.0:
+    if regime.locked or omega == 0.0:
         if braked and brake_holds_omega(state, regime, step_state, work):
-            return state, Regime(full_slip, direction, sigma, spin_sign, True)
+            return state, lock_wheel(regime)
         return state, release_brake(state, regime, step_state, work)
-    return state, Regime(full_slip, direction, sigma, np.sign(omega) if braked else 0.0, False)
+    return state, free_wheel(regime, np.sign(omega) if braked else 0.0)
 
 
 @kernel

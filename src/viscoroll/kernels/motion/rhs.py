@@ -178,6 +178,9 @@ def partial_slip_rates(V, d, load, regime, scene):
     """Evaluate the right-hand side in partial slip: Rates.
 
     V, d: unknowns; load: Load; regime: Regime; scene: Scene.
+    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
+    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives
+    of x in V and d.
     """
     law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
     u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa

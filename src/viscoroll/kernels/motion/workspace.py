@@ -335,6 +335,12 @@ WORKSPACE_SIZE = N_SWITCHES + 4
 
 
 @kernel(inline=True)
+def change_slip(regime, full_slip, sigma):
+    """Return the Regime with full or partial slip and another ``sigma``; direction and brake stay."""
+    return Regime(full_slip, regime.direction, sigma, regime.spin_sign, regime.locked)
+
+
+@kernel(inline=True)
 def last_output_tau(work):
     """Return tau of the last output, at which the motion ends; work: Workspace."""
     return work.output_tau[work.output_tau.size - 1]
