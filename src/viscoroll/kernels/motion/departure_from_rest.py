@@ -149,12 +149,14 @@ def solve_d_at_departure(load, spin_sign, scene):
     """
     load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
     d_zero = _d_at_zero_omega(scene)  # above this d the residual decreases
-    if d_zero > -1.0 and load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
-        return _residual_of_d(d_zero, load, scene)[2] > 0.0, d_zero
-    if d_zero > -1.0 and _residual_of_d(d_zero, load, scene)[0] > 0.0:
-        low = d_zero
-    elif d_zero > -1.0:  # below this d the residual may have a maximum
-        low, high = min(max(low, _local_maximum_of_residual(load, scene)), d_zero), d_zero
+    if d_zero > -1.0:
+        residual, _, V_rate = _residual_of_d(d_zero, load, scene)
+        if load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
+            return V_rate > 0.0, d_zero
+        if residual > 0.0:
+            low = d_zero
+        else:  # below this d the residual may have a maximum
+            low, high = min(max(low, _local_maximum_of_residual(load, scene)), d_zero), d_zero
     if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
         return False, 0.0
     d, V_rate = 0.5 * (low + high), 0.0
@@ -206,14 +208,14 @@ def find_departure_time(tau, segment, work):
     for n in range(1, _SCAN_INTERVALS + 1):
         high = tau + (end - tau) * n / _SCAN_INTERVALS
         if _holding_margin_at(high, segment, work) < 0.0:
-            while True:
-                middle = 0.5 * (low + high)
-                if not low < middle < high:
-                    return high
+            middle = 0.5 * (low + high)
+            while low < middle < high:
                 if _holding_margin_at(middle, segment, work) < 0.0:
                     high = middle
                 else:
                     low = middle
+                middle = 0.5 * (low + high)
+            return high
         low = high
     return end
 

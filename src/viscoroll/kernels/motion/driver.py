@@ -155,7 +155,8 @@ def _come_to_rest(code, state, regime, step_state, work):
     """Write the outputs of a motion that comes below the rest threshold now; return the StepState at its end.
 
     code: regime in the outputs before, -1 before the first one; state, regime, step_state: at the present time;
-    work: Workspace. The kinetic energy that is left is added to the loss in rolling.
+    work: Workspace.
+    The kinetic energy that is left is added to the loss in rolling.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
     if code >= 0 and code != AT_REST:

@@ -137,14 +137,6 @@ def _quadrature_at(n, v, step, nodes):
 
 
 @kernel(inline=True)
-def _write_dense_output(column, v, step, regime, work):
-    """Write one output column from the dense output of a step at v."""
-    _write_state(column, dense_state(v, work.nodes), step.segment, regime, work)
-    for n in range(N_QUADRATURES if work.with_quadratures else 0):
-        write_quadrature(column, n, _quadrature_at(n, v, step, work.nodes), work)
-
-
-@kernel(inline=True)
 def _evaluate_integrands(regime, work):
     """Store the integrands of the quadratures at all nodes of an accepted step.
 
@@ -177,7 +169,8 @@ def accept_step(end, v, step, regime, step_state, work):
     """Accept a step up to the position v: write the outputs before its end and add up the quadratures.
 
     end: tau at v; step: Step; regime: Regime; step_state: StepState at its left end; work: Workspace with the solved
-    step. Returns the StepState at ``end``.  An output at ``end`` itself is written with the next step, as the drive
+    step.
+    Returns the StepState at ``end``.  An output at ``end`` itself is written with the next step, as the drive
     may jump there, but for the last one.
     """
     tau, column = work.output_tau, step_state.next_output
@@ -190,7 +183,10 @@ def accept_step(end, v, step, regime, step_state, work):
         for n in range(n_quadratures):
             fit_integral(ROW_INTEGRANDS + ROW_LENGTH * n, ROW_DENSE_QUADRATURES + ROW_LENGTH * n, work.nodes)
     while column < tau.size and (tau[column] < end or is_last):
-        _write_dense_output(column, min(dense_position(tau[column], step), 2.0), step, regime, work)
+        v_output = min(dense_position(tau[column], step), 2.0)
+        _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
+        for n in range(n_quadratures):
+            write_quadrature(column, n, _quadrature_at(n, v_output, step, work.nodes), work)
         column += 1
     if step_state.n_ended < work.step_ends.size:
         work.step_ends[step_state.n_ended] = end / work.scene.gamma

@@ -94,9 +94,11 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 
     step: Step; remaining: time to the end of the segment; aimed: whether its length was chosen to reach V = 0;
-    dense_step: Step whose dense output is stored; regime: Regime; work: Workspace with node 0. Returns (event, v at
-    which the regime ends, Step, its error divided by its tolerance, Step of the stored dense output). A step with
-    too large an error, on which the regime ends, contains a kink of the law: a step that ends at it may be accurate.
+    dense_step: Step whose dense output is stored; regime: Regime; work: Workspace with node 0.
+
+    Returns (event, v at which the regime ends, Step, its error divided by its tolerance, Step of the stored dense
+    output).  A step with too large an error, on which the regime ends, contains a kink of the law: a step that ends
+    at it may be accurate.
     """
     nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
     for _ in range(_MAX_TRIALS):
