@@ -168,17 +168,17 @@ def find_first_event(step, regime, work):
     Between the same two nodes the interpolants tell which event is first.
     """
     event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
-    for row in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
-        node = _first_negative_node(row, last, nodes) if is_event_active(row, step, regime, work) else 0
+    for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
+        node = _first_negative_node(candidate, last, nodes) if is_event_active(candidate, step, regime, work) else 0
         if node == 0:
             continue
-        v_row = locate_zero(row, node, nodes)
-        if event == NO_EVENT or node < last or v_row < v:
-            event, last, v = row, node, v_row
+        v_zero = locate_zero(candidate, node, nodes)
+        if event == NO_EVENT or node < last or v_zero < v:
+            event, last, v = candidate, node, v_zero
     if event == NO_EVENT and regime.full_slip:
-        v_row = _locate_double_crossing(STICK_EDGE, nodes)
-        if v_row > 0.0:
-            return STICK_EDGE, v_row
+        v_zero = _locate_double_crossing(STICK_EDGE, nodes)
+        if v_zero > 0.0:
+            return STICK_EDGE, v_zero
     return event, v
 
 
@@ -190,17 +190,17 @@ def find_missed_event(step, regime, work):
     The regime has then ended before the first node.
     """
     nodes = work.nodes
-    for row in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
+    for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
         # the equations of partial slip continue into full slip: a missed edge does no harm there
-        excluded = row == BELOW_REST_SPEED or (row == STICK_EDGE and not regime.full_slip)
-        if excluded or not is_event_active(row, step, regime, work):
+        excluded = candidate == BELOW_REST_SPEED or (candidate == STICK_EDGE and not regime.full_slip)
+        if excluded or not is_event_active(candidate, step, regime, work):
             continue
-        (_, largest), scale = row_range(row, nodes), _event_scale(row, nodes)
+        (_, largest), scale = row_range(candidate, nodes), _event_scale(candidate, nodes)
         # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself
-        if row == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
+        if candidate == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
             scale = max(scale, nodes[ROW_SPEED + N])
-        if largest <= _START_ROUNDING * scale and nodes[row + N] < -_event_tolerance(work.options.rtol) * scale:
-            return row
+        if largest <= _START_ROUNDING * scale and nodes[candidate + N] < -_event_tolerance(work.options.rtol) * scale:
+            return candidate
     return NO_EVENT
 
 
