@@ -86,7 +86,7 @@ def fast_eta_over_F(eta_over_F, v, cover_rows):
 
 @inline_kernel
 def free_creep_at(position, u, cover_rows):
-    """Return 2 kappa delta_0 and its first two derivatives over u; zeros of half-spaces.
+    """Return (value, first, second derivative over u) of 2 kappa delta_0; zeros of half-spaces.
 
     position : of u in the rows of the law.  u : kappa |V|.  cover_rows : as of :class:`Law`.
     """
