@@ -18,6 +18,7 @@ def test_digits_do_not_depend_on_the_caller():
 def test_matrices_are_in_c_order():
     """numpy's einsum adds in the order of memory, so that last bits of all that matrices are applied to follow it."""
     nodes = radau(9, 1)
-    known = Interpolation(nodes)
-    matrices = known.powers(), known.values(nodes), known.slopes(nodes), known.integrals(nodes), to_chebyshev(9)
+    interpolation = Interpolation(nodes)
+    matrices = [interpolation.powers(), to_chebyshev(9)]
+    matrices += [of(nodes) for of in (interpolation.values, interpolation.slopes, interpolation.integrals)]
     assert all(matrix.flags.c_contiguous for matrix in matrices)
