@@ -29,7 +29,7 @@ _known = np.zeros((OCTAVES, 2), np.int64)
 def law_of_alphas(alpha: Floats) -> Any:
     """The record of states or motions that have these alphas, one or one each, for one thread.
 
-    It holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
+    It holds the law of one of them at a time (:func:`..kernels.rows.record.select_material`).
     """
     from ..kernels.rows.alpha_axis import ALPHA_E0, SOURCE, make_part, select_alpha
     from ..kernels.rows.record import E0
@@ -104,7 +104,7 @@ def _octave(octave: int) -> tuple[Floats, int]:
 def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     """The record of states or motions that have the materials ``which``.
 
-    For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
+    For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.select_material`).
     """
     if isinstance(materials, Cover):
         return _law_of_covers(materials, which)
