@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
 from .law_modes import AtPlaces
 
