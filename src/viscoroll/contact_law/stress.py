@@ -91,7 +91,7 @@ def stress(
 
     run_blocks(work, count, _BLOCK)
     rows = {"p": p, "tau": tau}
-    found = {name: scale.of(name, row.reshape(shape) if shape else row.item()) for name, row in rows.items()}
+    found = {name: scale[name] * (row.reshape(shape) if shape else row.item()) for name, row in rows.items()}
     return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
 

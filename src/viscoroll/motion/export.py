@@ -159,5 +159,5 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     more["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     found = _dataset(result, "Ensemble of motions", ("motion", "t"), more, about)
-    own = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
+    own = result.labels.axis_coords("motion") if result.labels and result.labels.shape == (len(result),) else {}
     return found.assign_coords({name: values for name, values in own.items() if name not in found})

@@ -143,7 +143,7 @@ class Steady(Values):
         efficiency = np.divide(taken, put_in, out=np.full(V.shape, np.nan), where=put_in > 0.0)
         found: Any = slip, half_space, cylinder, coefficient, efficiency
         if self._labels is not None:
-            found = map(self._labels.of, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
+            found = map(self._labels.apply, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
         return Loss(*found)
 
     @property
@@ -184,7 +184,7 @@ class Steady(Values):
 
         shape = np.shape(self.count)
         dims = ("state",) if len(shape) == 1 else tuple(f"state_{n}" for n in range(len(shape)))
-        dims, coords = self._labels.beside((*_FIELDS, "count"), "given") if self._labels else (dims, {})
+        dims, coords = self._labels.renamed_coords((*_FIELDS, "count"), "given") if self._labels else (dims, {})
         found = {name: self[name] for name in _FIELDS} | {"stable": np.asarray(self.stable).astype(np.int8)}
         rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
         found |= dict(zip(("rate_fast", "rate_slow"), rates, strict=True))
@@ -237,5 +237,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
     if labels is not None and labels.shape == loads.shape:
         behind_them = {"count": (), "eigenvalues": ("equilibrium", "rate")}
-        found = {name: labels.of(name, each, *behind_them.get(name, ("equilibrium",))) for name, each in found.items()}
+        found = {
+            name: labels.apply(name, each, *behind_them.get(name, ("equilibrium",))) for name, each in found.items()
+        }
     return Steady(found, reasons, scale, labels)
