@@ -22,4 +22,5 @@ def test_examples_of_docstrings(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
     tried = doctest.testmod(import_module(name), extraglobs={"vr": vr}, optionflags=options)
-    assert tried.attempted and not tried.failed
+    assert tried.attempted
+    assert not tried.failed
