@@ -7,9 +7,9 @@ made of the loss modulus.  What the data do not say is said: misfit, modes beyon
 storage and loss go together, and what wider grids of times would change.
 """
 
+from .dynamic_moduli import DynamicModuli
 from .fit import fit_prony, fit_relaxation
-from .read import read_dma
-from .record import DynamicModuli
-from .results import Fit, RelaxationFit
+from .fit_results import Fit, RelaxationFit
+from .reader import read_dma
 
 __all__ = ["DynamicModuli", "Fit", "RelaxationFit", "fit_prony", "fit_relaxation", "read_dma"]

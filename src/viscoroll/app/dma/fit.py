@@ -11,11 +11,11 @@ from ...core.typed import Numbers
 from ...materials.prony import Prony
 from ...materials.prony_forms import MOST_MODES, WIDEST
 from ...materials.shift import celsius
-from .choose import chosen
 from .curve import Relaxation, curve_of, data_of, kramers_kronig, thinned
-from .record import DynamicModuli
-from .results import Fit, Misfit, Mode, RelaxationFit
-from .shift import master_curve
+from .dynamic_moduli import DynamicModuli
+from .fit_results import Fit, Misfit, Mode, RelaxationFit
+from .master_curve import master_curve
+from .mode_selection import chosen
 from .spectrum import Data, Spectrum, misfits
 
 #: highest over lowest frequency; times reach a decade beyond on either side

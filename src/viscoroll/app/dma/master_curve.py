@@ -16,7 +16,7 @@ from ...core.errors import ModelWarning, ParameterError, outside
 from ...core.typed import Floats
 from ...materials.shift import USUAL_RANGE, celsius, relative
 from .curve import Curve, curve_of, thinned
-from .sweeps import default_reference, listed_factors, nearest, points_of, sets_of
+from .temperature_sets import default_reference, listed_factors, nearest, points_of, sets_of
 
 #: points of both curves that must lie in the overlap, and share of the shorter range
 _POINTS, _SHARE = 3, 0.15

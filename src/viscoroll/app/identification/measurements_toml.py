@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from ...core.errors import FileError, ModelWarning, ParameterError, outside
 from ...core.sections import as_struct, fault, read, refuse_unknown
 from ...cylinder import Cylinder
 from ...io.config import read_body
-from ...io.measurements import find, is_heading, missing, quantity, read_table
+from ...io.measurements import column_in_unit, find_column, missing_column, named_table
 from ...materials.file import shifts_of
 from .records import Coastdown, Record, Resistance, Traction
 
@@ -84,15 +83,13 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     """
     among = (*kind.PLACES, *kind.KINDS)
     called = {name: section.columns.get(name, name) for name in among}
-    table = read_table(
-        path, partial(is_heading, called.values()), decimal=section.decimal or None, encoding=section.encoding or None
-    )
+    table = named_table(path, called.values(), section.decimal or None, section.encoding or None)
     where = {}
     for name in among:
-        if (column := find(table, called[name])) is not None:
+        if (column := find_column(table, called[name])) is not None:
             where[name] = column
         elif name in kind.PLACES or name in section.columns:
-            raise missing(table, called[name])
+            raise missing_column(table, called[name])
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in where.values()]
     if others and not set(where) & set(kind.KINDS):
         problem = f"has no column {' or '.join(kind.KINDS)}, but {', '.join(others)}: name it in columns = {{...}}"
@@ -104,7 +101,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     for name in where:
         unit = kind.unit(name)
         try:
-            found[name] = quantity(table, called[name], unit, section.units.get(name, ""))
+            found[name] = column_in_unit(table, called[name], unit, section.units.get(name, ""))
         except ParameterError as error:
             per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
             raise ParameterError(name, f"in {error.value}", f"in a unit of {unit}{per}") from error

@@ -11,7 +11,7 @@ from ...core.errors import ParameterError
 from ...core.quantities import in_unit
 from ...core.typed import Floats, Integers
 from .curve import UNITS, Curve
-from .record import SAME_TEMPERATURE
+from .dynamic_moduli import SAME_TEMPERATURE
 
 #: K; a temperature that is further from all others belongs to another set, as sweeps are made 5 or 10 K apart
 APART = 0.5
@@ -57,7 +57,7 @@ def sets_of(at: Floats, first: Integers | None) -> Sets:
     Raises
     ------
     ParameterError
-        No points; a set that drifts by more than :data:`.record.SAME_TEMPERATURE`.
+        No points; a set that drifts by more than :data:`.dynamic_moduli.SAME_TEMPERATURE`.
     """
     if not at.size:
         raise ParameterError("temperature", "empty", "one a point")

@@ -12,10 +12,10 @@ import numpy as np
 
 from ...core.errors import FileError, ModelWarning, ParameterError, outside, refuse_unknown
 from ...io.measurements import Numbers, Table, conversion, read_table
-from .columns import Column, columns_of, numbers_of
-from .names import OF_SHEAR, UNITS, meanings
-from .record import SAME_TEMPERATURE, DynamicModuli
-from .solve import AVERAGED, PAIRS, refuse, storage_and_loss
+from .column_quantities import Column, columns_of, numbers_of
+from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli
+from .moduli_from_pair import AVERAGED, PAIRS, refuse, storage_and_loss
+from .vocabulary import OF_SHEAR, UNITS, meanings
 
 #: 2 pi as people write it, 6.28, is off by 5e-4
 _ROUND_PI = 1e-3

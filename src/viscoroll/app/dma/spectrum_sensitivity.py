@@ -12,7 +12,7 @@ from ...contact_law.contact import contact
 from ...core.typed import Floats
 from ...materials.prony import Prony
 from ...scene import Scene
-from .choose import grid_of_times
+from .mode_selection import grid_of_times
 from .spectrum import Data, on_times
 
 #: times and speeds, a decade

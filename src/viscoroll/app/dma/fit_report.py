@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...core.results import Row
-from .shift import loose_pairs
+from .master_curve import loose_pairs
 
 #: medians of the Kramers-Kronig ratio outside of which storage and loss are said not to go together
 _SOUND = (0.8, 1.25)

@@ -11,8 +11,8 @@ import numpy as np
 
 from ...core.errors import FileError, ParameterError
 from ...core.sections import hint
-from ...io.measurements import NO_UNIT, Numbers, Table, conversion, find, readings
-from .names import UNITS, Meaning, meanings
+from ...io.measurements import NO_UNIT, Numbers, Table, conversion, find_column, readings
+from .vocabulary import UNITS, Meaning, meanings
 
 #: unit of :data:`UNITS` -> the one that is assumed where neither the file nor the user says any
 _ASSUMED = {"rad/s": "Hz", "Pa": "Pa", "1": "1", "rad": "deg", "degC": "degC"}
@@ -84,7 +84,7 @@ def columns_of(
 
 def _index(table: Table, heading: str) -> int:
     """Index of the column with a heading, with its unit or without; raises ParameterError."""
-    found = find(table, heading)
+    found = find_column(table, heading)
     if found is None:
         allowed = f"one of {', '.join(map(repr, table.headings))}{hint(str(heading), table.headings)}"
         raise ParameterError("columns", f"{heading!r:.60}", allowed)

@@ -21,8 +21,8 @@ from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 from .curve import Curve, KramersKronig, Relaxation
-from .report import card, of_dynamic, of_relaxation
-from .shift import Shifts
+from .fit_report import card, of_dynamic, of_relaxation
+from .master_curve import Shifts
 from .spectrum import FLOOR, Data, Spectrum
 
 if TYPE_CHECKING:
@@ -97,10 +97,10 @@ class SeriesFit(Shown):
         """What grids of times one and two decades wider on either side would change, no time left out.
 
         For each: ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose contacts are passed
-        in times that the data hold, ``M`` beside ``M_fit`` at the same load (see :class:`.wider.Wider`).
+        in times that the data hold, ``M`` beside ``M_fit`` at the same load (see :class:`.spectrum_sensitivity.Wider`).
         Computed when first asked for.
         """
-        from .wider import wider
+        from .spectrum_sensitivity import wider
 
         return tuple(wider(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2))
 
