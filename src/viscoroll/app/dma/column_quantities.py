@@ -12,78 +12,77 @@ import numpy as np
 from ...core.errors import FileError, ParameterError
 from ...core.sections import hint
 from ...io.measurements import NO_UNIT, Numbers, Table, conversion, find_column, readings
-from .vocabulary import UNITS, Meaning, meanings
+from .vocabulary import ASSUMED, UNITS, Meaning, meanings
 
-#: unit of :data:`UNITS` -> the one that is assumed where neither the file nor the user says any
-_ASSUMED = {"rad/s": "Hz", "Pa": "Pa", "1": "1", "rad": "deg", "degC": "degC"}
-#: degrees; temperatures without a unit that go above it are taken to be kelvins
+#: degrees; temperatures without a unit that go above it are taken to be kelvins, in which DMA seldom goes below
 _KELVIN = 200.0
 #: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
 _CYCLES = re.compile(r"(?i)hz|rpm|rad|rev|cycle|u/|r/|upm|deg|°")
+#: units of angles
 _ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
 
 
 class Column(NamedTuple):
-    """A column whose meaning is known.
+    """A column of a known quantity.
 
-    place, heading : in its table; meaning : what its heading says; unit : in which it is read; stated : whether the
-    file or the user says it.
+    position, heading : index and heading in its table.
+    name : of its quantity, a key of :data:`.vocabulary.UNITS`.
+    mode : of its modulus, "tension", "shear", or "" where the heading does not say.
+    log : whether its numbers are logarithms to base 10.
+    unit : in which its numbers are.
+    stated : whether the file or the user gives the unit, or it is assumed.
     """
 
-    place: int
+    position: int
     heading: str
-    meaning: Meaning
+    name: str
+    mode: str
+    log: bool
     unit: str
     stated: bool
 
     @property
     def quantity(self) -> str:
-        """What its numbers are of: angular frequencies are frequencies, a phase angle gives tan delta."""
-        return "tan delta" if self.meaning.name == "phase angle" else self.meaning.name.replace("angular ", "")
+        """What its numbers become: frequency of an angular one, modulus of a compliance, tan delta of a phase angle."""
+        name = self.name.replace("angular ", "").removesuffix(" compliance")
+        return "tan delta" if name == "phase angle" else name
 
 
 def columns_of(
-    table: Table, named: Mapping[str, str], given: Mapping[str, str], fills: Mapping[str, str]
+    table: Table, named: Mapping[str, str], given: Mapping[str, str], default: Mapping[str, str]
 ) -> tuple[list[Column], dict[str, str]]:
-    """The columns whose meaning is known, and headings of the others -> why they are left aside ("": unknown).
+    """Find the columns whose quantity is known.
 
-    Parameters
-    ----------
     table : with headings.
-    named : meaning -> heading, of those that the user named.
-    given : meaning -> unit that overrules the file.
-    fills : unit of :data:`UNITS` -> unit of columns that have none.
-
-    Raises
-    ------
-    ParameterError
-        A heading that the table does not have.
+    named : quantity -> heading, of columns that the user named.
+    given : quantity -> unit that overrules the file.
+    default : quantity -> unit where the file gives none.
+    Returns the columns, and headings of the others -> why they are left out ("": no quantity is known of them).
+    Raises ParameterError for a heading that the table does not have.
     """
     owners = {_index(table, heading): name for name, heading in named.items()}
     columns: list[Column] = []
-    aside: dict[str, str] = {}
+    others: dict[str, str] = {}
     for index, (heading, row) in enumerate(zip(table.headings, table.units, strict=True)):
-        said = meanings(heading, row)
+        found = [each for each in meanings(heading, row) if index in owners or each.name not in named]
         if index in owners:
-            modes = [each.mode for each in said if each.mode] or [""]
-            ways = sorted(readings(heading, row), key=lambda way: way.unit in NO_UNIT)
-            said = [Meaning(owners[index], modes[0], way.unit, way.log) for way in ways]
+            mode = next((each.mode for each in found if each.mode), "")
+            ordered = sorted(readings(heading, row), key=lambda reading: reading.unit in NO_UNIT)
+            found = [Meaning(owners[index], mode, reading.unit, reading.log) for reading in ordered]
+        faults = [_contradiction(each, given) for each in found]
+        if not table.has_numbers(index):
+            faults = ["no numbers"]
+        if "" in faults:
+            name, mode, unit, log = found[faults.index("")]
+            unit = given.get(name) or ("" if unit in NO_UNIT else unit) or default.get(name, "")
+            columns.append(Column(index, heading, name, mode, log, unit or ASSUMED[name], bool(unit)))
         else:
-            said = [meaning for meaning in said if meaning.name not in named]
-        faults = [_contradiction(meaning, given) for meaning in said]
-        if table.textual(index):
-            aside[heading or f"column {index}"] = "no numbers"
-        elif "" in faults:
-            meaning = said[faults.index("")]
-            stated = meaning.unit not in NO_UNIT or meaning.name in given
-            columns.append(Column(index, heading, meaning, _unit(meaning, given, fills), stated))
-        else:
-            aside[heading or f"column {index}"] = (faults or [""])[0]
-    return columns, aside
+            others[heading or f"column {index}"] = faults[0] if faults else ""
+    return columns, others
 
 
 def _index(table: Table, heading: str) -> int:
-    """Index of the column with a heading, with its unit or without; raises ParameterError."""
+    """Return the index of the column with a heading, with its unit or without; raise ParameterError without one."""
     found = find_column(table, heading)
     if found is None:
         allowed = f"one of {', '.join(map(repr, table.headings))}{hint(str(heading), table.headings)}"
@@ -92,44 +91,40 @@ def _index(table: Table, heading: str) -> int:
 
 
 def _contradiction(meaning: Meaning, given: Mapping[str, str]) -> str:
-    """Why a unit does not go with what a name says, "" where it does."""
+    """Return why the unit of a heading contradicts the quantity that the heading may name, "" where it does not.
+
+    meaning : the quantity and its unit.
+    given : quantity -> unit that overrules the file.
+    """
     name, _, unit, _ = meaning
     if name in given or unit in NO_UNIT:
         return ""
+    problem = f"unit {unit!r} is none of {name}"
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
-        return f"unit {unit!r} is none of {name}"
-    if name in ("tan delta", "phase angle") and bool(_ANGLE.search(unit)) != (name == "phase angle"):
-        return f"unit {unit!r} is none of {name}"
+        return problem
     if "angular" in name and unit.lower().endswith("hz"):
         return f"an angular frequency in {unit}: rename it, or give units="
-    return ""
-
-
-def _unit(meaning: Meaning, given: Mapping[str, str], fills: Mapping[str, str]) -> str:
-    """The unit in which a column is read: as given, as the file says, as is given for all, else as assumed."""
-    if meaning.name in given or meaning.unit not in NO_UNIT:
-        return given.get(meaning.name, meaning.unit)
-    assumed = "rad/s" if "angular" in meaning.name else _ASSUMED.get(UNITS[meaning.name], "")
-    return fills.get(UNITS[meaning.name], assumed)
+    angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
+    return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
 
 
 def numbers_of(table: Table, column: Column) -> Numbers:
-    """The numbers of a column's quantity: rad/s, Pa, 1/Pa, tan delta, degC; with half a unit of their last digit.
+    """Return the numbers of a column's quantity in rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
 
-    Raises
-    ------
-    FileError
-        Cells that are no numbers; a unit that is missing and cannot be assumed.
+    table : of the column.
+    column : of a known quantity.
+    Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed.
     """
-    name, unit = column.meaning.name, column.unit
-    values, half = table.numbers(column.place)
-    open_angle = name == "phase angle" and values.max() <= 0.5 * math.pi
-    if not column.stated and (not unit or open_angle or (name == "temperature" and values.max() > _KELVIN)):
+    name, unit = column.name, column.unit
+    values, half = table.numbers(column.position)
+    # a phase angle of rubber in degrees goes above pi/2
+    open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
+    if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
         problem = f"column {column.heading!r} has no unit, and goes to {values.max():g}: give units={{{name!r}: ...}}"
         raise FileError(table.path, problem)
-    if column.meaning.log:
+    if column.log:
         values = 10.0**values
         half = values * math.log(10.0) * half
     factor, offset = conversion(unit, UNITS[name])

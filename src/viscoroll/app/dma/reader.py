@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from itertools import product
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,14 +15,14 @@ from ...core.errors import FileError, ModelWarning, ParameterError, outside, ref
 from ...io.measurements import Numbers, Table, conversion, read_table
 from .column_quantities import Column, columns_of, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli
-from .moduli_from_pair import AVERAGED, PAIRS, refuse, storage_and_loss
+from .moduli_from_pair import AVERAGED, PAIRS, storage_and_loss
 from .vocabulary import OF_SHEAR, UNITS, meanings
 
-#: 2 pi as people write it, 6.28, is off by 5e-4
+#: relative difference of frequencies in Hz and in rad/s that agree: 6.28 in place of 2 pi is off by 5e-4
 _ROUND_PI = 1e-3
-#: frequencies that differ by less are one: instruments keep theirs to this
+#: relative difference of frequencies that are one: instruments keep theirs to this
 _ONE_FREQUENCY = 1e-3
-#: moduli at one frequency and one temperature repeat within this factor; beyond, something else was varied
+#: ratio of moduli at one frequency and one temperature above which something else was varied
 _REPEATED = 1.25
 
 
@@ -34,7 +35,7 @@ def read_dma(
     The headings say which column is which, in any order: frequency or angular frequency (reduced ones first), and two
     of storage, loss, tan delta or phase angle, and magnitude of the complex modulus, or the same of compliances.  A
     third is compared with what the two give.  Units are behind the names or in a row of their own.  Other columns are
-    left aside and told in ``notes``.  Columns are parted by tabs, semicolons, commas or blanks; there may be lines
+    left out and listed in ``notes``.  Columns are parted by tabs, semicolons, commas or blanks; there may be lines
     before the headings, and comments that begin with ``#``.
 
     Parameters
@@ -75,153 +76,174 @@ def read_dma(
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
     named = dict(columns or {})
-    refuse_unknown("columns", named, UNITS, "a meaning")
-    given, fills = _units_given(units)
-    table = read_table(path, lambda cells: _known(cells, named), decimal=decimal, encoding=encoding)
+    refuse_unknown("columns", named, UNITS, "a quantity")
+    given, default = _units(units)
+    table = read_table(path, lambda cells: _is_heading_line(cells, named), decimal=decimal, encoding=encoding)
     if table.bare and not named:
         if len(table.headings) != 3:
-            problem = (
-                f"has {len(table.headings)} columns, and no heading that names frequency, storage and loss modulus"
-            )
+            count = len(table.headings)
+            problem = f"has {count} columns, and no heading that names frequency, storage and loss modulus"
             raise FileError(path, f"{problem}: give columns=")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
-    found, aside = columns_of(table, named, given, fills)
-    mode, pair, kind = _pair(table, found, aside)
+    found, others = columns_of(table, named, given, default)
+    choice = _choose(table, found, others)
     notes = [f"{table.parts} tables"] * (table.parts > 1)
+    mode = choice.mode
     if not mode:
-        mode = _assumed_mode(aside, notes)
-    kept = _kept(found, aside, mode, kind)
-    numbers = {name: _agreeing(table, name, alike, aside) for name, alike in kept.items()}
-    warm = numbers.get("temperature")
-    if warm and "reduced frequency" in kept and np.ptp(warm.values) > SAME_TEMPERATURE:
-        warm = None
-        aside[kept.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
+        # as rheometers write; instruments of tension name E
+        beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
+        mode = "shear" if beside else "tension"
+        reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
+        notes.append(f"{mode} is assumed, since {reason}")
+    columns_by = _columns_by_quantity(found, choice.columns, others)
+    numbers = {quantity: _agreeing(table, quantity, alike, others) for quantity, alike in columns_by.items()}
+    temperature = numbers.get("temperature")
+    if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
+        temperature = None
+        others[columns_by.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
-    refuse(table, omega > 0.0, "the frequency is not > 0")
-    of_moduli = {
-        name.removesuffix(kind): each for name, each in numbers.items() if name.removesuffix(kind) in _OF_PAIRS
-    }
-    storage, loss = storage_and_loss(table, pair, of_moduli)
-    if kind:
+    table.require(omega > 0.0, "the frequency is not > 0")
+    moduli = {name: numbers[name] for pair in PAIRS for name in pair if name in numbers}
+    storage, loss = storage_and_loss(table, choice.pair, moduli)
+    taken = [alike[0] for alike in columns_by.values()]
+    sources = [columns_by[name][0].name for name in choice.pair]
+    if any(UNITS[name] == "1/Pa" for name in sources):
         square = storage**2 + loss**2
         storage, loss = storage / square, loss / square
-    if kind or pair != ("storage", "loss"):
-        notes.append(f"moduli are from {' and '.join(kept[_full(name, kind)][0].meaning.name for name in pair)}")
-    notes += [f"{name} agrees with them" for name in of_moduli.keys() - set(pair)]
-    taken = [alike[0] for alike in kept.values()]
-    notes += [f"{column.heading!r} is log10" for column in taken if column.meaning.log]
-    notes += ["left aside: " + ", ".join(f"{of!r}" + f" ({why})" * bool(why) for of, why in aside.items())] * bool(
-        aside
-    )
-    _warn_assumed(table, taken, fills)
+    if sources != ["storage", "loss"]:
+        notes.append(f"moduli are from {' and '.join(sources)}")
+    notes += [f"{name} agrees with them" for name in moduli if name not in choice.pair]
+    notes += [f"{column.heading!r} is log10" for column in taken if column.log]
+    listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
+    notes += [f"left aside: {listed}"] * bool(others)
+    _warn_of_assumed_units(table, taken)
     record = DynamicModuli(
-        omega, storage, loss, warm and warm.values, mode, Path(path).name, {c.meaning.name: c.heading for c in taken},
-        {c.meaning.name: c.unit for c in taken}, tuple(notes),
+        omega, storage, loss, temperature and temperature.values, mode, Path(path).name,
+        {column.name: column.heading for column in taken}, {column.name: column.unit for column in taken}, tuple(notes),
     )  # fmt: skip
-    _refuse_mixed(table, record)
+    _refuse_mixed_sweeps(table, record)
     return record
 
 
-#: what pairs are of
-_OF_PAIRS = {name for pair in PAIRS for name in pair}
+class _Choice(NamedTuple):
+    """The columns that the moduli are taken from.
+
+    mode : "tension", "shear", or "" where no heading says.
+    pair : the two quantities that give the moduli, a key of :data:`.moduli_from_pair.PAIRS`.
+    columns : all that are of this mode or of none, and of moduli where the pair is, or of compliances.
+    """
+
+    mode: str
+    pair: tuple[str, str]
+    columns: list[Column]
 
 
-def _units_given(units: Any) -> tuple[dict[str, str], dict[str, str]]:
-    """Units by meaning that overrule the file, and those of columns that have none, by that of :data:`UNITS`."""
+def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the units by quantity that overrule the file, and those of columns for which the file gives none.
+
+    units : as of :func:`read_dma`.
+    Raises ParameterError for another form, a unit that is unknown or of another dimension.
+    """
     by_name = isinstance(units, Mapping)
-    allowed = "(frequency, moduli), as ('Hz', 'MPa'), or meaning -> unit"
-    if units is not None and not by_name and not (isinstance(units, (tuple, list)) and len(units) == 2):
+    allowed = "(frequency, moduli), as ('Hz', 'MPa'), or quantity -> unit"
+    if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
         raise ParameterError("units", f"{units!r:.60}", allowed)
-    pairs = dict(units or {}) if by_name or not units else dict(zip(("frequency", "storage"), units, strict=True))
-    refuse_unknown("units", pairs, UNITS, "a meaning")
+    of_two = zip(("rad/s", "Pa"), units or (), strict=False)
+    pairs = dict(units) if by_name else {name: unit for kind, unit in of_two for name in UNITS if UNITS[name] == kind}
+    refuse_unknown("units", pairs, UNITS, "a quantity")
     for name, unit in pairs.items():
         try:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
             raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is none of {name}") from error
-    return (pairs, {}) if by_name else ({}, {UNITS[name]: unit for name, unit in pairs.items()})
+    return (pairs, {}) if by_name else ({}, pairs)
 
 
-def _known(cells: list[str], named: Mapping[str, str]) -> bool:
-    """Whether a line of texts is one of headings: two of its cells have a meaning, or one was named by the user."""
-    found = {said[0].name for cell in cells if cell and (said := meanings(cell))}
-    return len(found) > 1 or any(cell in named.values() for cell in cells if cell)
+def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
+    """Return whether cells are headings: two of them name quantities, or one was named by the user.
 
-
-def _full(name: str, kind: str) -> str:
-    """The quantity of a member of a pair, of moduli or compliances."""
-    return name if name == "tan delta" else name + kind
-
-
-def _pair(table: Table, found: list[Column], aside: dict[str, str]) -> tuple[str, tuple[str, str], str]:
-    """Mode ("": no heading says), the pair that gives the moduli, and its kind: "" of moduli, or " compliance".
-
-    Raises
-    ------
-    FileError
-        There is none; its message lists the headings.
+    cells : of a line.
+    named : quantity -> heading, of columns that the user named.
     """
-    modes = [mode for mode in ("tension", "shear") if any(column.meaning.mode == mode for column in found)]
-    everything = {column.quantity for column in found}
-    missing = "two of storage, loss, tan delta and modulus"
-    if not everything & {"frequency", "reduced frequency"}:
-        missing = "frequency" + ": a sweep of temperature is none of frequency" * ("temperature" in everything)
-    else:
-        for mode in modes or [""]:
-            names = {column.quantity for column in found if column.meaning.mode in ("", mode)}
-            for kind in ("", " compliance"):
-                pair = next((pair for pair in PAIRS if names.issuperset(_full(name, kind) for name in pair)), None)
-                if pair:
-                    return mode, pair, kind
-    problems = "".join(f"; {heading!r}: {why}" for heading, why in aside.items() if why)
+    quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
+    return len(quantities) > 1 or not set(named.values()).isdisjoint(filter(None, cells))
+
+
+def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
+    """Choose the columns that the moduli are taken from.
+
+    table : of the columns, for the message.
+    found : columns of known quantities.
+    others : headings of the other columns, and why they are left out.
+    Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
+    """
+    modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
+    quantities = {column.quantity for column in found}
+    missing = "frequency" + ": a sweep of temperature is none of frequency" * ("temperature" in quantities)
+    if quantities & {"frequency", "reduced frequency"}:
+        missing = "two of storage, loss, tan delta and modulus"
+        for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
+            columns = [each for each in found if each.mode in ("", mode) and UNITS[each.name] != excluded]
+            for pair in PAIRS:
+                if {column.quantity for column in columns}.issuperset(pair):
+                    return _Choice(mode, pair, columns)
+    problems = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
     headings = ", ".join(map(repr, filter(None, table.headings)))
     raise FileError(table.path, f"no column is named {missing}{problems}; headings: {headings}; give columns=")
 
 
-def _assumed_mode(aside: dict[str, str], notes: list[str]) -> str:
-    """Mode of moduli that no heading says: shear beside a column of it, as rheometers write, else tension; noted."""
-    beside = next((heading for heading in aside if OF_SHEAR.search(heading)), None)
-    reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
-    notes.append(f"{'shear' if beside else 'tension'} is assumed, since {reason}")
-    return "shear" if beside else "tension"
+def _columns_by_quantity(found: list[Column], chosen: list[Column], others: dict[str, str]) -> dict[str, list[Column]]:
+    """Return quantity -> its columns, and list those that are not needed among the others.
 
-
-def _kept(found: list[Column], aside: dict[str, str], mode: str, kind: str) -> dict[str, list[Column]]:
-    """Quantity -> its columns; those of the other mode or kind, and measured beside reduced frequencies, go aside."""
+    found : columns of known quantities.
+    chosen : those of the mode and the kind that the moduli are taken from.
+    others : headings of columns that are left out, and why; columns not chosen, and measured frequencies beside
+    reduced ones, are added.
+    """
     reduced = any(column.quantity == "reduced frequency" for column in found)
-    kept: dict[str, list[Column]] = {}
+    columns_by: dict[str, list[Column]] = {}
     for column in found:
-        other = UNITS[column.meaning.name] == ("Pa" if kind else "1/Pa") or column.meaning.mode not in ("", mode)
-        if other:
-            aside[column.heading] = "not needed"
+        if column not in chosen:
+            others[column.heading] = "not needed"
         elif reduced and column.quantity == "frequency":
-            aside[column.heading] = "the reduced frequency is taken"
+            others[column.heading] = "the reduced frequency is taken"
         else:
-            kept.setdefault(column.quantity, []).append(column)
-    return kept
+            columns_by.setdefault(column.quantity, []).append(column)
+    return columns_by
 
 
-def _agreeing(table: Table, name: str, alike: list[Column], aside: dict[str, str]) -> Numbers:
-    """The numbers of the first column of a quantity; others of the same quantity must agree with it."""
+def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
+    """Return the numbers of the first of several columns of one quantity; the others must agree with it.
+
+    table : of the columns.
+    quantity : of which they are.
+    alike : the columns.
+    others : headings of columns that are left out, and why; all but the first are added.
+    Raises FileError with the line where they contradict each other.
+    """
     first = numbers_of(table, alike[0])
     for column in alike[1:]:
         second = numbers_of(table, column)
-        relative = 0.0 if name == "temperature" else (_ROUND_PI if name.endswith("frequency") else AVERAGED)
-        allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (name == "temperature")
+        relative = 0.0 if quantity == "temperature" else _ROUND_PI if quantity.endswith("frequency") else AVERAGED
+        allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (quantity == "temperature")
         agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
         both = f"{alike[0].heading!r} and {column.heading!r}"
-        refuse(table, agrees, f"{both} contradict each other: choose by columns={{{name!r}: ...}}")
-        aside[column.heading] = f"agrees with {alike[0].heading!r}"
+        table.require(agrees, f"{both} contradict each other: choose by columns={{{quantity!r}: ...}}")
+        others[column.heading] = f"agrees with {alike[0].heading!r}"
     return first
 
 
-def _warn_assumed(table: Table, taken: list[Column], fills: Mapping[str, str]) -> None:
-    """Warn of units that neither the file nor the user says; refuse a modulus without one beside one that has it."""
-    words = {"frequency": "rad/s", "moduli": "Pa"}
+def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
+    """Warn of columns whose unit neither the file nor the user gives.
+
+    table : of the columns.
+    taken : the columns.
+    Raises FileError for a modulus or frequency without a unit beside one that has it.
+    """
     assumed = []
-    for word, unit in words.items():
-        alike = [column for column in taken if UNITS[column.meaning.name] == unit]
-        without = [column for column in alike if not column.stated and unit not in fills]
+    for word, unit in {"frequency": "rad/s", "moduli": "Pa"}.items():
+        alike = [column for column in taken if UNITS[column.name] == unit]
+        without = [column for column in alike if not column.stated]
         if without and len(without) < len(alike):
             raise FileError(table.path, f"column {without[0].heading!r} has no unit, but others do: give units=")
         assumed += [f"{column.unit} ({word})" for column in without[:1]]
@@ -230,22 +252,23 @@ def _warn_assumed(table: Table, taken: list[Column], fills: Mapping[str, str]) -
         warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=outside())
 
 
-def _refuse_mixed(table: Table, record: DynamicModuli) -> None:
-    """Raise FileError for rows of one frequency, and for several sweeps without the temperature of each."""
+def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
+    """Raise FileError for rows of one frequency, and for several sweeps without the temperature of each.
+
+    table : of which the record is.
+    record : the moduli in the order of the rows.
+    """
     omega, n = record.omega, record.omega.size
     if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():
-        raise FileError(
-            table.path, f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is no frequency sweep"
-        )
+        problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is no frequency sweep"
+        raise FileError(table.path, problem)
     if record.temperature is None and table.parts > 1:
         raise FileError(table.path, f"has {table.parts} tables, and no column has their temperature: keep one of them")
     if record.isothermal:
         order = np.argsort(omega, kind="stable")
         same = np.diff(omega[order]) <= _ONE_FREQUENCY * omega[order][1:]
-        jumps = np.abs(np.diff(np.log(np.abs(record.storage[order])))) > np.log(_REPEATED)
-        if (same & jumps).any():
-            line = table.lines[int(order[1:][np.argmax(same & jumps)])]
-            problem = f"line {line}: the same frequency has another modulus in a row before"
-            raise FileError(
-                table.path, f"{problem}: rows of several temperatures or strains need a column of temperature"
-            )
+        repeats = np.abs(np.diff(np.log(np.abs(record.storage[order])))) <= np.log(_REPEATED)
+        holds = np.ones(n, bool)
+        holds[order[1:]] = repeats | ~same
+        problem = "the same frequency has another modulus in a row before"
+        table.require(holds, f"{problem}: rows of several temperatures or strains need a column of temperature")

@@ -1,4 +1,4 @@
-"""Names of the columns of a dynamic mechanical analysis, in English, German and French -> their meaning."""
+"""Names of the columns of a dynamic mechanical analysis in English, German and French, and their quantities."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from ...io.measurements import readings
 
-#: what words of a name say; "-": nothing that tells columns apart
-_VOCABULARY = {
-    word: kind
+#: word of a name -> the kinds of word that it is; "-": a word that does not tell columns apart
+_KINDS = {
+    word: kinds
     for line in """
         frequency: f freq fq frequency frequenz frequence
         angle: angle angular ang circular radian winkel kreis lag
@@ -34,44 +34,41 @@ _VOCABULARY = {
         -: oscillation oscillatory test mess messung pruf measured actual sample probe proben average avg mean
         -: mechanical mechanischer
         """.strip().splitlines()
-    for kind, words in [line.strip().split(": ")]
+    for kinds, words in [line.strip().split(": ")]
     for word in words.split()
 }
-#: meaning -> what the words of its names say together
-_MEANINGS = {
-    frozenset(kinds.split()): meaning
+#: a line for each quantity: its name, the unit that its numbers are converted to, the unit that is assumed where
+#: neither the file nor the user gives one, and the sets of kinds of words that name it
+_QUANTITIES = [
+    [cell.strip() for cell in line.split("|")]
     for line in """
-        frequency: frequency
-        angular frequency: angle frequency
-        reduced frequency: reduced frequency
-        reduced angular frequency: reduced angle frequency
-        storage: storage; storage whole
-        loss: loss; loss whole
-        modulus: whole
-        tan delta: tan; tan delta; loss factor; loss tan; damping; damping factor; loss factor tan; loss factor delta
-        tan delta: loss factor tan delta; damping factor tan delta; damping tan delta; damping tan; loss tan delta
-        phase angle: delta; phase; phase angle; phase delta; phase angle delta; loss angle; phase shift
-        phase angle: loss angle delta; phase shift delta
-        storage compliance: compliance storage; compliance storage whole
-        loss compliance: compliance loss; compliance loss whole
-        modulus compliance: compliance whole
-        temperature: temperature
+        frequency                 | rad/s | Hz    | frequency
+        angular frequency         | rad/s | rad/s | angle frequency
+        reduced frequency         | rad/s | Hz    | reduced frequency
+        reduced angular frequency | rad/s | rad/s | reduced angle frequency
+        storage                   | Pa    | Pa    | storage; storage whole
+        loss                      | Pa    | Pa    | loss; loss whole
+        modulus                   | Pa    | Pa    | whole
+        storage compliance        | 1/Pa  |       | compliance storage; compliance storage whole
+        loss compliance           | 1/Pa  |       | compliance loss; compliance loss whole
+        modulus compliance        | 1/Pa  |       | compliance whole
+        tan delta   | 1    | 1    | tan; tan delta; loss factor; loss tan; damping; damping factor; loss factor tan
+        tan delta   | 1    | 1    | loss factor delta; loss factor tan delta; damping factor tan delta; loss tan delta
+        tan delta   | 1    | 1    | damping tan delta; damping tan
+        phase angle | rad  | deg  | delta; phase; phase angle; phase delta; phase angle delta; loss angle; phase shift
+        phase angle | rad  | deg  | loss angle delta; phase shift delta
+        temperature | degC | degC | temperature
         """.strip().splitlines()
-    for meaning, names in [line.strip().split(": ")]
-    for kinds in names.split("; ")
-}
-#: meaning -> the unit that its numbers are read in
-UNITS = {
-    **dict.fromkeys(("frequency", "angular frequency", "reduced frequency", "reduced angular frequency"), "rad/s"),
-    **dict.fromkeys(("storage", "loss", "modulus"), "Pa"),
-    **dict.fromkeys(("storage compliance", "loss compliance", "modulus compliance"), "1/Pa"),
-    "tan delta": "1",
-    "phase angle": "rad",
-    "temperature": "degC",
-}
+]
+#: quantity -> the unit that its numbers are converted to
+UNITS = {name: unit for name, unit, *_ in _QUANTITIES}
+#: quantity -> the unit that is assumed, "" where none can be
+ASSUMED = {name: unit for name, _, unit, _ in _QUANTITIES}
+#: kinds of the words of a name -> quantity
+_NAMED_BY = {frozenset(kinds.split()): name for name, *_, sets in _QUANTITIES for kinds in sets.split(";")}
 #: columns beside moduli without E or G that only a test in shear has
 OF_SHEAR = re.compile(r"(?i)shear|schub|scher|torque|torsion|drehmoment|viscosity|viskosit|gamma|γ")
-_LONG = sorted((word for word in _VOCABULARY if len(word) > 2), key=len, reverse=True)
+_LONG = sorted((word for word in _KINDS if len(word) > 2), key=len, reverse=True)
 #: words written together, as "storagemodulus", "Estor", "Phasenwinkel"
 _COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")
 _WORD = re.compile("|".join(_LONG))
@@ -87,7 +84,13 @@ _SIGNS = [(re.compile(pattern), words) for pattern, words in (
 
 
 class Meaning(NamedTuple):
-    """What a heading says: the meaning, "" of none; "tension", "shear" or "" of the modulus; unit; of logarithms."""
+    """A quantity that a heading may name.
+
+    name : of the quantity, a key of :data:`UNITS`.
+    mode : of the modulus, "tension", "shear", or "" where the heading does not say.
+    unit : in the heading or in the row of units, "" without.
+    log : whether the numbers are logarithms to base 10.
+    """
 
     name: str
     mode: str
@@ -96,37 +99,33 @@ class Meaning(NamedTuple):
 
 
 def meanings(heading: str, row: str = "") -> list[Meaning]:
-    """All meanings that a heading may have, the likeliest first; none where no word is known.
+    """Return all quantities that a heading may name, the likeliest first; none where a word is not in the vocabulary.
 
-    Parameters
-    ----------
     heading : as the file has it, with its unit or without.
-    row : what a row of units has for it.
+    row : the cell of a row of units for this column, "" without.
     """
-    found = [(_meaning(name), unit, log) for name, unit, log in readings(heading, row)]
-    return [Meaning(*meaning, unit, log) for meaning, unit, log in found if meaning is not None]
+    found = [(_quantity(name), unit, log) for name, unit, log in readings(heading, row)]
+    return [Meaning(*quantity, unit, log) for quantity, unit, log in found if quantity]
 
 
-def _meaning(name: str) -> tuple[str, str] | None:
-    """Meaning and mode of a name without unit, None where one of its words is unknown or they go with nothing."""
-    kinds: set[str] = set()
+def _quantity(name: str) -> tuple[str, str] | None:
+    """Return quantity and mode that a name without unit says, None where its words name no quantity."""
     if re.search("[%°º]", name):  # of a unit
         return None
     text = unicodedata.normalize("NFKD", name.replace("\u2033", "''"))
     for pattern, words in _SIGNS:
         text = pattern.sub(words, "".join(sign for sign in text if not unicodedata.combining(sign)))
-    for word in re.findall(r"[^\W\d_]+|\d+", text):
-        parts = _parts(word.lower())
-        if not all(part in _VOCABULARY for part in parts):
-            return None
-        kinds.update(kind for part in parts for kind in _VOCABULARY[part].split())
+    parts = [part for word in re.findall(r"[^\W\d_]+|\d+", text) for part in _parts(word.lower())]
+    if not all(part in _KINDS for part in parts):
+        return None
+    kinds = {kind for part in parts for kind in _KINDS[part].split()}
     modes = kinds & {"tension", "shear"}
-    meaning = _MEANINGS.get(frozenset(kinds - modes - {"-"}))
-    return (meaning, " ".join(modes)) if meaning and len(modes) < 2 else None
+    quantity = _NAMED_BY.get(frozenset(kinds - modes - {"-"}))
+    return (quantity, " ".join(modes)) if quantity and len(modes) < 2 else None
 
 
 def _parts(word: str) -> list[str]:
-    """A word of the vocabulary, or the words that it is made of."""
-    if word in _VOCABULARY or not (found := _COMPOUND.fullmatch(word)):
+    """Return a word of the vocabulary, or the words that it is composed of."""
+    if word in _KINDS or not (found := _COMPOUND.fullmatch(word)):
         return [word]
-    return [found[1] or "-", *_WORD.findall(found[2])] if found[1] else _WORD.findall(found[2])
+    return [*filter(None, [found[1]]), *_WORD.findall(found[2])]
