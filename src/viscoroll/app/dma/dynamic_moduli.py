@@ -1,4 +1,4 @@
-"""The moduli that a dynamic mechanical analysis measured, :class:`DynamicModuli`: what a file of them is read as."""
+"""Storage and loss modulus of a dynamic mechanical analysis: :class:`DynamicModuli`."""
 
 from __future__ import annotations
 

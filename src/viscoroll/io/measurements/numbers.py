@@ -79,7 +79,7 @@ def fault_of(cell: str, decimal: str) -> str:
         return ""
     if _THOUSANDS.fullmatch(cell) or not decimal:
         return (
-            "may have a separator of thousands, as both marks occur or each has three digits: write decimal marks alone"
+            "may have a separator of thousands, as both marks occur or all have three digits: write decimal marks only"
         )
     return f"is no number with a decimal {'comma' if decimal == ',' else 'point'}"
 
