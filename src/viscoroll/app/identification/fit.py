@@ -67,7 +67,7 @@ class Identification(Shown):
     """
 
     def __init__(self, problem: Problem, found: list[Found]) -> None:
-        self._problem, self._about, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
+        self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
         self.minima = [(one.chi2, problem.values(one.u)) for one in found]
         self.dof, self.records = problem.points - u.size, problem.records
@@ -76,19 +76,19 @@ class Identification(Shown):
         self.noise = problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
         self.cylinder = cylinder_of(problem.cylinder, self.values)
-        self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.live)
-        sd = np.sqrt(np.diag(self._about.cov))
-        self.correlations = self._about.cov / np.outer(sd, sd)
+        self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.active)
+        sd = np.sqrt(np.diag(self._likelihood.cov))
+        self.correlations = self._likelihood.cov / np.outer(sd, sd)
         sizes = zip(problem.unknowns, sd.tolist(), strict=True)
-        self.stderr = {one.name: one.spread(self.values[one.name]) * size for one, size in sizes}
+        self.stderr = {one.name: one.slope(self.values[one.name]) * size for one, size in sizes}
         self.stderr |= dict.fromkeys(self.does_not_act, math.inf)
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
         """The best fit to each record, with its bands."""
-        return {called: self._predicted(record, called, _LEVEL) for called, record in self.records.items()}
+        return {called: self._predict(record, called, _LEVEL) for called, record in self.records.items()}
 
-    def _rise(self, level: float = _LEVEL) -> float:
+    def _delta_chi2(self, level: float = _LEVEL) -> float:
         """What chi2 may rise by: chi-squared where sigma is given, F where it is estimated."""
         from scipy import stats
 
@@ -113,7 +113,7 @@ class Identification(Shown):
             Another level.
         """
         found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
-        for i, sides in self._about.axes(self._rise(level)).items():
+        for i, sides in self._likelihood.axes(self._delta_chi2(level)).items():
             one = self._problem.unknowns[i]
             low, high = (None if end is None else float(one.to_value(end)) for end in sides.ends)
             found[one.name] = low, high
@@ -122,7 +122,7 @@ class Identification(Shown):
     @cached_property
     def undetermined(self) -> tuple[str, ...]:
         """See above."""
-        return tuple(self._problem.names[i] for i in self._about.undetermined(self._rise()))
+        return tuple(self._problem.names[i] for i in self._likelihood.undetermined(self._delta_chi2()))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
         """What is determined of the :attr:`undetermined` unknowns: products of powers, with their intervals.
@@ -131,7 +131,7 @@ class Identification(Shown):
         and the profile of just these.  Then, where it is much sharper, what holds near the values found alone, by the
         slopes there.
         """
-        return self._about.products(self._about.undetermined(self._rise()), self._rise(level))
+        return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
         """What a record would show, with bands.
@@ -157,19 +157,19 @@ class Identification(Shown):
         """
         if not isinstance(record, Record):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
-        for name, (_, span) in record.starts(self.cylinder.R).items():
+        for name, (_, span) in record.initial_values(self.cylinder.R).items():
             if span is not None:
                 raise ParameterError(name, None, "a number", f"{name} of the record is open: a prediction needs it")
-        return self._predicted(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
+        return self._predict(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
 
-    def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
-        problem, cov, u = self._problem, self._about.cov, self._about.best.u
+    def _predict(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
+        problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
         def seen(u: Floats) -> Floats:
             values = problem.predicted(record, u, called)
-            return np.array([values[name] for name in record.KINDS])
+            return np.array([values[name] for name in record.QUANTITIES])
 
-        value, half = seen(u), math.sqrt(self._rise(level))
+        value, half = seen(u), math.sqrt(self._delta_chi2(level))
         if draws:
             many = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _TRIES, method="eigh")
             inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
@@ -180,8 +180,8 @@ class Identification(Shown):
             spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
             low, high = value - spread, value + spread
         ends = (("", value), ("_low", low), ("_high", high))
-        found = {name + end: rows[n] for end, rows in ends for n, name in enumerate(record.KINDS)}
-        places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
+        found = {name + end: rows[n] for end, rows in ends for n, name in enumerate(record.QUANTITIES)}
+        places = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
         units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
         return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
@@ -195,7 +195,7 @@ class Identification(Shown):
     def jacobian(self, values: Mapping[str, float]) -> Floats:
         """Slopes of :meth:`residuals` over the values, (residuals, unknowns), by central differences."""
         J = self._problem.jacobian(self._coordinates(values))
-        return J / [one.spread(values.get(one.name, one.start)) for one in self._problem.unknowns]
+        return J / [one.slope(values.get(one.name, one.start)) for one in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
         refuse_unknown("values", values, self.values, "an unknown")

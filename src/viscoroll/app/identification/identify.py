@@ -72,7 +72,7 @@ def identify(
         if not isinstance(value, kind):
             raise ParameterError(name, f"{value!r:.60}", allowed)
     refuse_unknown("shift", shifts, SECTIONS, "a body")
-    count, seed, records = whole("starts", starts, 1), whole("seed", seed, 0), _called(data)
+    count, seed, records = whole("starts", starts, 1), whole("seed", seed, 0), _records_by_name(data)
     for record in records.values():
         cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
     unknowns = unknowns_of(cylinder, unknown, records, prior)
@@ -84,17 +84,17 @@ def identify(
         allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
         raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
     planned = not any(record.measured for record in records.values())
-    return Identification(problem, _minima(problem, 1 if planned else count, seed, yes_or_no("progress", progress)))
+    return Identification(problem, _find_minima(problem, 1 if planned else count, seed, yes_or_no("progress", progress)))
 
 
-def _called(data: Iterable[Record]) -> dict[str, Record]:
+def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
     """The records by name; those without one are called by their kind."""
     found: dict[str, Record] = {}
     for record in data:
         if not isinstance(record, Record):
             raise ParameterError("data", f"{record!r:.60}", "a list of Resistance, Traction and Coastdown")
         alike = sum(type(one) is type(record) and not one.name for one in found.values())
-        called = record.name or (f"{record.KIND} {alike + 1}" if alike else record.KIND)
+        called = record.name or (f"{record.LABEL} {alike + 1}" if alike else record.LABEL)
         if called in found:
             raise ParameterError("name", repr(called), "another for each record")
         if not record.sigma:
@@ -106,28 +106,28 @@ def _called(data: Iterable[Record]) -> dict[str, Record]:
     return found
 
 
-def _minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Found]:
+def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Found]:
     """All that the starts lead to and that are parted by a ridge, the best first."""
     from tqdm import tqdm
 
-    first = problem.settled(problem.least(problem.start))
-    starts = [*_spread(problem, count, seed), *_beyond(problem, first.u)]
+    first = problem.estimate_sigma(problem.minimize(problem.start))
+    starts = [*_latin_hypercube(problem, count, seed), *_starts_across_valley(problem, first.u)]
     others = tqdm(starts, "identify", delay=1.0, leave=False, disable=not progress)
-    tries = [first, *(problem.least(u, None, _ROUGH, _STEPS) for u in others)]
+    tries = [first, *(problem.minimize(u, None, _ROUGH, _STEPS) for u in others)]
     good = min(found.chi2 for found in tries) + _HOPELESS
-    near = [problem.least(one.u) for one in tries if one.chi2 < good]
-    kept = [problem.settled(min(near, key=lambda found: found.chi2))]
+    near = [problem.minimize(one.u) for one in tries if one.chi2 < good]
+    kept = [problem.estimate_sigma(min(near, key=lambda found: found.chi2))]
     for one in sorted((Found(one.u, problem.cost(one.u)) for one in near), key=lambda one: one.chi2):
-        if one.chi2 - kept[0].chi2 < _ALTERNATIVE and not any(_joined(problem, one, other) for other in kept):
+        if one.chi2 - kept[0].chi2 < _ALTERNATIVE and not any(_in_one_valley(problem, one, other) for other in kept):
             kept.append(one)
     return kept
 
 
-def _spread(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
+def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
     """A Latin hypercube over the ranges, but one place; what data start, as V0, stays there."""
     from scipy.stats import qmc
 
-    free = [i for i in problem.live if problem.names[i].split(":")[0] not in OF_RECORDS]
+    free = [i for i in problem.active if problem.names[i].split(":")[0] not in OF_RECORDS]
     if count > 1 and free:
         for point in qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed)).random(count - 1):
             u = problem.start.copy()
@@ -135,17 +135,17 @@ def _spread(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
             yield u
 
 
-def _beyond(problem: Problem, u: Floats) -> list[Floats]:
+def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     """Places on either side of one far from the start, along what it knows least: ridges of a valley lie across it."""
     if np.abs(u - problem.start).max() < _NEAR:
         return []
-    along = np.linalg.svd(problem.weighed(u)[1][:, problem.live])[2][-1]
+    along = np.linalg.svd(problem.weighted(u)[1][:, problem.active])[2][-1]
     far = np.zeros(u.size)
-    far[problem.live] = _LEAP * along / np.abs(along).max()
+    far[problem.active] = _LEAP * along / np.abs(along).max()
     return [np.clip(u + way, problem.low, problem.high) for way in (far, -far)]
 
 
-def _joined(problem: Problem, one: Found, other: Found) -> bool:
+def _in_one_valley(problem: Problem, one: Found, other: Found) -> bool:
     """Whether a way leads from one place to the other without a ridge: along what differs most, all else following."""
     apart = other.u - one.u
     which = int(np.argmax(np.abs(apart)))
@@ -153,4 +153,4 @@ def _joined(problem: Problem, one: Found, other: Found) -> bool:
         return True
     powers, top = np.eye(apart.size)[which], max(one.chi2, other.chi2) + _RIDGE
     ways = (one.u + share * apart for share in (0.5, 0.25, 0.75))
-    return all(problem.least(u, powers, _ROUGH, _STEPS).chi2 < top for u in ways)
+    return all(problem.minimize(u, powers, _ROUGH, _STEPS).chi2 < top for u in ways)

@@ -54,7 +54,7 @@ def _record(path: Path, given: Any) -> Record:
     kind = next((kind for name, kind in _KINDS.items() if name == named), None)
     if kind is None:
         raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
-    columns = (*kind.PLACES, *kind.KINDS)
+    columns = (*kind.COORDINATES, *kind.QUANTITIES)
     own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
     section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
@@ -81,18 +81,18 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     ModelWarning
         Columns that are left aside.
     """
-    among = (*kind.PLACES, *kind.KINDS)
+    among = (*kind.COORDINATES, *kind.QUANTITIES)
     called = {name: section.columns.get(name, name) for name in among}
     table = named_table(path, called.values(), section.decimal or None, section.encoding or None)
     where = {}
     for name in among:
         if (column := find_column(table, called[name])) is not None:
             where[name] = column
-        elif name in kind.PLACES or name in section.columns:
+        elif name in kind.COORDINATES or name in section.columns:
             raise missing_column(table, called[name])
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in where.values()]
-    if others and not set(where) & set(kind.KINDS):
-        problem = f"has no column {' or '.join(kind.KINDS)}, but {', '.join(others)}: name it in columns = {{...}}"
+    if others and not set(where) & set(kind.QUANTITIES):
+        problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
         raise FileError(path, f"{problem}; a plan has no other columns")
     if others:
         text = f"{path.name}: columns that are left aside: {', '.join(others)}"

@@ -22,7 +22,7 @@ _STEP = 3e-4
 #: of those to one side, which a search takes: 1e-5; at less the last digits of a motion show, and it stops early
 _SIDE = 1e-5
 #: a residual where there is no motion: as far off as it gets
-FAR = 1e6
+FAILED = 1e6
 #: weight of a combination that is held, over what the data know of any
 _STIFF = 1e6
 #: a standard deviation that was not given, over that of the values, to begin with; rounds in which it settles, to what
@@ -91,7 +91,7 @@ class Problem:
         self.robust, self.names = robust, [one.name for one in unknowns]
         self.start, self.low, self.high = np.array([one.to_u(np.array(one[1:4])) for one in unknowns]).T
         self._mean, self._sd = np.array([(one.mean, one.sd) for one in unknowns]).T
-        self._known, self._model = np.isfinite(self._sd), lru_cache(16)(self._modelled)
+        self._has_prior, self._model = np.isfinite(self._sd), lru_cache(16)(self._predict_all)
         self.columns: list[Column] = []
         y, sigma, size = [], [], 0
         for called, record in records.items():
@@ -103,10 +103,10 @@ class Problem:
                 sigma.append(np.broadcast_to(spread, own.shape))
                 self.columns.append(Column(called, quantity, slice(size, size + own.size), given is None))
                 size += own.size
-        self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._known.sum())
-        self.live = self._acting()
+        self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._has_prior.sum())
+        self.active = self._find_active()
 
-    def _acting(self) -> list[int]:
+    def _find_active(self) -> list[int]:
         """Unknowns that act anywhere: at the start one may have ceased to, so that other places are asked too."""
         rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
         others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (4, middle.size))
@@ -126,7 +126,7 @@ class Problem:
         own = {name.removesuffix(f":{called}"): value for name, value in values.items()}
         return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
 
-    def _modelled(self, u: bytes) -> Floats:
+    def _predict_all(self, u: bytes) -> Floats:
         """All data as predicted; of values that make no cylinder or no motion NaN."""
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
@@ -137,8 +137,8 @@ class Problem:
 
     def residuals(self, u: Floats) -> Floats:
         """Of data and what is known beforehand, over their sigma; where there is no motion as far off as it gets."""
-        r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAR), -FAR, FAR)
-        return np.append(r, ((u - self._mean) / self._sd)[self._known])
+        r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAILED), -FAILED, FAILED)
+        return np.append(r, ((u - self._mean) / self._sd)[self._has_prior])
 
     def slopes(self, of: Callable[[Floats], Floats], u: Floats, which: Sequence[int], step: float = _STEP) -> Floats:
         """Of a vector over some coordinates within their ranges: central differences, or of ``_SIDE`` to one side."""
@@ -160,19 +160,19 @@ class Problem:
         z = self.residuals(u) ** 2
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
-    def weighed(self, u: Floats) -> tuple[Floats, Floats]:
+    def weighted(self, u: Floats) -> tuple[Floats, Floats]:
         """Residuals and slopes by the weight that each has in chi2."""
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
         return r * weight, J * weight[:, np.newaxis]
 
-    def least(self, u: Floats, held: Floats | None = None, tolerance: float = 1e-10, steps: int = 200) -> Found:
+    def minimize(self, u: Floats, held: Floats | None = None, tolerance: float = 1e-10, steps: int = 200) -> Found:
         """The least chi2 near ``u``, perhaps with a combination of coordinates, of powers ``held``, as it is there."""
         from scipy.optimize import least_squares
 
         powers = np.zeros_like(u) if held is None else held
         fixed = np.count_nonzero(powers) == 1
-        free = [i for i in self.live if not (fixed and powers[i])]
+        free = [i for i in self.active if not (fixed and powers[i])]
         rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
         whole = np.clip(u, self.low, self.high)
 
@@ -195,17 +195,17 @@ class Problem:
             whole = at(found.x)
         return Found(whole, self.cost(whole))
 
-    def settled(self, best: Found) -> Found:
+    def estimate_sigma(self, best: Found) -> Found:
         """Each sigma that was not given estimated from its residuals, and fitted again, until both stay."""
         estimated = [one for one in self.columns if one.estimated]
         for _ in range(_ROUNDS if estimated else 0):
             r, before = self.residuals(best.u), self.sigma.copy()
-            share = 1.0 - min(len(self.live) / r.size, 0.9)
+            share = 1.0 - min(len(self.active) / r.size, 0.9)
             for one in estimated:
                 own = r[one.at]
                 size = np.median(np.abs(own)) / _MEDIAN if self.robust else np.sqrt(np.mean(own**2) / share)
                 self.sigma[one.at] *= max(float(size), 1e-12)
-            best = self.least(best.u)
+            best = self.minimize(best.u)
             if np.abs(self.sigma / before - 1.0).max() < _SETTLED:
                 break
         return best
@@ -215,7 +215,7 @@ class Problem:
         found, r = {}, self.residuals(u)
         for one in self.columns:
             record = self.records[one.record]
-            part = r[one.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.PLACES)])]
+            part = r[one.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.COORDINATES)])]
             allowed = 3.0 / math.sqrt(part.size)
             if self.robust:
                 rms, most = float(np.median(np.abs(part))) / _MEDIAN, _BY_OUTLIERS + _BY_CHANCE / math.sqrt(part.size)
@@ -227,7 +227,7 @@ class Problem:
             found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
         return found
 
-    def at_end(self, u: Floats) -> list[int]:
+    def at_bounds(self, u: Floats) -> list[int]:
         """Unknowns that lie at an end of their range."""
         width = self.high - self.low
         return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_END * width).tolist()

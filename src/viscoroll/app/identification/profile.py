@@ -38,12 +38,12 @@ _SHARPER = 1.0 / 3.0
 class Profile(NamedTuple):
     """How far a combination may go, and where it may be.
 
-    ends : coordinates, None on a side that is open; made_by : of each end, unknowns whose range makes it; pieces :
+    ends : coordinates, None on a side that is open; limited_by : of each end, unknowns whose range makes it; pieces :
     whether another branch led on where a walk ended; best : that was met; within : places met that fit, (k, n).
     """
 
     ends: list[float | None]
-    made_by: list[list[str]]
+    limited_by: list[list[str]]
     pieces: bool
     best: Found
     within: Floats
@@ -70,26 +70,26 @@ class Likelihood:
 
     def __init__(self, problem: Problem, found: list[Found]) -> None:
         self.problem, self.best, (u, _) = problem, found[0], found[0]
-        J = problem.weighed(u)[1]
+        J = problem.weighted(u)[1]
         self.cov = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
         self.others = [v for v in (*(one.u for one in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
         self.ends: list[Floats] = []
-        self._walked = cache(lambda rise, *powers: Walk(self, np.array(powers)).both_ways(rise))
+        self._profiles = cache(lambda rise, *powers: ProfileWalk(self, np.array(powers)).profile_of(rise))
 
     def profile(self, powers: Floats, rise: float) -> Profile:
         """The interval of a combination within which chi2 rises by no more than ``rise``.
 
         Beyond the ends that a walk finds it looks from other minima, the start, and the ends of other unknowns.
         """
-        return self._walked(rise, *powers.tolist())
+        return self._profiles(rise, *powers.tolist())
 
     def axes(self, rise: float) -> dict[int, Profile]:
         """Of each unknown that acts; where a side is open, as seen from the ends of what fits of the others too."""
-        found = {i: self.profile(np.eye(self.best.u.size)[i], rise) for i in self.problem.live}
+        found = {i: self.profile(np.eye(self.best.u.size)[i], rise) for i in self.problem.active}
         if not self.ends and any(None in one.ends for one in found.values()):
             ways = ((one.within, one.within[:, i]) for i, one in found.items())
             self.ends = [within[n] for within, way in ways for n in (np.argmin(way), np.argmax(way))]
-            self._walked.cache_clear()
+            self._profiles.cache_clear()
             return self.axes(rise)
         return found
 
@@ -102,7 +102,7 @@ class Likelihood:
             if high - low > min(_WIDE, 0.5 * (most - least)):
                 wide.append(i)
         together = np.abs(self.cov / np.outer(sd, sd))[:, wide] > _TOGETHER
-        return [i for i in problem.live if together[i].any()]
+        return [i for i in problem.active if together[i].any()]
 
     def products(self, which: list[int], rise: float) -> list[Product]:
         """What is determined of undetermined unknowns: by places that all fit, else by slopes at the best.
@@ -126,7 +126,7 @@ class Likelihood:
             if low is None or high is None or high - low > _NARROW:
                 break
             exponents = {
-                one.name: p * (values[one.name] / one.spread(values[one.name]))
+                one.name: p * (values[one.name] / one.slope(values[one.name]))
                 for one, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
             }  # fmt: skip
             value = math.prod(values[name] ** p for name, p in exponents.items())
@@ -150,56 +150,56 @@ class Likelihood:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
 
 
-class Walk:
+class ProfileWalk:
     """A walk outwards from the best fit along a combination, each step from the last one's place."""
 
     def __init__(self, about: Likelihood, powers: Floats) -> None:
         self.about, self.problem, self.best = about, about.problem, about.best
         self.powers, along = powers, about.cov @ powers
         self.sd, self.slope = math.sqrt(powers @ along), along / (powers @ along)
-        self.passed = [self.best]
+        self.visited = [self.best]
 
-    def way(self, u: Floats) -> float:
+    def distance(self, u: Floats) -> float:
         """How far a place is from the best."""
         return float(self.powers @ (u - self.best.u))
 
-    def moved(self, d: float, u: Floats) -> Floats:
+    def shift_to(self, d: float, u: Floats) -> Floats:
         """A place so far from the best: ``u`` moved along the covariance."""
-        return u + self.slope * (d - self.way(u))
+        return u + self.slope * (d - self.distance(u))
 
-    def at(self, d: float, u: Floats) -> Found:
+    def minimum_at(self, d: float, u: Floats) -> Found:
         """The least chi2 so far from the best, near ``u``."""
-        self.passed.append(self.problem.least(self.moved(d, u), self.powers, _LOOSE, _FEW))
-        return self.passed[-1]
+        self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _LOOSE, _FEW))
+        return self.visited[-1]
 
-    def both_ways(self, rise: float) -> Profile:
+    def profile_of(self, rise: float) -> Profile:
         """As :meth:`Likelihood.profile`."""
-        problem, ends, made_by, pieces = self.problem, [], [], False
+        problem, ends, limited_by, pieces = self.problem, [], [], False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
-            reach = self.way(np.where(self.powers > 0.0, near, far))
-            d, last = self.out(reach, rise, self.best)
+            reach = self.distance(np.where(self.powers > 0.0, near, far))
+            d, last = self.find_end(reach, rise, self.best)
             for _ in range(_OFTEN):
-                if d is None or not (seen := self.beyond(d, reach, rise)):
+                if d is None or not (seen := self.search_beyond(d, reach, rise)):
                     break
                 pieces = True
-                d, last = self.out(reach, rise, seen[-1])
+                d, last = self.find_end(reach, rise, seen[-1])
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
-            made_by.append([] if d is None else self.made_by(last.u, rise))
-        within = np.array([one.u for one in self.passed if one.chi2 - self.best.chi2 <= rise])
-        return Profile(ends, made_by, pieces, min(self.passed, key=lambda one: one.chi2), within)
+            limited_by.append([] if d is None else self.limited_by(last.u, rise))
+        within = np.array([one.u for one in self.visited if one.chi2 - self.best.chi2 <= rise])
+        return Profile(ends, limited_by, pieces, min(self.visited, key=lambda one: one.chi2), within)
 
-    def out(self, reach: float, rise: float, low: Found) -> tuple[float | None, Found]:
+    def find_end(self, reach: float, rise: float, low: Found) -> tuple[float | None, Found]:
         """(Where chi2 has risen by so much, None if less up to ``reach``; the place there), from a lower one."""
         from scipy.optimize import brentq
 
-        goal, d = math.sqrt(rise), self.way(low.u)
+        goal, d = math.sqrt(rise), self.distance(low.u)
         step, known = min(goal * self.sd, _FIRST), {d: low}
 
         def over(d: float) -> float:  # the root of the rise grows as the way
             if d not in known:
                 b, *more = sorted(known, key=lambda b: abs(d - b))
                 u = known[b].u
-                known[d] = self.at(d, u + (u - known[more[0]].u) * ((d - b) / (b - more[0])) if more else u)
+                known[d] = self.minimum_at(d, u + (u - known[more[0]].u) * ((d - b) / (b - more[0])) if more else u)
             f = math.sqrt(max(known[d].chi2 - self.best.chi2, 0.0)) - goal
             return 0.0 if abs(f) < _CLOSE * goal else f
 
@@ -215,24 +215,24 @@ class Walk:
         end = brentq(over, a, d, xtol=_CLOSE * min(self.sd, 1.0))
         return end, known[min(known, key=lambda d: abs(d - end))]
 
-    def beyond(self, d: float, reach: float, rise: float) -> list[Found]:
+    def search_beyond(self, d: float, reach: float, rise: float) -> list[Found]:
         """Places at an end or behind it, met from elsewhere, where chi2 has risen by less, the farthest last."""
         found, about = [], self.about
         for u, shares in [*((u, _BEYOND) for u in about.others), *((u, _BEYOND[:1]) for u in about.ends)]:
-            own = self.way(u)
+            own = self.distance(u)
             for place in [d + share * (reach - d) for share in shares] + [own] * ((own - d) * (reach - d) > 0.0):
-                seen = np.clip(self.moved(place, u), self.problem.low, self.problem.high)
+                seen = np.clip(self.shift_to(place, u), self.problem.low, self.problem.high)
                 if self.problem.cost(seen) - self.best.chi2 < _HOPELESS * rise:
-                    found.append(self.at(place, u))
+                    found.append(self.minimum_at(place, u))
         lower = [one for one in found if one.chi2 - self.best.chi2 < _LOWER * rise]
-        return sorted(lower, key=lambda one: abs(self.way(one.u)))
+        return sorted(lower, key=lambda one: abs(self.distance(one.u)))
 
-    def made_by(self, u: Floats, rise: float) -> list[str]:
+    def limited_by(self, u: Floats, rise: float) -> list[str]:
         """Unknowns at an end of their range that would lower chi2 by going beyond, by slopes, the combination held."""
         problem = self.problem
-        if not (at := [i for i in problem.at_end(u) if not self.powers[i]]):
+        if not (at := [i for i in problem.at_bounds(u) if not self.powers[i]]):
             return []
-        (r, J), others = problem.weighed(u), [i for i in problem.live if i not in at]
+        (r, J), others = problem.weighted(u), [i for i in problem.active if i not in at]
         others.remove(np.flatnonzero(self.powers)[0])
         own = J[:, at] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, at], rcond=None)[0]
         gains = (r @ own) ** 2 / np.maximum((own**2).sum(axis=0), 1e-300)

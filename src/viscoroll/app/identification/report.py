@@ -63,9 +63,9 @@ def _limits(fit: Any) -> Iterator[str]:
         yield f"{', '.join(names)} and {last} cannot be told apart by these data: {_products(fit.products())}"
     elif last:
         yield f"{last} is not determined by these data"
-    yield from _sides(fit)
+    yield from _interval_limits(fit)
     for chi2, values in fit.minima[1:]:
-        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_listed(values)}"
+        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_values_text(values)}"
     yield from _phases(fit)
     loose, names = {*fit.does_not_act, *fit.undetermined}, list(fit.values)
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
@@ -74,7 +74,7 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
-    sure, near = (" and ".join(_named(one) for one in found if one.near is where) for where in (False, True))
+    sure, near = (" and ".join(_product_text(one) for one in found if one.near is where) for where in (False, True))
     if not found:
         return "no product of their powers is determined"
     text = f"only {sure or near} {'are' if ' and ' in (sure or near) else 'is'} determined"
@@ -82,20 +82,20 @@ def _products(found: list[Any]) -> str:
     return text + more * bool(near)
 
 
-def _named(one: Any) -> str:
+def _product_text(one: Any) -> str:
     powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
     text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
     low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
     return f"{text} = {one.value:.4g} (95%: {low} to {high})"
 
 
-def _sides(fit: Any) -> Iterator[str]:
+def _interval_limits(fit: Any) -> Iterator[str]:
     """What ends of intervals are not of the data."""
     made: dict[str, list[str]] = {}
     problem = fit._problem
-    for i, found in fit._about.axes(fit._rise()).items():
+    for i, found in fit._likelihood.axes(fit._delta_chi2()).items():
         name = problem.names[i]
-        for side, end, bounds in zip(("lower", "upper"), found.ends, found.made_by, strict=True):
+        for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by, strict=True):
             if end is None:
                 yield f"{name} is open on its {side} side: chi2 has not risen enough at the end of its range"
             for bound in bounds:
@@ -103,21 +103,21 @@ def _sides(fit: Any) -> Iterator[str]:
         if found.pieces:
             yield f"the interval of {name} joins branches of the fit: one value within it may fit worse than its ends"
         if found.best.chi2 < fit.chi2 - _BETTER:
-            listed = _listed(problem.values(found.best.u))
+            listed = _values_text(problem.values(found.best.u))
             yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
-    for i in problem.at_end(fit._about.best.u):
+    for i in problem.at_bounds(fit._likelihood.best.u):
         yield f"the best fit has {problem.names[i]} at the end of its range"
     yield from (f"the range of {bound}, not the data, makes {', '.join(ends)}" for bound, ends in made.items())
 
 
-def _listed(values: dict[str, float]) -> str:
+def _values_text(values: dict[str, float]) -> str:
     return ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
 
 
 def _phases(fit: Any) -> Iterator[str]:
     """Motions with too few points in a phase."""
     for called, record in fit.records.items() if "mu" in fit.values else ():
-        slips = int(np.sum(fit._problem.predicted(record, fit._about.best.u, called).get("slips", 0)))
+        slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, called).get("slips", 0)))
         if 0 < slips < _FEW:
             yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
 
@@ -134,7 +134,7 @@ def as_dataset(fit: Any) -> xr.Dataset:
         "correlation": (("unknown", "other"), fit.correlations),
     }  # fmt: skip
     for called, record in fit.records.items():
-        columns = {name: getattr(record, name) for name in (*record.PLACES, *record.measured)}
+        columns = {name: getattr(record, name) for name in (*record.COORDINATES, *record.measured)}
         for name in record.sigma:
             fitted = getattr(fit.predicted[called], name).value
             columns |= {f"{name} fit": fitted, f"{name} sigma": fit.sigma[f"{name} of {called}"]}

@@ -24,8 +24,8 @@ from .records import OF_RECORDS, Record
 
 #: degrees Celsius -> a_T
 Shift = Callable[[float], float]
-_OWN = ("R", "m", "mu", "j", "g", "load")
-_OF_BODY = ("E", "nu", "T_ref")
+_OF_CYLINDER = ("R", "m", "mu", "j", "g", "load")
+_OF_MATERIAL = ("E", "nu", "T_ref")
 _PREFIX = {"material": "", "base": "base_"}
 #: of the bearing
 _BEARING = {"brake": 0.0, "drag": 0.0}
@@ -67,7 +67,7 @@ class Unknown(NamedTuple):
         """The value at a coordinate."""
         return np.exp(u) if self.unit is None else u * self.unit
 
-    def spread(self, value: float) -> float:
+    def slope(self, value: float) -> float:
         """How much the value changes with its coordinate."""
         return value if self.unit is None else self.unit
 
@@ -82,12 +82,12 @@ def unknowns_of(
     ParameterError
         A name that is none, a range that does not hold the start, a cylinder with arrays; a prior of what is known.
     """
-    starts = {name: getattr(cylinder, name) for name in _OWN} | _BEARING
+    starts = {name: getattr(cylinder, name) for name in _OF_CYLINDER} | _BEARING
     for section, body in _bodies(cylinder).items():
         starts |= {_PREFIX[section] + name: value for name, value in _inputs(body).items()}
     starts, ranges = {name: number(name, value) for name, value in starts.items()}, dict(given)
     for called, record in records.items():
-        for name, (start, span) in record.starts(cylinder.R).items():
+        for name, (start, span) in record.initial_values(cylinder.R).items():
             starts[f"{name}:{called}"] = start
             if span is not None:
                 ranges.setdefault(f"{name}:{called}", span)
@@ -132,14 +132,14 @@ def cylinder_of(
     ParameterError
         Values that make no cylinder; a temperature without a shift of a body, or that the shift does not allow.
     """
-    changes: dict[str, Any] = {name: values[name] for name in _OWN if name in values}
-    changes |= {} if record is None else record.own
+    changes: dict[str, Any] = {name: values[name] for name in _OF_CYLINDER if name in values}
+    changes |= {} if record is None else record.overrides
     for section, body in _bodies(cylinder).items():
-        made = _changed(body, _PREFIX[section], values)
+        made = _with_values(body, _PREFIX[section], values)
         if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
             if section not in shifts:
                 allowed = f"given with a shift of the {section}, as vr.WLF(T0=20.0)"
-                raise ParameterError(record.of("temperature"), record.temperature, allowed)
+                raise ParameterError(record.label("temperature"), record.temperature, allowed)
             made = made.at(record.temperature, shifts[section])
         if made is not body:
             changes[section] = made
@@ -156,15 +156,15 @@ def _inputs(body: Material) -> dict[str, float]:
     """All that may be unknown of a body, by name."""
     series = {"E": body.prony.E.tolist(), "tau": body.prony.tau.tolist()}
     modes = {f"{name}_{n}": value for name, column in series.items() for n, value in enumerate(column, 1)}
-    return {name: getattr(body, name) for name in _OF_BODY} | modes
+    return {name: getattr(body, name) for name in _OF_MATERIAL} | modes
 
 
-def _changed(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
+def _with_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
     old = _inputs(body)
     new = {name: values.get(prefix + name, value) for name, value in old.items()}
     if new == old:
         return body
-    changes: dict[str, Any] = {name: new.pop(name) for name in _OF_BODY}
+    changes: dict[str, Any] = {name: new.pop(name) for name in _OF_MATERIAL}
     if any(new[name] != old[name] for name in new):  # of the modes: it is no longer what was measured
         modes, count = tuple(new.values()), body.prony.E.size
         changes |= {"prony": _series(modes[:count], modes[count:]), "measured": None}

@@ -84,7 +84,7 @@ def compared(fit: Any) -> Figure:
     for one, (above, below) in zip(shown, axes.T, strict=True):
         name, called, quantity = str(one), one.record, one.quantity
         record, band = fit.records[called], getattr(fit.predicted[called], quantity)
-        *others, place = record.PLACES
+        *others, place = record.COORDINATES
         several = bool(others)  # curves at several speeds: dots, not one line
         order = np.argsort(np.ravel(getattr(record, place)), kind="stable")
         columns = getattr(record, place), fit.sigma[name], *band
