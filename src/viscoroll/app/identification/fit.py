@@ -1,4 +1,4 @@
-"""What was found: :class:`Identification`, and :class:`Prediction`."""
+"""Results of an identification: :class:`Identification`, and :class:`Prediction`."""
 
 from __future__ import annotations
 
@@ -14,15 +14,18 @@ from ...core.errors import ParameterError, refuse_unknown
 from ...core.plots.measured import compared
 from ...core.results import Row, Shown, Values
 from ...core.typed import Floats
-from .problem import Found, Problem
+from .problem import Minimum, Problem
 from .profile import Likelihood, Product
 from .records import Record
 from .report import as_dataset, report
 from .unknowns import cylinder_of
 
+#: confidence level of intervals and bands
 _LEVEL = 0.95
-#: most draws of a band, and of them that are thrown away, at most, for one that lies within the ranges
-_DRAWS, _TRIES = 100_000, 50
+#: most draws of a band
+_DRAWS = 100_000
+#: candidates of each draw: those outside of the ranges are rejected
+_CANDIDATES = 50
 
 
 class Band(NamedTuple):
@@ -66,7 +69,12 @@ class Identification(Shown):
     planned : whether the records hold no values: standard deviations and intervals are what to expect.
     """
 
-    def __init__(self, problem: Problem, found: list[Found]) -> None:
+    def __init__(self, problem: Problem, found: list[Minimum]) -> None:
+        """Collect the values and statistics of the best fit.
+
+        problem : the least squares.
+        found : minima, the best first.
+        """
         self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
         self.minima = [(one.chi2, problem.values(one.u)) for one in found]
@@ -85,11 +93,15 @@ class Identification(Shown):
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
-        """The best fit to each record, with its bands."""
+        """The best fit to each record with its bands, by the name of the record."""
         return {called: self._predict(record, called, _LEVEL) for called, record in self.records.items()}
 
     def _delta_chi2(self, level: float = _LEVEL) -> float:
-        """What chi2 may rise by: chi-squared where sigma is given, F where it is estimated."""
+        """Return the rise of chi2 at the ends of an interval: chi-squared where sigma is given, F where it is
+        estimated.
+
+        level : confidence level, in (0, 0.9999].
+        """
         from scipy import stats
 
         level = number("level", level, low=0.0, strict=True, high=0.9999)
@@ -97,15 +109,15 @@ class Identification(Shown):
         return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
 
     def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
-        """Where each unknown lies, by its profile: (low, high), None on a side that is open.
+        """Return the interval of each unknown by its profile: (low, high), None on a side that is open.
 
-        All other unknowns follow while one is moved, until chi2 has risen by what ``level`` asks: 3.84 at 0.95 where
+        All other unknowns are free while one is varied, until chi2 has risen as ``level`` asks: 3.84 at 0.95 where
         sigma was given, by F where it was estimated.  A side is open where it does not rise up to the end of the
-        range.  If another piece is found beyond an end, the interval reaches over it.
+        range.  If another branch is found beyond an end, the interval includes it.
 
         Parameters
         ----------
-        level : in (0, 0.9999].
+        level : confidence level, in (0, 0.9999].
 
         Raises
         ------
@@ -121,27 +133,30 @@ class Identification(Shown):
 
     @cached_property
     def undetermined(self) -> tuple[str, ...]:
-        """See above."""
+        """Names of the unknowns whose interval is wide, and of those that are correlated with them."""
         return tuple(self._problem.names[i] for i in self._likelihood.undetermined(self._delta_chi2()))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
-        """What is determined of the :attr:`undetermined` unknowns: products of powers, with their intervals.
+        """Return products of powers of the :attr:`undetermined` unknowns that the data determine, with their
+        intervals.
 
-        First those that hold over the whole intervals: exponents in which all that fits lies nearest to each other,
-        and the profile of just these.  Then, where it is much sharper, what holds near the values found alone, by the
-        slopes there.
+        First those that hold over the whole intervals: exponents in which all points that fit lie nearest to each
+        other, and the profile of just these.  Then, where it is much narrower, what holds near the values found
+        alone, by the slopes there.
+
+        level : confidence level, in (0, 0.9999].
         """
         return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
-        """What a record would show, with bands.
+        """Predict a record, with bands.
 
         Parameters
         ----------
-        record : places, load and temperature; for a motion with V0, which may be another than those fitted.
+        record : coordinates, load and temperature; for a motion with V0, which may be another than those fitted.
         draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
             unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
-        level : of the bands, in (0, 0.9999].
+        level : confidence level of the bands, in (0, 0.9999].
         seed : of the draws, >= 0.
 
         Returns
@@ -163,6 +178,12 @@ class Identification(Shown):
         return self._predict(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
 
     def _predict(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
+        """Predict a record, with bands.
+
+        record : the record.
+        called : its name among the data, "" of another record.
+        level, draws, seed : as of :meth:`predict`.
+        """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
         def seen(u: Floats) -> Floats:
@@ -171,7 +192,7 @@ class Identification(Shown):
 
         value, half = seen(u), math.sqrt(self._delta_chi2(level))
         if draws:
-            many = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _TRIES, method="eigh")
+            many = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _CANDIDATES, method="eigh")
             inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
             drawn = [seen(at) for at in (inside if len(inside) else [u])]
             low, high = np.nanquantile(drawn, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
@@ -186,18 +207,20 @@ class Identification(Shown):
         return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
-        """Residuals over sigma of all records, in their order, and of the prior, at values by name.
+        """Return residuals over sigma of all records, in their order, and of the prior.
 
-        What is not named is at its start.  For optimisers and samplers of one's own; a motion that fails is 1e6 off.
+        values : name -> value of unknowns; others are at their start.
+        For optimisers and samplers of other packages; a motion that fails has residuals of 1e6.
         """
         return self._problem.residuals(self._coordinates(values))
 
     def jacobian(self, values: Mapping[str, float]) -> Floats:
-        """Slopes of :meth:`residuals` over the values, (residuals, unknowns), by central differences."""
+        """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences."""
         J = self._problem.jacobian(self._coordinates(values))
         return J / [one.slope(values.get(one.name, one.start)) for one in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
+        """Return the coordinates of values by name; raise ParameterError for unknown names and values out of range."""
         refuse_unknown("values", values, self.values, "an unknown")
         given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
         return np.array([one.to_u(number(one.name, value, **one.bounds(one.name))) for one, value in given])

@@ -1,4 +1,6 @@
-"""A TOML file of measurements: a cylinder, [unknown], [prior] and [[data]] -> what :func:`identify` takes."""
+"""A TOML file of measurements, a cylinder, [unknown], [prior] and [[data]], as arguments of
+:func:`.identify.identify`.
+"""
 
 from __future__ import annotations
 
@@ -18,19 +20,23 @@ from ...io.measurements import column_in_unit, find_column, missing_column, name
 from ...materials.file import shifts_of
 from .records import Coastdown, Record, Resistance, Traction
 
+#: section of the file -> its type
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}
+#: kind of [[data]] -> record
 _KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}
-#: keys of [[data]] beside those that its kind of record has
+#: keys of [[data]] that all kinds of record have
 _SECTION: list[Any] = [
     ("kind", str), ("file", str), ("decimal", str, ""), ("encoding", str, ""),
     *((name, dict[str, str], msgspec.field(default_factory=dict)) for name in ("columns", "units")),
 ]  # fmt: skip
-#: in place of a start speed, what Python gives None for
+#: word for an initial speed that is unknown, None in Python
 _UNKNOWN = "unknown"
 
 
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
-    """Arguments of :func:`identify` that a file gives: cylinder, unknown, data, prior, shift.
+    """Read the arguments of :func:`.identify.identify` from a file: cylinder, unknown, data, prior, shift.
+
+    path : of the TOML file.
 
     Raises
     ------
@@ -50,6 +56,12 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def _record(path: Path, given: Any) -> Record:
+    """Return the record of one [[data]].
+
+    path : of the TOML file, from whose folder files of data are found.
+    given : the section.
+    Raises FileError for unknown keys, wrong types, and values that make no record.
+    """
     named = given.get("kind") if isinstance(given, dict) else None
     kind = next((kind for name, kind in _KINDS.items() if name == named), None)
     if kind is None:
@@ -68,18 +80,23 @@ def _record(path: Path, given: Any) -> Record:
 
 
 def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
-    """Places and quantities of a file of data, in SI units, by the names given to its columns, or their own.
+    """Read coordinates and quantities from a file of data, in SI units.
+
+    path : of the file.
+    kind : of the record, whose names the columns have where the section names none.
+    section : the [[data]], with ``columns``, ``units``, ``decimal`` and ``encoding``.
+    Returns name -> values.
 
     Raises
     ------
     FileError
         A file that cannot be read; a column that is missing, or of a unit of another dimension; columns that are not
-        understood where nothing measured is.
+        understood where none is a quantity.
 
     Warns
     -----
     ModelWarning
-        Columns that are left aside.
+        Columns that are left out.
     """
     among = (*kind.COORDINATES, *kind.QUANTITIES)
     called = {name: section.columns.get(name, name) for name in among}

@@ -1,6 +1,6 @@
-"""What was measured, in SI units: :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.
+"""Records of measurements in SI units: :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.
 
-A record without values is a plan: what would be learnt from it is told before it is made.
+A record without values is a plan: the fit then says how well it would determine the unknowns.
 """
 
 from __future__ import annotations
@@ -20,21 +20,23 @@ from ...core.scale import DIMENSIONLESS, si_unit
 from ...core.typed import Floats, Numbers
 from ...cylinder import Cylinder
 
-#: what a start may be in place of a number: V0/R
+#: word for an initial angular velocity of V0/R
 ROLLING = "rolling"
-#: what may be unknown of a record
+#: unknowns of a record
 OF_RECORDS = ("V0", "omega0", "t0")
-#: numbers of a record, each above its least
+#: number of a record -> its lower bound
 _NUMBERS = {"load": 0.0, "m": 0.0, "temperature": -math.inf, "V0": -math.inf, "omega0": -math.inf}
-#: name -> where it starts, and a range
+#: name -> initial value, and range where the record leaves it open
 InitialValues = dict[str, tuple[float, tuple[float, float] | None]]
-#: of a motion: free, and driven, whose outputs are smooth in the parameters to 2e-12 at this one
-_RTOL, _RTOL_DRIVEN = 1e-8, 1e-10
+#: relative tolerance of a free motion
+_RTOL = 1e-8
+#: relative tolerance of a driven motion: its outputs are smooth in the parameters to 2e-12 then
+_RTOL_DRIVEN = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """What all records have: places, values and their standard deviations, each one a place or one for all."""
+    """A record: coordinates, values at them, and standard deviations, each one for each coordinate or one for all."""
 
     #: names of places and of what may be measured there, the first what a plan is about
     COORDINATES: ClassVar[tuple[str, ...]] = ()
@@ -49,6 +51,10 @@ class Record:
     labels: Labels | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Check coordinates, values and standard deviations, convert them to SI units and give them one shape.
+
+        Raises ParameterError for values that are not finite, of another unit, or of shapes that do not go together.
+        """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
         given = {name: getattr(self, name) for name in (*self.COORDINATES, *self.measured)}
@@ -74,15 +80,20 @@ class Record:
 
     @staticmethod
     def unit(name: str) -> str:
-        """SI unit of a place or quantity; a creep has none."""
+        """Return the SI unit of a coordinate or quantity; a creep has none."""
         return si_unit("force" if name == "F" else name)
 
     def label(self, name: str) -> str:
-        """What a message calls a part of it."""
+        """Return the name of a field in a message."""
         return f"{self.name or self.LABEL}: {name}"
 
     def _sigmas(self) -> dict[str, Any]:
-        """Standard deviations that are given, by quantity; a single one is of what is measured, or planned first."""
+        """Return the standard deviations that are given, by quantity; a single one is of the quantity that is
+        measured or planned.
+
+        Raises ParameterError for a single one of several quantities, and for a quantity that the record does not
+        have.
+        """
         among, given = self.measured or self.QUANTITIES, {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
             if len(self.measured) > 1:
@@ -94,20 +105,28 @@ class Record:
 
     @property
     def measured(self) -> tuple[str, ...]:
-        """Quantities that it has values of; none of a plan."""
+        """Names of the quantities that the record has values of; none of a plan."""
         return tuple(name for name in self.QUANTITIES if getattr(self, name) is not None)
 
     @property
     def overrides(self) -> dict[str, float]:
-        """What it has in place of the cylinder's."""
+        """Inputs of the cylinder that the record replaces: load and mass."""
         return {name: value for name in ("load", "m") if (value := getattr(self, name, None)) is not None}
 
     def initial_values(self, R: float) -> InitialValues:
-        """What it may have unknown: where that starts, and the range of what is unknown without being asked for."""
+        """Return the unknowns that the record may have: name -> initial value, and range where the record leaves it
+        open.
+
+        R : radius of the cylinder, m.
+        """
         return {}
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """What the ``cylinder`` would show of all :attr:`QUANTITIES`; ``values`` of bearing and record by their names."""
+        """Return all :attr:`QUANTITIES` of the record as the model predicts them.
+
+        cylinder : of the values of the unknowns.
+        values : of unknowns of bearing and record, by their names without that of the record.
+        """
         raise NotImplementedError
 
 
@@ -139,6 +158,11 @@ class Resistance(Record):
     F: Numbers | None = None
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
+        """Return M and F with the torque of the bearing.
+
+        cylinder : of the values of the unknowns.
+        values : of brake and drag.
+        """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
         return {"M": M, "F": M / cylinder.R}
@@ -207,6 +231,7 @@ class Coastdown(Record):
     m: float | None = None
 
     def __post_init__(self) -> None:
+        """Check times and t0 beside all that every record checks."""
         super().__post_init__()
         t: Any = self.t
         if t.ndim > 1:
@@ -229,7 +254,12 @@ class Coastdown(Record):
         return found
 
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
-        """A speed at the release by the data, and a range about it."""
+        """Return the speed at the release that the data show, and a range about it.
+
+        name : "V0" or "omega0".
+        R : radius of the cylinder, m.
+        Raises ParameterError where the data do not show it.
+        """
         given: Any = self.V if name == "V0" else self.omega
         if given is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
             given = R * np.asarray(self.omega)
@@ -242,7 +272,11 @@ class Coastdown(Record):
         return first, (first - most, first + most)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """As all do, and which of its points fall into full slip."""
+        """Return V, omega, x, and for each point whether it is in full slip.
+
+        cylinder : of the values of the unknowns.
+        values : of brake and drag, and of V0, omega0 and t0 in place of those of the record.
+        """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0
         drive = {name: values[name] for name in ("brake", "drag") if values.get(name)}

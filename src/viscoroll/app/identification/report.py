@@ -1,6 +1,6 @@
-"""An identification in words: what the residuals say first, then values, then what the data do not tell.
+"""Report of an identification: noise of the residuals first, then values, then limits of the data.
 
-The same as a dataset, and as what JSON holds.
+The same as a dataset, and for JSON.
 """
 
 from __future__ import annotations
@@ -15,14 +15,16 @@ from ... import __version__
 if TYPE_CHECKING:
     import xarray as xr
 
-#: points of a motion's phase below which it is told
+#: points of full slip in a motion below which the report says that mu rests on few
 _FEW = 5
-#: correlation that is worth a word, and chi2 by which a profile's way must undercut the fit
-_CLOSE, _BETTER = 0.9, 0.1
+#: correlation from which on the report names it
+_CLOSE = 0.9
+#: fall of chi2 below the best fit from which on the report names a point of a profile
+_BETTER = 0.1
 
 
 def report(fit: Any) -> str:
-    """The report that ``print(fit)`` shows, of a :class:`viscoroll.app.identification.Identification`."""
+    """Return the report that ``print(fit)`` shows, of a :class:`viscoroll.app.identification.Identification`."""
     width = max(map(len, fit.values))
     rows = []
     for name, ends in fit.intervals().items():
@@ -33,6 +35,7 @@ def report(fit: Any) -> str:
 
 
 def _heading(fit: Any) -> str:
+    """Return the first line of a ``fit``: points, and chi2 or estimated standard deviations."""
     from scipy import stats
 
     problem = fit._problem
@@ -46,7 +49,7 @@ def _heading(fit: Any) -> str:
 
 
 def _noise(fit: Any) -> Iterator[str]:
-    """Residuals that are no noise."""
+    """Yield a sentence for each column of a ``fit`` whose residuals are no noise."""
     for name in fit.misfit:
         rms, lag, allowed, _ = fit.noise[name]
         size = f"{rms:.2f} sigma" + " by their median" * fit._problem.robust
@@ -57,6 +60,7 @@ def _noise(fit: Any) -> Iterator[str]:
 
 
 def _limits(fit: Any) -> Iterator[str]:
+    """Yield sentences on what the data of a ``fit`` do not determine."""
     yield from (f"{name} does not act on these data" for name in fit.does_not_act)
     *names, last = fit.undetermined or ("",)
     if names:
@@ -74,6 +78,7 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
+    """Return the words on the products that are determined, ``found``."""
     sure, near = (" and ".join(_product_text(one) for one in found if one.near is where) for where in (False, True))
     if not found:
         return "no product of their powers is determined"
@@ -83,6 +88,7 @@ def _products(found: list[Any]) -> str:
 
 
 def _product_text(one: Any) -> str:
+    """Return a product with its value and interval."""
     powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
     text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
     low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
@@ -90,7 +96,7 @@ def _product_text(one: Any) -> str:
 
 
 def _interval_limits(fit: Any) -> Iterator[str]:
-    """What ends of intervals are not of the data."""
+    """Yield sentences on ends of intervals of a ``fit`` that ranges, not data, make."""
     made: dict[str, list[str]] = {}
     problem = fit._problem
     for i, found in fit._likelihood.axes(fit._delta_chi2()).items():
@@ -111,11 +117,12 @@ def _interval_limits(fit: Any) -> Iterator[str]:
 
 
 def _values_text(values: dict[str, float]) -> str:
+    """Return values by name in one line."""
     return ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
 
 
 def _phases(fit: Any) -> Iterator[str]:
-    """Motions with too few points in a phase."""
+    """Yield a sentence for each motion of a ``fit`` with few points in full slip, on which mu rests."""
     for called, record in fit.records.items() if "mu" in fit.values else ():
         slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, called).get("slips", 0)))
         if 0 < slips < _FEW:
@@ -123,7 +130,10 @@ def _phases(fit: Any) -> Iterator[str]:
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
-    """Values over ``unknown``, each record's places, data, fit and sigma over an axis of its own."""
+    """Return a ``fit`` as a dataset.
+
+    Values are over ``unknown``; each record's coordinates, data, fit and sigma over an axis of its own.
+    """
     import xarray as xr
 
     names, ends = np.array(list(fit.values), object), np.array(list(fit.intervals().values()), float)
@@ -145,7 +155,7 @@ def as_dataset(fit: Any) -> xr.Dataset:
 
 
 def as_json(fit: Any) -> dict[str, Any]:
-    """What the report says, by name; null where a side is open or nothing acts."""
+    """Return the content of the report of a ``fit`` by name; null where a side is open or an unknown does not act."""
     told = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
     unknowns = {
