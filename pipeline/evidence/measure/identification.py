@@ -223,7 +223,7 @@ def coverage(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
 def rise_at_truth(fit: Identification, product: str) -> float:
     """By what chi2 rises with an unknown, or a product of some, held at its true value, all others following."""
-    walk = ProfileWalk(fit._likelihood, np.array([float(name in product.split()) for name in fit.values]))
+    walk = ProfileWalk(fit._likelihood, np.array([float(name in product.split()) for name in fit.values]), RISE)
     true = np.log([TRUTH.get(name, 1.0) for name in fit.values])
     return walk.minimum_at(walk.distance(true), fit._likelihood.best.u).chi2 - fit.chi2
 

@@ -85,9 +85,8 @@ class Identification(Shown):
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
         self.cylinder = cylinder_of(problem.cylinder, self.values)
         self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.active)
-        sd = np.sqrt(np.diag(self._likelihood.cov))
-        self.correlations = self._likelihood.cov / np.outer(sd, sd)
-        sizes = zip(problem.unknowns, sd.tolist(), strict=True)
+        self.correlations = self._likelihood.correlations
+        sizes = zip(problem.unknowns, self._likelihood.sd.tolist(), strict=True)
         self.stderr = {one.name: one.slope(self.values[one.name]) * size for one, size in sizes}
         self.stderr |= dict.fromkeys(self.does_not_act, math.inf)
 
@@ -186,25 +185,25 @@ class Identification(Shown):
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
-        def seen(u: Floats) -> Floats:
+        def predict(u: Floats) -> Floats:
             values = problem.predicted(record, u, called)
             return np.array([values[name] for name in record.QUANTITIES])
 
-        value, half = seen(u), math.sqrt(self._delta_chi2(level))
+        value, factor = predict(u), math.sqrt(self._delta_chi2(level))
         if draws:
-            many = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _CANDIDATES, method="eigh")
-            inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
-            drawn = [seen(at) for at in (inside if len(inside) else [u])]
-            low, high = np.nanquantile(drawn, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
+            drawn = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _CANDIDATES, method="eigh")
+            inside = drawn[((drawn >= problem.low) & (drawn <= problem.high)).all(axis=1)][:draws]
+            predictions = [predict(point) for point in (inside if len(inside) else [u])]
+            low, high = np.nanquantile(predictions, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
         else:
-            J = problem.slopes(seen, u, range(u.size)).T
-            spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
-            low, high = value - spread, value + spread
-        ends = (("", value), ("_low", low), ("_high", high))
-        found = {name + end: rows[n] for end, rows in ends for n, name in enumerate(record.QUANTITIES)}
-        places = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
-        units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
-        return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
+            J = problem.slopes(predict, u, range(u.size)).T
+            half = factor * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
+            low, high = value - half, value + half
+        ends = {"": value, "_low": low, "_high": high}
+        found = {name + end: row for end, rows in ends.items() for name, row in zip(record.QUANTITIES, rows)}
+        coordinates = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
+        units = {name: record.unit(name.split("_")[0]) for name in (*found, *coordinates)}
+        return Prediction(found, coordinates, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
         """Return residuals over sigma of all records, in their order, and of the prior.

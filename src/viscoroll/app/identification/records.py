@@ -57,14 +57,13 @@ class Record:
         """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
-        given = {name: getattr(self, name) for name in (*self.COORDINATES, *self.measured)}
-        given = {name: in_unit(self.label(name), value, self.unit(name)) for name, value in given.items()}
+        names = (*self.COORDINATES, *self.measured)
+        given = {name: in_unit(self.label(name), getattr(self, name), self.unit(name)) for name in names}
         plain, labels = unlabelled(given, DIMENSIONLESS)
         arrays = {name: np.atleast_1d(checked(self.label(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
-            arrays[f"sigma of {name}"] = checked(
-                self.label(f"sigma of {name}"), value, unit=self.unit(name), low=0.0, strict=True
-            )
+            label = f"sigma of {name}"
+            arrays[label] = checked(self.label(label), value, unit=self.unit(name), low=0.0, strict=True)
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
             raise ParameterError(self.label(self.QUANTITIES[0]), f"of shape {shape}", "a value a place")

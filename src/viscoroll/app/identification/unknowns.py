@@ -120,33 +120,32 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     prior : (value, standard deviation), None without.
     Raises ParameterError for a range or a prior that is none.
     """
-    low, high = _pair("unknown", name, span, "(low, high), low < high")
-    if not low < high:
-        raise ParameterError(f"unknown {name}", f"{span!r:.60}", "(low, high), low < high")
+    low, high = _pair("unknown", name, span)
     if not low <= start <= high:
         raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", f"a range that holds the start, {start:.6g}")
     linear = name.split(":")[0] in _LINEAR
     one = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
     if prior is None:
         return one
-    mean, sd = _pair("prior", name, prior, "(value, standard deviation)")
+    mean, sd = _pair("prior", name, prior)
     sd = number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
     return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
 
 
-def _pair(argument: str, name: str, given: Any, allowed: str) -> list[float]:
+def _pair(argument: str, name: str, given: Any) -> list[float]:
     """Return two numbers, each a value that the unknown may have.
 
     argument : "unknown" or "prior", of :func:`.identify.identify`.
     name : of the unknown.
     given : the pair.
-    allowed : words of the message.
+    Raises ParameterError for another number of them, and for a range that does not ascend.
     """
     bounds = Unknown.bounds(name)
     if argument == "prior":  # the standard deviation is of a logarithm: one unit is none of both
         del bounds["unit"]
     pair = checked(f"{argument} {name}", given, **bounds)
-    if pair.shape != (2,):
+    if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):
+        allowed = {"unknown": "(low, high), low < high", "prior": "(value, standard deviation)"}[argument]
         raise ParameterError(f"{argument} {name}", f"{given!r:.60}", allowed)
     return pair.tolist()
 

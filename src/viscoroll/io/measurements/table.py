@@ -13,7 +13,7 @@ import numpy as np
 
 from ...core.errors import FileError, ParameterError
 from ...core.units import is_unit
-from .headings import NO_UNIT, looks_like_unit
+from .headings import NO_UNIT, may_be_unit
 from .lines import SEPARATORS, Line, cut_by_blanks, cut_lines, read_lines, separator_of
 from .numbers import Numbers, are_numbers, decimal_mark, fault_of, is_number, numbers_of
 
@@ -33,37 +33,35 @@ class Table:
     path : of the file.
     headings : one a column; "column 0" and so on where the file has none.
     units : the cell of a row of units below each heading, "" without.
-    rows : cells of each row of numbers.
-    lines : the number of the line of each row.
+    rows : the lines of numbers, of which all cells beyond the headings are empty.
     parts : number of tables of the file that these rows are from.
     bare : whether the file has no headings.
     decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
     """
 
     path: str | PathLike[str]
-    headings: tuple[str, ...]
-    units: tuple[str, ...]
-    rows: list[list[str]]
-    lines: list[int]
+    headings: list[str]
+    units: list[str]
+    rows: list[Line]
     parts: int
     bare: bool
     decimal: str
 
     def has_numbers(self, column: int) -> bool:
         """Return whether any cell of the column with an index is a number."""
-        return any(is_number(row[column]) for row in self.rows)
+        return any(is_number(row.cells[column]) for row in self.rows)
 
     def numbers(self, column: int) -> Numbers:
         """Return the numbers of the column with an index.
 
         Raises FileError, with its line, for a gap, a text, a separator of thousands, or the other decimal mark.
         """
-        cells = [row[column] for row in self.rows]
+        cells = [row.cells[column] for row in self.rows]
         threes = any(len(cell) == 3 and cell.isdigit() for cell in cells)
         decimal = self.decimal if decimal_mark(cells, ",." * threes) else ""
-        for cell, line in zip(cells, self.lines, strict=True):
+        for row, cell in zip(self.rows, cells, strict=True):
             if fault := fault_of(cell, decimal):
-                raise FileError(self.path, f"line {line}, column {self.headings[column]!r}: {cell!r} {fault}")
+                raise FileError(self.path, f"line {row.number}, column {self.headings[column]!r}: {cell!r} {fault}")
         return numbers_of(cells)
 
     def require(self, holds: Any, problem: str) -> None:
@@ -73,7 +71,7 @@ class Table:
         problem : what is wrong where it does not hold.
         """
         if not holds.all():
-            raise FileError(self.path, f"line {self.lines[int(np.argmin(holds))]}: {problem}")
+            raise FileError(self.path, f"line {self.rows[int(np.argmin(holds))].number}: {problem}")
 
 
 def read_table(
@@ -115,11 +113,9 @@ def read_table(
     if any(part[:2] != (names, units) for part in parts):
         starts = ", ".join(str(rows[0].number) for *_, rows in parts)
         raise FileError(path, f"has {len(parts)} tables with unlike headings (from lines {starts}): keep one of them")
-    found = [row for *_, rows in parts for row in rows]
-    cells = [row.cells[: len(names)] for row in found]
-    mark = decimal or decimal_mark([cell for row in cells for cell in row], "," if separator == "," else "")
-    bare = lines[heads[0]].number == first.number
-    return Table(path, tuple(names), tuple(units), cells, [row.number for row in found], len(parts), bare, mark)
+    rows = [row for *_, rows in parts for row in rows]
+    mark = decimal or decimal_mark([cell for row in rows for cell in row.cells], "," if separator == "," else "")
+    return Table(path, names, units, rows, len(parts), lines[heads[0]].number == first.number, mark)
 
 
 @dataclass
@@ -219,7 +215,7 @@ class _Layout:
         for line in between:
             cells = self.headings(line)
             texts = [cell.strip("[](){}<> ") for cell in cells if cell]
-            units = [text for text in texts if text in NO_UNIT or (looks_like_unit(text) and is_unit(text))]
+            units = [text for text in texts if text in NO_UNIT or (may_be_unit(text) and is_unit(text))]
             fits = len(cells) == width or (self.separator != " " and not any(cells[width:]))
             if fits and 2 * len(units) >= len(texts) and not any(found):
                 found = (cells + found)[:width]
