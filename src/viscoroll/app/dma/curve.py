@@ -185,7 +185,8 @@ def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int 
 def thinned(data: _Data) -> _Data:
     """Return the means of logarithmic bins where there are more than :data:`MOST_POINTS`, else the data as they are.
 
-    data : a curve. In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of
+    data : a curve.
+    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of
     measurement that is 0 on average stays so.
     """
     x = np.log(data[0])

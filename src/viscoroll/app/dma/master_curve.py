@@ -135,7 +135,8 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
     """Find the shifts of neighbouring curves by their overlap.
 
     curves : from the coldest on.
-    temperatures : of the curves, degrees Celsius. Returns (ln a_T over the coldest, the mismatch of neighbours,
+    temperatures : of the curves, degrees Celsius.
+    Returns (ln a_T over the coldest, the mismatch of neighbours,
     their decades of freedom); raises ParameterError for neighbours that do not overlap.
     """
     found = [_align(*pair) for pair in pairwise(curves)]

@@ -33,7 +33,8 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
     data : the curve.
     target : largest misfit of each row, dimensionless.
     modes : number of modes, of which fewer are used only where more have no strength; None: as few as the target
-    needs. Returns (the spectrum, the shortest and the longest time of its grid, whether the target is reached).
+    needs.
+    Returns (the spectrum, the shortest and the longest time of its grid, whether the target is reached).
 
     Raises
     ------
@@ -66,7 +67,8 @@ def _starts(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[floa
     """Fit spectra on wider and wider, denser and denser grids of times until one reaches the target.
 
     data : the curve.
-    target : largest misfit of each row; None: all grids. Returns pairs of a spectrum and the ends of its grid.  The
+    target : largest misfit of each row; None: all grids.
+    Returns pairs of a spectrum and the ends of its grid.  The
     slow end of a grid is shortened until there is a long-time modulus.
     """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []

@@ -86,33 +86,31 @@ def read_dma(
             raise FileError(path, f"{problem}: give columns=")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
     found, others = columns_of(table, named, given, default)
-    choice = _choose(table, found, others)
     notes = [f"{table.parts} tables"] * (table.parts > 1)
-    mode = choice.mode
+    # as rheometers write; instruments of tension name E
+    beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
+    mode, pair, columns_of_quantity = _choose(table, found, others)
     if not mode:
-        # as rheometers write; instruments of tension name E
-        beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
         mode = "shear" if beside else "tension"
         reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
         notes.append(f"{mode} is assumed, since {reason}")
-    columns_by = _columns_by_quantity(found, choice.columns, others)
-    numbers = {quantity: _agreeing(table, quantity, alike, others) for quantity, alike in columns_by.items()}
+    numbers = {quantity: _agreeing(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()}
     temperature = numbers.get("temperature")
     if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
         temperature = None
-        others[columns_by.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
+        others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
     table.require(omega > 0.0, "the frequency is not > 0")
-    moduli = {name: numbers[name] for pair in PAIRS for name in pair if name in numbers}
-    storage, loss = storage_and_loss(table, choice.pair, moduli)
-    taken = [alike[0] for alike in columns_by.values()]
-    sources = [columns_by[name][0].name for name in choice.pair]
+    moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
+    storage, loss = storage_and_loss(table, pair, moduli)
+    taken = [alike[0] for alike in columns_of_quantity.values()]
+    sources = [columns_of_quantity[name][0].name for name in pair]
     if any(UNITS[name] == "1/Pa" for name in sources):
         square = storage**2 + loss**2
         storage, loss = storage / square, loss / square
     if sources != ["storage", "loss"]:
         notes.append(f"moduli are from {' and '.join(sources)}")
-    notes += [f"{name} agrees with them" for name in moduli if name not in choice.pair]
+    notes += [f"{name} agrees with them" for name in moduli if name not in pair]
     notes += [f"{column.heading!r} is log10" for column in taken if column.log]
     listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
     notes += [f"left aside: {listed}"] * bool(others)
@@ -126,16 +124,16 @@ def read_dma(
 
 
 class _Choice(NamedTuple):
-    """The columns that the moduli are taken from.
+    """The columns that are read.
 
     mode : "tension", "shear", or "" where no heading says.
     pair : the two quantities that give the moduli, a key of :data:`.moduli_from_pair.PAIRS`.
-    columns : all that are of this mode or of none, and of moduli where the pair is, or of compliances.
+    columns : quantity -> its columns, of this mode or of none, and of moduli where the pair is, or of compliances.
     """
 
     mode: str
     pair: tuple[str, str]
-    columns: list[Column]
+    columns: dict[str, list[Column]]
 
 
 def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
@@ -170,11 +168,12 @@ def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
 
 
 def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
-    """Choose the columns that the moduli are taken from.
+    """Choose the columns that are read.
 
     table : of the columns, for the message.
     found : columns of known quantities.
-    others : headings of the other columns, and why they are left out.
+    others : headings of the other columns, and why they are left out; those of another mode or kind than the pair, and
+        measured frequencies beside reduced ones, are added.
     Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
@@ -183,33 +182,22 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
     if quantities & {"frequency", "reduced frequency"}:
         missing = "two of storage, loss, tan delta and modulus"
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
-            columns = [each for each in found if each.mode in ("", mode) and UNITS[each.name] != excluded]
+            columns: dict[str, list[Column]] = {}
+            unused = {}
+            for column in found:
+                if column.mode not in ("", mode) or UNITS[column.name] == excluded:
+                    unused[column.heading] = "not needed"
+                elif column.quantity == "frequency" and "reduced frequency" in quantities:
+                    unused[column.heading] = "the reduced frequency is taken"
+                else:
+                    columns.setdefault(column.quantity, []).append(column)
             for pair in PAIRS:
-                if {column.quantity for column in columns}.issuperset(pair):
+                if columns.keys() >= {*pair}:
+                    others |= unused
                     return _Choice(mode, pair, columns)
     problems = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
     headings = ", ".join(map(repr, filter(None, table.headings)))
     raise FileError(table.path, f"no column is named {missing}{problems}; headings: {headings}; give columns=")
-
-
-def _columns_by_quantity(found: list[Column], chosen: list[Column], others: dict[str, str]) -> dict[str, list[Column]]:
-    """Return quantity -> its columns, and list those that are not needed among the others.
-
-    found : columns of known quantities.
-    chosen : those of the mode and the kind that the moduli are taken from.
-    others : headings of columns that are left out, and why; columns not chosen, and measured frequencies beside
-    reduced ones, are added.
-    """
-    reduced = any(column.quantity == "reduced frequency" for column in found)
-    columns_by: dict[str, list[Column]] = {}
-    for column in found:
-        if column not in chosen:
-            others[column.heading] = "not needed"
-        elif reduced and column.quantity == "frequency":
-            others[column.heading] = "the reduced frequency is taken"
-        else:
-            columns_by.setdefault(column.quantity, []).append(column)
-    return columns_by
 
 
 def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:

@@ -93,9 +93,8 @@ class Problem:
     cylinder, unknowns, records, shifts : as given.
     names : of the unknowns.
     start, low, high : coordinates of start and bounds, shape (unknowns,).
-    y, sigma : all data and their standard deviations, one column after the other; those of a plan are the
-    predictions at
-        the start, shape (n,).
+    y, sigma : all data and their standard deviations, one column after the other, shape (n,); those of a plan are
+    the predictions at the start.
     columns : the columns of y.
     points : number of data and priors.
     active : indices of the unknowns that are varied; the others change no residual and stay at their start.
