@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -137,8 +137,8 @@ class SeriesFit(Shown):
         E, measured = self.E, self.measured
         if self.mode == "shear":
             factor = 2.0 * (1.0 + poisson(nu))
-            E, source = E * factor, f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G"
-            measured = Measured(measured.low, measured.high, measured.misfit, source)
+            E *= factor
+            measured = replace(measured, source=f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G")
         return Material(
             E, nu, self.prony, self.T_ref, name=name, density=density, thickness=thickness, measured=measured,
             temperature=self.temperature,

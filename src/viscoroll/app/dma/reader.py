@@ -100,7 +100,7 @@ def read_dma(
         temperature = None
         others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
-    table.require(omega > 0.0, "the frequency is not > 0")
+    table.require(omega > 0.0, "the frequency is not > 0: leave out its row")
     moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
     storage, loss = storage_and_loss(table, pair, moduli)
     taken = [alike[0] for alike in columns_of_quantity.values()]

@@ -98,27 +98,25 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     ModelWarning
         Columns that are left out.
     """
-    among = (*kind.COORDINATES, *kind.QUANTITIES)
-    called = {name: section.columns.get(name, name) for name in among}
-    table = named_table(path, called.values(), section.decimal or None, section.encoding or None)
-    where = {}
-    for name in among:
-        if (column := find_column(table, called[name])) is not None:
-            where[name] = column
-        elif name in kind.COORDINATES or name in section.columns:
-            raise missing_column(table, called[name])
-    others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in where.values()]
-    if others and not set(where) & set(kind.QUANTITIES):
+    headings = {name: section.columns.get(name, name) for name in (*kind.COORDINATES, *kind.QUANTITIES)}
+    table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
+    columns = {name: find_column(table, heading) for name, heading in headings.items()}
+    present = [name for name, column in columns.items() if column is not None]
+    for name in (*kind.COORDINATES, *section.columns):
+        if name not in present:
+            raise missing_column(table, headings[name])
+    others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
+    if others and not set(present) & set(kind.QUANTITIES):
         problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
         raise FileError(path, f"{problem}; a plan has no other columns")
     if others:
         text = f"{path.name}: columns that are left aside: {', '.join(others)}"
         warnings.warn(text, ModelWarning, stacklevel=outside())
     found = {}
-    for name in where:
+    for name in present:
         unit = kind.unit(name)
         try:
-            found[name] = column_in_unit(table, called[name], unit, section.units.get(name, ""))
+            found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
             per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
             raise ParameterError(name, f"in {error.value}", f"in a unit of {unit}{per}") from error

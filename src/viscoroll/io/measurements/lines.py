@@ -105,7 +105,7 @@ def separator_of(text: list[str], decimal: str | None) -> str:
     """
 
     def count(separator: str) -> int:
-        widths = Counter(len(line.cells) for line in cut_lines(text[:_SAMPLE], separator) if line.numeric)
-        return max((rows for width, rows in widths.items() if width > 1), default=0)
+        rows = (line.cells for line in cut_lines(text[:_SAMPLE], separator) if line.numeric)
+        return max(Counter(len(cells) for cells in rows if len(cells) > 1).values(), default=0)
 
     return max((separator for separator in SEPARATORS if separator != decimal), key=count)

@@ -191,7 +191,7 @@ class _Layout:
             rows.pop()
         for row in rows:
             if not row.numeric:
-                raise self.fault(row, "is no row of numbers")
+                raise self.fault(row, "is no row of numbers, remove it or begin it with #")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 problem = f"has {len(row.cells)} columns, but line {line.number} has {len(names)}, {self.cut}"
                 raise self.fault(row, problem)
