@@ -16,7 +16,7 @@ from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
 from ..kernels.motion.workspace import PARTIAL_SLIP
-from ..kernels.numerics.nodes import gauss
+from ..kernels.numerics.interpolation import gauss
 from ..materials.law_build import paired
 from ..materials.law_table import law_table
 from .flow_rows import NODES, Nodes, Rows, octaves
