@@ -16,7 +16,7 @@ from .numbers import is_row_of_numbers
 #: separators of cells and their names in messages, those that are least often part of a cell first
 SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
 #: mark of a comment at the beginning of a line; none is a first cell of a mark alone: "%" is a unit, "#" a point number
-_COMMENT = r"^\s*(?:[#%!]+|//)\s*(?=[^\s{}]|$)"
+_COMMENT = r"^[^\S{0}]*(?:[#%!]+|//)[^\S{0}]*(?=[^\s{0}]|$)"
 #: lines of a file by which its separator is found: enough to outvote a preamble
 _SAMPLE = 2000
 #: first bytes of a file and the encoding that they show: byte order marks, or a null beside a letter
@@ -79,7 +79,7 @@ def cut_lines(text: list[str], separator: str) -> list[Line]:
     Returns the lines with their cells up to the first that Python's csv cannot cut.  (pandas would ask that all lines
     of a file, its preamble too, are as wide as its table.)
     """
-    mark = re.compile(_COMMENT.format(separator))
+    mark = re.compile(_COMMENT.format(separator.strip(" ")))
     plain, found = [mark.sub("", line) for line in text], []
     reader = csv.reader((line + "\n" for line in plain), delimiter=separator, skipinitialspace=separator != "\t")
     by_csv = ((reader.line_num, [" ".join(cell.split()) for cell in row]) for row in reader)
