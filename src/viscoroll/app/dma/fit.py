@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
-from ...core.checks import number, one_name, whole
+from ...core.array_types import Numbers
+from ...core.checks import check_choice, check_integer, check_number
 from ...core.errors import ParameterError
-from ...core.typed import Numbers
 from ...materials.prony import Prony
 from ...materials.prony_forms import MOST_MODES, WIDEST
 from ...materials.shift import celsius
@@ -124,7 +124,7 @@ def fit_prony(
         temperature, source = record.temperature if temperature is None else temperature, source or record.source
     elif storage is None or loss is None:
         raise ParameterError("storage and loss", None, "given, as columns beside omega, or a record of read_dma alone")
-    one_name("on", on, "both", "storage")
+    check_choice("on", on, "both", "storage")
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:
         for name, value in (("reference", reference), ("shift", shift)):
@@ -198,7 +198,7 @@ def fit_relaxation(
 
 def _mode(mode: Any) -> Mode:
     """Return which modulus was measured; raise ParameterError for another text."""
-    one_name("mode", mode, "tension", "shear")
+    check_choice("mode", mode, "tension", "shear")
     return mode
 
 
@@ -210,8 +210,8 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
     Returns (the data that were fitted, the fields of a fit that are of its data and its series, the root mean square
     of the relative errors of each modulus).
     """
-    target = number("misfit", misfit, low=0.0, strict=True)
-    modes = None if modes is None else whole("modes", modes, 1, MOST_MODES)
+    target = check_number("misfit", misfit, low=0.0, strict=True)
+    modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
     (low, high), data = curve.band, thinned(curve)
     if high > MOST_SPREAD * low:
         span = f"from {data[0][0]:g} to {data[0][-1]:g}"

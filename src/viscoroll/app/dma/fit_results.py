@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 
 from ...contact_law.assumptions import Assumption, measurement, passage
 from ...contact_law.contact import contact
-from ...core.checks import checked
+from ...core.array_types import Booleans, Floats, Numbers
+from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.plots.measured import fitted, relaxed
-from ...core.results import Row, Shown
-from ...core.typed import Booleans, Floats, Numbers
+from ...core.plots.measurements import moduli_fit, relaxation_fit
+from ...core.results import Result, SummaryRow
 from ...materials.importers import poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
@@ -42,7 +42,7 @@ class Misfit(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class SeriesFit(Shown):
+class SeriesFit(Result):
     """A Prony series fitted to measured moduli: the base of :class:`Fit` and :class:`RelaxationFit`.
 
     E : long-time modulus, in the unit of the data; of tension or of shear, as ``mode`` says.
@@ -171,7 +171,7 @@ class SeriesFit(Shown):
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
             raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
-        speed = checked("V", V, unit="m s-1")
+        speed = check_array("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
         seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return measurement(seen, {"the material": self.measured})
@@ -202,7 +202,7 @@ class SeriesFit(Shown):
 
     _card = card
 
-    def _rows(self) -> list[Row]:
+    def _rows(self) -> list[SummaryRow]:
         """Return the lines of the report on misfit and data."""
         raise NotImplementedError
 
@@ -240,7 +240,7 @@ class Fit(SeriesFit):
         storage, loss = self._moduli(omega)
         return storage, loss
 
-    _rows, _figure = of_dynamic, fitted
+    _rows, _figure = of_dynamic, moduli_fit
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -269,4 +269,4 @@ class RelaxationFit(SeriesFit):
         """
         return self._moduli(t)[0]
 
-    _rows, _figure = of_relaxation, relaxed
+    _rows, _figure = of_relaxation, relaxation_fit

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ...io.measurements import Numbers, Table
 
 #: pair of quantities -> function of both that returns storage and loss, the pairs that lose the fewest digits first

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.errors import FileError, ModelWarning, ParameterError, outside, refuse_unknown
+from ...core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
 from ...io.measurements import Numbers, Table, conversion, read_table
 from .column_quantities import Column, columns_of, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli
@@ -76,7 +76,7 @@ def read_dma(
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
     named = dict(columns or {})
-    refuse_unknown("columns", named, UNITS, "a quantity")
+    check_names("columns", named, UNITS, "a quantity")
     given, default = _units(units)
     table = read_table(path, lambda cells: _is_heading_line(cells, named), decimal=decimal, encoding=encoding)
     if table.bare and not named:
@@ -148,7 +148,7 @@ def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
         raise ParameterError("units", f"{units!r:.60}", allowed)
     of_two = zip(("rad/s", "Pa"), units or (), strict=False)
     pairs = dict(units) if by_name else {name: unit for kind, unit in of_two for name in UNITS if UNITS[name] == kind}
-    refuse_unknown("units", pairs, UNITS, "a quantity")
+    check_names("units", pairs, UNITS, "a quantity")
     for name, unit in pairs.items():
         try:
             conversion(str(unit), UNITS[name])
@@ -237,7 +237,7 @@ def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
         assumed += [f"{column.unit} ({word})" for column in without[:1]]
     if assumed:
         text = f"{table.path}: columns without a unit are taken in {' and '.join(assumed)}"
-        warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=outside())
+        warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=caller_level())
 
 
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ...materials.prony import Prony
 from .curve import Curve, Relaxation
 

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.checks import checked
+from ...core.array_types import Floats, Integers
+from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.quantities import in_unit
-from ...core.typed import Floats, Integers
+from ...core.quantities import to_unit
 from .curve import UNITS, Curve
 from .dynamic_moduli import SAME_TEMPERATURE
 
@@ -40,8 +40,8 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     Returns (temperatures, columns, index of the first point of each curve; None where the columns are no lists).
     Raises ParameterError for shapes that do not go together.
     """
-    given = checked("temperature", temperature, unit="degC")
-    columns = tuple(in_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
+    given = check_array("temperature", temperature, unit="degC")
+    columns = tuple(to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         sizes, *others = ([np.size(curve) for curve in column] for column in columns)
         if others != [sizes, sizes] or given.shape != (len(sizes),):
@@ -121,7 +121,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     base : reference, degrees Celsius; None: where a factor is 1, else the middle set.
     Raises ParameterError for factors that do not fit the curves, and for a reference where no factor is given.
     """
-    factors, temperatures = checked("shift", shift), sets.temperature
+    factors, temperatures = check_array("shift", shift), sets.temperature
     if not (factors > 0.0).all():
         raise ParameterError("shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms")
     if factors.shape != sets.of_curve.shape:

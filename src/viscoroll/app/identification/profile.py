@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from .problem import Minimum, Problem
 
 #: longest first step of a coordinate

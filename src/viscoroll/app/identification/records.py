@@ -12,12 +12,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...core.checks import broadcast_shape, checked, number
-from ...core.errors import ParameterError, refuse_unknown
-from ...core.labels import Labels, unlabelled
-from ...core.quantities import in_unit
+from ...core.array_types import Floats, Numbers
+from ...core.checks import broadcast_shape, check_array, check_number
+from ...core.errors import ParameterError, check_names
+from ...core.labels import Labels, strip_labels
+from ...core.quantities import to_unit
 from ...core.scale import DIMENSIONLESS, si_unit
-from ...core.typed import Floats, Numbers
 from ...cylinder import Cylinder
 
 #: word for an initial angular velocity of V0/R
@@ -58,12 +58,12 @@ class Record:
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
         names = (*self.COORDINATES, *self.measured)
-        given = {name: in_unit(self.label(name), getattr(self, name), self.unit(name)) for name in names}
-        plain, labels = unlabelled(given, DIMENSIONLESS)
-        arrays = {name: np.atleast_1d(checked(self.label(name), value)) for name, value in plain.items()}
+        given = {name: to_unit(self.label(name), getattr(self, name), self.unit(name)) for name in names}
+        plain, labels = strip_labels(given, DIMENSIONLESS)
+        arrays = {name: np.atleast_1d(check_array(self.label(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
             label = f"sigma of {name}"
-            arrays[label] = checked(self.label(label), value, unit=self.unit(name), low=0.0, strict=True)
+            arrays[label] = check_array(self.label(label), value, unit=self.unit(name), low=0.0, strict=True)
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
             raise ParameterError(self.label(self.QUANTITIES[0]), f"of shape {shape}", "a value a place")
@@ -75,7 +75,7 @@ class Record:
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
             if value is not None and not (name == "omega0" and isinstance(value, str) and value == ROLLING):
-                vars(self)[name] = number(self.label(name), value, unit=self.unit(name), low=low, strict=True)
+                vars(self)[name] = check_number(self.label(name), value, unit=self.unit(name), low=low, strict=True)
 
     @staticmethod
     def unit(name: str) -> str:
@@ -99,7 +99,7 @@ class Record:
                 allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
                 raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
-        refuse_unknown(self.label("sigma"), given, among, "a quantity of it")
+        check_names(self.label("sigma"), given, among, "a quantity of it")
         return {name: value for name, value in given.items() if value is not None}
 
     @property
@@ -239,7 +239,7 @@ class Coastdown(Record):
             n = int(np.argmax(np.diff(t.ravel()) < 0.0))
             at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"
             raise ParameterError(self.label("t"), at, "a vector, in ascending order")
-        t0 = checked(self.label("t0"), self.t0, unit="s")
+        t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
             raise ParameterError(self.label("t0"), self.t0, "a number, or (low, high)")
         vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)

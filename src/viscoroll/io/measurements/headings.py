@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from ...core.errors import ParameterError
-from ...core.units import factor
+from ...core.units import conversion_factor
 
 #: signs that stand where a ratio has no unit
 NO_UNIT = ("", "1", "-", "--", "–", "—", "/", "none")
@@ -105,10 +105,10 @@ def conversion(unit: str, wanted: str) -> tuple[float, float]:
     elif not may_be_unit(unit):
         raise ParameterError("unit", unit, f"a unit that pint knows, of the dimension of {wanted}")
     try:
-        return factor(unit, wanted)
+        return conversion_factor(unit, wanted)
     except ParameterError:
         plain = re.sub(r"[\s°º.]", "", unit)
         spelled = _SPELLINGS.get(plain) or _SPELLINGS.get(plain.lower())
         if spelled is None:
             raise
-        return factor(spelled, wanted)
+        return conversion_factor(spelled, wanted)

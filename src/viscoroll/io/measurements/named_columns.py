@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from os import PathLike
 
+from ...core.array_types import Floats
 from ...core.errors import FileError
-from ...core.sections import hint
-from ...core.typed import Floats
+from ...core.sections import suggestion
 from .headings import NO_UNIT, conversion, readings
 from .table import Table, read_table
 
@@ -53,7 +53,9 @@ def find_column(table: Table, name: str) -> int | None:
 
 def missing_column(table: Table, name: str) -> FileError:
     """Return the error where no column of a table has a name; it lists the headings of the table."""
-    return FileError(table.path, f"has no column {name!r}, but {', '.join(table.headings)}{hint(name, table.headings)}")
+    return FileError(
+        table.path, f"has no column {name!r}, but {', '.join(table.headings)}{suggestion(name, table.headings)}"
+    )
 
 
 def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:

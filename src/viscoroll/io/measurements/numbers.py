@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 
 #: a number with a decimal point or comma, perhaps with an exponent of Python (e) or Fortran (d)
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d{1,3})?")
