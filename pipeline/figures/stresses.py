@@ -8,7 +8,7 @@ import numpy as np
 
 from viscoroll.contact_law.stress import stress
 from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
-from viscoroll.motion.single import roll
+from viscoroll.motion.roll import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 
 from .title import describe, number

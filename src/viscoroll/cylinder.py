@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contact_law.assumptions import WAVE_LIMIT, Validity
-from .contact_law.known import Known, say
+from .contact_law.validity.cylinder import BodyData
 from .core.checks import broadcast_shape, checked, frozen, one_name
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
@@ -118,7 +117,7 @@ class Cylinder(Methods):
             _ = self.pair  # refuses what the materials do not allow
 
     @property
-    def _papers(self) -> bool:
+    def _sls_parameters(self) -> bool:
         """Whether both bodies are of the paper's material, by its own parameters."""
         return self.material is None and (self.base is None or self.pair.like)
 
@@ -146,7 +145,7 @@ class Cylinder(Methods):
     @property
     def T_ref(self) -> float:
         """What dimensionless times are counted in, s: T_epsilon, or T_ref of the materials."""
-        if self.T_epsilon is None or not self._papers:
+        if self.T_epsilon is None or not self._sls_parameters:
             return self.pair.T_ref
         return float(np.max(self.T_epsilon, initial=0.0)) if np.ndim(self.T_epsilon) else self.T_epsilon
 
@@ -169,7 +168,7 @@ class Cylinder(Methods):
         given = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
         return {name: value for name, value in given.items() if value is not None}
 
-    def tilted(self, slope: Any) -> Cylinder:
+    def on_slope(self, slope: Any) -> Cylinder:
         return self.replace(load=self.load * slope_factor(slope)[1])
 
     def _card(self) -> tuple[str, list[Row]]:
@@ -193,7 +192,7 @@ class Cylinder(Methods):
 
         Of two bodies 2/(1/E'_1 + 1/E'_2).
         """
-        return effective_modulus(self.E, self.nu, self.plane) if self._papers else self.pair.E_prime
+        return effective_modulus(self.E, self.nu, self.plane) if self._sls_parameters else self.pair.E_prime
 
     @property
     def l0(self) -> Any:
@@ -214,7 +213,7 @@ class Cylinder(Methods):
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and law.cover is not None:
             self._refuse_other_load(law)
-        if self._papers:
+        if self._sls_parameters:
             slow, fast = (np.asarray(each, np.float64) for each in (self.T_epsilon, self.T_sigma))
             with np.errstate(all="ignore"):
                 law = (slow / fast)[()]
@@ -234,48 +233,16 @@ class Cylinder(Methods):
             raise ParameterError("material", found, f"that of {short(own.thickness)} l0, as the load and R have it")
 
     @cached_property
-    def _known(self) -> Known:
-        pair, G = (None, self.E / (2.0 * (1.0 + self.nu))) if self._papers else (self.pair, None)
-        return Known(pair, G, self.R, self.l0, self.T_ref, self._scene)
-
-    def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
-        return self._known.judge(found, lam, V, omega, density, self.plane)
-
-    @property
-    def watched(self) -> bool:
-        return self._known.silent is not None
-
-    def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
-        """Warn where the contact at a speed of V, m/s, is longer than the radius or than a layer allows, or asks for
-        frequencies that the data of a body do not hold.
-        """
-        if V is not None and self._known.silent is not None:
-            self._known.look(V, extent)
-
-    def look_at_starts(self, V0: Any, omega0: Any) -> None:
-        """Warn of starts beyond the speed of shear waves, where a density is known."""
-        if self._known.wave_speed is None:
-            return
-        V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))
-        if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._known.wave_speed:
-            fault = f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"
-            say([fault], "motion", "validity() of cylinder or result")
-
-    def look_at_motion(self, V0: Any, V: Any) -> None:
-        """Warn where the fastest speed of a motion, or of each, asks for frequencies that the data do not hold, or its
-        contact is longer than a layer allows.
-        """
-        if self._known.silent is not None:
-            fastest = np.abs(0.0 if V0 is None else V0)
-            self._known.look(
-                fastest if V is None else np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1)), None, motion=True
-            )
+    def body_data(self) -> BodyData:  # type: ignore[override]
+        """Data of the bodies in SI units, from which validity and warnings are computed."""
+        pair, G = (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
+        return BodyData(pair, G, self.R, self.l0, self.T_ref, self.plane, self._scene)
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]
-        """Between which speeds the materials were measured, for datasets."""
-        held = self._known.held
-        return {} if held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in held]}
+        """Attributes of datasets: the speeds between which the materials were measured, m/s."""
+        rates = self.body_data.measured_rates
+        return {} if rates is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in rates]}
 
 
 def contact_length(R: Any, load: Any, E_prime: Any) -> Any:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from .contact_law.bound import law
 from .contact_law.contact import contact
 from .contact_law.equilibria.resistance import ResistanceExtrema, resistance_extrema
 from .contact_law.equilibria.steady import steady
-from .contact_law.judged import validity
-from .contact_law.parameters import Parameters, Rolls
+from .contact_law.law import law
+from .contact_law.parameters import Parameters, Roller
 from .contact_law.stress import stress
+from .contact_law.validity.validity import validity
 from .core.renamed import warn_renamed
-from .motion.batch import ensemble
-from .motion.single import roll
+from .motion.ensemble import ensemble
+from .motion.roll import roll
 
 
-class Methods(Rolls):
+class Methods(Roller):
     """The functions of the package as methods: ``vr.contact(roller, V, ...)`` is ``roller.contact(V, ...)``."""
 
     contact = contact

@@ -306,7 +306,7 @@ def test_a_warning_is_one_line(capsys):
         warnings.simplefilter("default")
         assert main(["roll", *START, "--t", "1e-6"]) == 0
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("viscoroll: warning: the model is not good for this motion: it is too slow ")
+    assert line.startswith("viscoroll: warning: the model does not hold for this motion: it is too slow ")
 
 
 PAPER, T = vr.presets.PAPER_SECTION_5, np.linspace(0.0, 3e-3, 7)

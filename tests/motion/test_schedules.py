@@ -10,16 +10,17 @@ from memory import taken_beside
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.motion import courses, driven
+from viscoroll.motion import drive as drives
+from viscoroll.motion import drive_functions
 
 
 @pytest.mark.parametrize("count", [2_000, 200_000])
 def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
     times = np.arange(count) * 1e-3
-    drive = driven.Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
-    driven.prepared(driven.Drive(torque=0.1), 0.1, 0.1, 1.0, 1e-8)  # imports take memory too
+    drive = drives.Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
+    drives.prepared(drives.Drive(torque=0.1), 0.1, 0.1, 1.0, 1e-8)  # imports take memory too
     tracemalloc.start()
-    ready = driven.prepared(drive, 0.1, 0.1, times[-1], 1e-8)
+    ready = drives.prepared(drive, 0.1, 0.1, times[-1], 1e-8)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert ready.pieces is not None
@@ -54,8 +55,8 @@ def test_motions_with_corners_of_their_own_have_the_bits_of_each_alone(monkeypat
     times, values = np.sort(random.uniform(0.0, 9.0, (12, 7)), axis=1), random.uniform(-0.1, 0.3, (12, 7))
     times[:, 0] = 0.0
     start = (None, 0.2) if name == "V" else (0.3, 0.2)
-    for size in (1, 2_000, courses._BLOCK_BYTES):
-        monkeypatch.setattr(courses, "_BLOCK_BYTES", size)
+    for size in (1, 2_000, drive_functions._BLOCK_BYTES):
+        monkeypatch.setattr(drive_functions, "_BLOCK_BYTES", size)
         many = vr.ensemble(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times, values)})
         for n in range(12):
             one = vr.roll(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times[n], values[n])})

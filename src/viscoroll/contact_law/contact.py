@@ -7,35 +7,23 @@ the fields that were named.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import lru_cache
-from typing import Any, Literal, overload
+from typing import Literal, overload
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..core.checks import broadcast_shape, checked, checked_extent, yes_or_no
-from ..core.errors import ParameterError, one_of
+from ..core.checks import checked, checked_extent, yes_or_no
+from ..core.errors import one_of
 from ..core.labels import unlabelled
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
 from ..core.typed import Numbers
-from ..materials.bodies import Bodies
-from ..materials.cover import Cover
-from ..materials.law_table import LawTable
-from ..materials.prony import Prony
-from .contact_fields import FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
-from .contact_table import FASTEST, refuse_overflow, states_of
-from .parameters import Parameters, Rolls, framed
-
-#: of bodies that are alike, half of each
-_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
-#: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
-_FASTEST_DIRECT = 1e12
+from .contact_fields import field_names
+from .contact_table import contact_states
+from .parameters import Roller, resolve_model
+from .validity.model_warnings import warn_of_contact
 
 
 @overload
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     delta: Numbers,
@@ -45,7 +33,7 @@ def contact(
 ) -> Values: ...
 @overload
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     omega: Numbers,
@@ -54,7 +42,7 @@ def contact(
     method: Literal["table", "direct"] = "table",
 ) -> Values: ...
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     delta: Numbers | None = None,
@@ -128,14 +116,12 @@ def contact(
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
     however they broadcast (``tests/test_invariance.py``).
     """
-    _, scene, scale = framed(roller, "contact")
+    _, scene, scale = resolve_model(roller, "contact")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     if slopes is not False:
         slopes = yes_or_no("slopes", slopes)
-    names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
-    if type(scene.material) is Cover:
-        names = _of_cover(names, fields is None)
+    names = field_names(fields, scene.material, scale.si, slopes, method)
     creep_name = "omega" if delta is None else "delta"
     given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = checked_extent("V", given["V"])
@@ -143,62 +129,11 @@ def contact(
     given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
-        roller.look(speed, ends)
+        warn_of_contact(roller, speed, ends)
         about = roller.about
         speed = speed / scale["V"]
         creep = creep / scale["omega"] if delta is None else creep
-    found = states(scene, speed, creep, delta is None, names, method)
+    found = contact_states(scene, speed, creep, delta is None, names, method)
     if scale.si:
         found = {name: value * scale[name] if name in DIMENSIONS else value for name, value in found.items()}
     return Values(found, given, si=scale.si, labels=labels, about=about)
-
-
-def states(
-    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
-) -> dict[str, Any]:
-    """Fields without dimension, at checked speeds, and creeps or angular velocities."""
-    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
-    arrays["omega" if creep_is_omega else "delta"] = creep
-    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else FASTEST
-    shape: tuple[int, ...] = ()
-    if V.ndim or creep.ndim or scene.shape:
-        arrays = {name: np.asarray(value) for name, value in arrays.items()}
-        shape = broadcast_shape(**arrays)
-        refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * float(V)) <= fastest:
-        refuse_overflow(np.asarray(scene.kappa), V, fastest)
-    if scene.material is not None and method == "direct":
-        raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
-    one = None if method == "direct" else scene.table or scene.each
-    if isinstance(one, Prony | Bodies):
-        if UNSTEADY in names:
-            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
-        arrays["alpha"] = np.arange(len(one), dtype=np.float64)
-    # what the kernels are asked for, and what is half of it
-    unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, Bodies)
-    solved = _solved(names, unlike)
-    broadcast = [*arrays.values()], shape, creep_is_omega, solved
-    found = states_of(one, *broadcast, method == "direct")
-    rows: dict[str, Any] = dict(zip(solved, found if shape else found[:, 0].tolist(), strict=True))
-    if solved != names:
-        rows |= {name: 0.5 * rows[of] for name, of in _HALVES.items() if name in names and name not in rows}
-        rows |= {name: rows[of] for name, of in SAME.items() if name in names}
-    if "full_slip" in names:
-        rows["full_slip"] = rows["full_slip"] != 0.0
-    return {name: rows[name].reshape(shape) if shape else rows[name] for name in names}
-
-
-def _of_cover(names: tuple[str, ...], plain: bool) -> tuple[str, ...]:
-    """The fields of a cover: where none were named, delta_0 with them; raises ParameterError where N is."""
-    if UNSTEADY in names:
-        raise ParameterError(
-            "fields", repr(UNSTEADY), "left out for a cover: N of a layer of finite thickness is not known"
-        )
-    return (*names, FREE) if plain else names
-
-
-@lru_cache(maxsize=64)
-def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
-    """What the kernels are asked for: not what is half of it, or the same in other units."""
-    made = SAME if unlike else SAME | _HALVES
-    return tuple(dict.fromkeys(made.get(name, name) for name in names))

@@ -10,22 +10,64 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.blocks import elements, run_blocks
-from ..core.checks import extent
+from ..core.checks import broadcast_shape, extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from ..materials.law_modes import by_modes
 from ..materials.law_table import LawTable
 from ..materials.prony import Prony
-from .contact_fields import UNSTEADY
+from .contact_fields import UNSTEADY, add_derived, solved_fields
+from .parameters import Parameters
 
 #: states of a block, where each has a material of its own, which takes some kilobytes, and where not
 _BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
 #: states of one law that a kernel works on side by side; up to so many take no blocks
 _TOGETHER = 64
 _NO_ORDER = np.empty(0, np.int64)
-#: kappa |V|, where zeta is 0 in doubles, or nearly
+#: Largest kappa |V|, dimensionless: beyond it zeta is 0 in doubles, or nearly.
 FASTEST = 1e300
+#: Largest kappa |V| for Q by the printed equations, dimensionless: the rounding of a bracket of Eq. (15) grows with
+#: kappa |V|, and beyond this value Q has lost four digits of mu and more.
+_FASTEST_DIRECT = 1e12
+
+
+def contact_states(
+    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
+) -> dict[str, Any]:
+    """Return fields of contact states, dimensionless.
+
+    scene: parameters, numbers or arrays.
+    V: speeds, checked, an array of any shape; broadcasts with the parameters.
+    creep: creepages or angular velocities, checked; broadcasts with V.
+    creep_is_omega: whether ``creep`` is the angular velocity.
+    names: of the fields, all known.
+    method: "table" or "direct".
+    Returns the fields by name, arrays in the common shape, or numbers if that is ().
+    Raises ParameterError where kappa |V| is too large, and for a method or a field that the material does not have.
+    """
+    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
+    arrays["omega" if creep_is_omega else "delta"] = creep
+    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else FASTEST
+    shape: tuple[int, ...] = ()
+    if V.ndim or creep.ndim or scene.shape:
+        arrays = {name: np.asarray(value) for name, value in arrays.items()}
+        shape = broadcast_shape(**arrays)
+        refuse_overflow(arrays["kappa"], V, fastest)
+    elif not abs(scene.kappa * float(V)) <= fastest:
+        refuse_overflow(np.asarray(scene.kappa), V, fastest)
+    if scene.material is not None and method == "direct":
+        raise ParameterError("method", "'direct'", "'table': the printed equations have one relaxation time")
+    law = None if method == "direct" else scene.table or scene.material_array
+    if isinstance(law, Prony | Bodies):
+        if UNSTEADY in names:
+            raise ParameterError("fields", repr(UNSTEADY), "requested with one material, as material[i]")
+        arrays["alpha"] = np.arange(len(law), dtype=np.float64)
+    solved = solved_fields(names, law.unlike if isinstance(law, LawTable) else isinstance(law, Bodies))
+    found = states_of(law, [*arrays.values()], shape, creep_is_omega, solved, method == "direct")
+    if not shape:
+        return add_derived(dict(zip(solved, found[:, 0].tolist(), strict=True)), names)
+    return add_derived({name: row.reshape(shape) for name, row in zip(solved, found, strict=True)}, names)
 
 
 def states_of(

@@ -15,18 +15,19 @@ from ..core.results import Values
 from ..core.typed import Floats, Numbers
 from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
-from .contact import states
-from .parameters import Parameters, Rolls, framed, refuse_cover
+from .contact_table import contact_states
+from .parameters import Parameters, Roller, refuse_cover, resolve_model
+from .validity.model_warnings import warn_of_contact
 
 _BLOCK = 1 << 15
 
 
 @overload
-def stress(roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers) -> Values: ...
 @overload
-def stress(roller: Rolls, x: Numbers, V: Numbers, *, omega: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers) -> Values: ...
 def stress(
-    roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
+    roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
 ) -> Values:
     """Pressure and shear stress along the contact, Eqs. (11)-(14).
 
@@ -56,7 +57,7 @@ def stress(
     """
     from ..kernels.rows.stress import Points
 
-    _, scene, scale = framed(roller, "stress")
+    _, scene, scale = resolve_model(roller, "stress")
     refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
@@ -65,13 +66,13 @@ def stress(
     at, speed, creep = (checked(*given) for given in places.items())
     places = dict(zip(places, (at, speed, creep), strict=True))
     if scale.si:
-        roller.look(speed)
+        warn_of_contact(roller, speed)
         with np.errstate(over="ignore"):  # a place so far away has no stress, such a speed is refused
             at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
-    state = states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
+    state = contact_states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(speed < 0.0, -1.0, 1.0)
-    many = scene.each
+    many = scene.material_array
     given = {"x": at, "kappa": scene.kappa, "mu": scene.mu}
     given |= {name: state[name] for name in ("lam", "epsilon", "beta", "zeta")}
     given |= {"alpha": scene.alpha if many is None else np.arange(len(many), dtype=np.float64)}
@@ -99,11 +100,11 @@ def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Float
     """The stresses at points; ``numbers``: alphas, or of the materials, which lie together where they share one."""
     from ..kernels.rows.stress import memories, stress_loop
 
-    ends: Any = [] if scene.each is None else 1 + np.flatnonzero(np.diff(numbers))
+    ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(numbers))
     for first, last in pairwise([0, *ends, p.size]):
         given: Any = numbers if scene.series is None else scene.series
-        if scene.each is not None:
-            given = one_series(scene.each[int(numbers[min(first, numbers.size - 1)])])
+        if scene.material_array is not None:
+            given = one_series(scene.material_array[int(numbers[min(first, numbers.size - 1)])])
         series, alpha = kernel_series(given)
         some = points._make(part[first:last] if part.size > 1 else part for part in points)
         stress_loop(series, alpha, memories(series), memories(series), some, p[first:last], tau[first:last])

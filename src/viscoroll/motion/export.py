@@ -17,7 +17,7 @@ from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.prony import Prony
-from .driven import ROWS, STATES
+from .drive import ROWS, STATES
 from .result import Rolled
 
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"

@@ -19,7 +19,7 @@ from ..contact_law.parameters import Parameters
 from ..core.blocks import flattened, run_blocks
 from ..core.typed import Floats, Integers
 from .flow_store import FlowMap, load, path_of, save
-from .rolling import motions
+from .problem import motions
 
 #: ratio of the stated error to the largest error of the sampled motions
 _MARGIN = 4.0

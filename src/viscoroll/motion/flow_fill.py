@@ -21,7 +21,7 @@ from ..materials.law_build import paired
 from ..materials.law_table import law_table
 from .flow_rows import NODES, Nodes, Rows, octaves
 from .flow_store import FlowMap
-from .rolling import motions
+from .problem import motions
 
 #: reasons why a scene has no map
 _STOPS = "rolling resistance can hold the sliding cylinder at a speed"

@@ -5,20 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ..contact_law.parameters import Parameters, Rolls
+from ..contact_law.parameters import Parameters, Roller
 from ..core.errors import MotionStatus
 from ..core.results import Row, Shown, unit_of
 from ..core.scale import Scale
 from ..core.symbols import attributes
 from ..core.typed import Floats
-from .driven import Drive
+from .drive import Drive
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rolled(Shown):
     """What was rolled, and its rows over the output times."""
 
-    roller: Rolls
+    roller: Roller
     drive: Drive
     t: Floats
     V: Floats

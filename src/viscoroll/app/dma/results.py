@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...contact_law.assumptions import Assumption, measurement, passage
 from ...contact_law.contact import contact
+from ...contact_law.validity.assumptions import Assumption, assess_measured_band, transit_frequency
 from ...core.checks import checked
 from ...core.errors import ParameterError
 from ...core.plots.measured import fitted, relaxed
@@ -165,8 +165,8 @@ class SeriesFit(Shown):
             raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
         speed = checked("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
-        seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
-        return measurement(seen, {"the material": self.measured})
+        seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
+        return assess_measured_band(seen, {"the material": self.measured})
 
     def _over_modes(self, place: str, unit: str, columns: dict[str, Floats]) -> xr.Dataset:
         """Columns over the place of the data, the series over ``mode``, and the constants as attributes."""

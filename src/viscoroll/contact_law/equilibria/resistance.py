@@ -19,7 +19,7 @@ from ...core.renamed import warn_renamed
 from ...core.typed import Booleans, Floats, Integers
 from ...materials.law_table import LawTable
 from ..contact_table import rolling
-from ..parameters import Rolls, framed, refuse_arrays
+from ..parameters import Roller, refuse_arrays, resolve_model
 
 #: octaves of u on either side of the rates of a material with closely spaced nodes
 _CLOSE_OCTAVES = 15
@@ -118,7 +118,7 @@ class Branches:
         return np.concatenate(which), np.concatenate(nodes)
 
 
-def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
+def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     """Every local maximum and minimum of the rolling resistance M over the speed.
 
     A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
@@ -148,7 +148,7 @@ def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
     >>> top.is_maximum[0]
     np.True_
     """
-    _, scene, scale = framed(roller, "resistance_extrema")
+    _, scene, scale = resolve_model(roller, "resistance_extrema")
     refuse_arrays(scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None

@@ -32,9 +32,9 @@ from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
 from ...core.typed import Floats
 from ...materials.file import as_toml, materials_of
-from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
 from ...motion.checks import output_times
-from ...motion.driven import Drive
+from ...motion.drive import Drive
+from ...motion.ensemble import FIELDS, FLOW_PAYS, SolverOptions, make_problem
 from ...motion.summaries import QUANTITIES
 from ..config import check_sections, located
 from ..sampling import Design
@@ -294,9 +294,9 @@ def _begin(run: Run, values: dict[str, Any]) -> None:
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
             raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
-    asked = Asked(settings.rtol, settings.rest, 1)
+    options = SolverOptions(settings.rtol, settings.rest, 1)
     drive = Drive(**drive_of(content))
-    begin(roller, start, drive, run.t[-1], asked, unsteady=settings.unsteady, rested=settings.rested)
+    make_problem(roller, start, drive, run.t[-1], options, unsteady=settings.unsteady, rested=settings.rested)
 
 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:

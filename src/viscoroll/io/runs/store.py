@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import FileError
 from ...core.files import write_bytes
-from ...motion.many import Ensemble
+from ...motion.ensemble_result import Ensemble
 from ...motion.summaries import Summary, merged, summarise, summary_dataset
 from . import zarr_files
 from .columns import attributes

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.contact import contact
-from ..contact_law.parameters import Parameters, Rolls, framed, refuse_cover
-from ..contact_law.steadiness import CAUGHT
+from ..contact_law.parameters import Parameters, Roller, refuse_cover, resolve_model
+from ..contact_law.validity.free_rolling import FreeRolling
+from ..contact_law.validity.steadiness import CAUGHT
 from ..core.blocks import flattened, run_blocks
 from ..core.checks import checked, yes_or_no
 from ..core.drive import over
@@ -19,7 +20,7 @@ from ..core.scale import HasUnits
 from ..core.typed import Floats, Integers
 from ..materials.law_table import law_table
 from .checks import controls, in_words, refuse_end, refuse_many
-from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
+from .drive import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
 
 _ALL = np.arange(len(ROWS))
 #: of a map's motions: as tight as the integrator goes, where with alpha of 1e10 it takes tens of thousands of steps
@@ -31,7 +32,7 @@ _INFO = 5
 NO_NOTES = np.empty((0, 2)), np.empty(0)
 
 
-class Asked(NamedTuple):
+class SolverOptions(NamedTuple):
     """How motions are to be rolled: ``rtol``, ``rest``, ``max_steps`` and ``resolve`` of :func:`viscoroll.roll`."""
 
     rtol: float
@@ -40,14 +41,14 @@ class Asked(NamedTuple):
     resolve: float | None = None
 
 
-class Begun(NamedTuple):
+class MotionProblem(NamedTuple):
     """Motions that may be rolled, without dimension but for what rolls and its drive.
 
     roller, scene : on the slope.  caught : those that a rest keeps.  end : the last time.
     limits : rtol, the threshold of rest and max_steps.
     """
 
-    roller: Rolls
+    roller: Roller
     scene: Parameters
     drive: Drive
     ready: Prepared
@@ -57,10 +58,10 @@ class Begun(NamedTuple):
     unsteady: bool
 
 
-def begin(
-    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: Asked,
+def make_problem(
+    roller: Roller, starts: tuple[Any, Any], given: Drive, end: float, asked: SolverOptions,
     *, unsteady: bool, rested: bool | float, one: bool = False,
-) -> Begun:  # fmt: skip
+) -> MotionProblem:  # fmt: skip
     """All that is refused of motions up to a time before any is rolled, or of ``one``.
 
     Raises ParameterError.
@@ -69,7 +70,7 @@ def begin(
     if one:
         refuse_many(V0=starts[0], omega0=starts[1], **(given.numbers if acts else {}))
     drive, (rtol, rest, max_steps, resolve) = given.acting if acts else given, asked
-    roller, scene, scale = framed(roller, "roll" if one else "ensemble", moves=True, slope=drive.slope)
+    roller, scene, scale = resolve_model(roller, "roll" if one else "ensemble", moves=True, slope=drive.slope)
     if one and scene.shape:
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
@@ -95,7 +96,7 @@ def begin(
         raise in_words(error, scale) from error
     if one and ready.courses is not None and (many := ready.motions) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
-    return Begun(roller, scene, drive, ready, caught, last, limits, bool(unsteady))
+    return MotionProblem(roller, scene, drive, ready, caught, last, limits, bool(unsteady))
 
 
 def _time_of_rest(rested: Any, units: HasUnits) -> float:
@@ -131,7 +132,7 @@ def _climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepare
         what = "a speed is prescribed" if ready.prescribed else "it starts in full slip"
         sentence = f"rested is given, but {what}: what leaving the imprint costs is not known then"
         raise ParameterError("rested", rested, "left out", sentence)
-    lost = scene.freely(V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
+    lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
     return ready._replace(V0=V * (1.0 - lost), omega0=ready.omega0 * (1.0 - lost)), lost > CAUGHT
 
 
@@ -151,17 +152,17 @@ def integrate(
     return out, info
 
 
-def rolled(begun: Begun, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
+def rolled(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """What :func:`integrate` finds, of one motion."""
-    scene, ready = begun.scene, begun.ready
-    if begun.caught:
+    scene, ready = problem.scene, problem.ready
+    if problem.caught:
         return np.full((_ALL.size, times.size), np.nan), [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
     law = scene.table
     assert law is not None
     own = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
     own.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
-    batch = law.unsteady_record if begun.unsteady else law.record, law.unlike, *own
-    out, info = integrate(1, batch, ready.for_kernel(), times, begun.limits, _ALL, notes)
+    batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *own
+    out, info = integrate(1, batch, ready.for_kernel(), times, problem.limits, _ALL, notes)
     return out[:, 0], info[0].tolist()
 
 

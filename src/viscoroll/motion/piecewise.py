@@ -14,7 +14,7 @@ from ..core.checks import checked
 from ..core.drive import Feedback, Schedule, refuse_more_than_t
 from ..core.errors import ParameterError
 from ..core.typed import Floats
-from .fitted import fitted
+from .drive_fit import fitted
 
 #: of the values of a piece, its first one where that is rounding
 _ROUNDING = 1e-14

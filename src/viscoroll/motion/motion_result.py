@@ -10,17 +10,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..contact_law.assumptions import Validity
 from ..contact_law.contact import contact
-from ..contact_law.judged import validity
-from ..contact_law.steadiness import Steadiness
+from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.free_rolling import FreeRolling
+from ..contact_law.validity.steadiness import Steadiness
+from ..contact_law.validity.validity import validity
 from ..core.errors import MotionStatus, ParameterError
 from ..core.results import Row, Values
 from ..core.typed import Floats
 from .checks import SPEED_RANGE, output_times
-from .driven import ROWS
+from .drive import ROWS
+from .problem import NO_NOTES, MotionProblem, rolled
 from .result import Rolled
-from .rolling import NO_NOTES, Begun, rolled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,7 +74,7 @@ class Motion(Rolled):
     """
 
     reversals: Floats
-    _begun: Begun = field(repr=False)
+    _begun: MotionProblem = field(repr=False)
 
     @property
     def message(self) -> str:
@@ -149,7 +150,7 @@ class Motion(Rolled):
         found = validity(self.roller, V, omega=self.omega[reached])
         if not reached.any() or self.scene.cover is not None:
             return found
-        free, rolls = self.scene.freely(V / self.scale["V"]).scaled(self.scale), self.regime[reached] > 0
+        free, rolls = FreeRolling.of_scene(self.scene, V / self.scale["V"]).scaled(self.scale), self.regime[reached] > 0
         return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))
 
     def _card(self) -> tuple[str, list[Row]]:
@@ -215,14 +216,14 @@ class Motion(Rolled):
         return motion_dataset(self)
 
 
-def integrated(begun: Begun, times: Floats) -> Motion:
+def integrated(problem: MotionProblem, times: Floats) -> Motion:
     """The motion at ``times``, up to its end, in the units of what rolled."""
-    scale, end = begun.roller.scale, begun.end
+    scale, end = problem.roller.scale, problem.end
     T, at = scale["t"], np.minimum(times / scale["t"], end)
     asked = at if at[-1] == end else np.append(at, end)
     switches = np.empty((_SWITCHES_KEPT, 2))
     switches.fill(np.nan)
-    out, (status, steps, _, onset_time, rest_time) = rolled(begun, asked, switches, NO_NOTES[1])
+    out, (status, steps, _, onset_time, rest_time) = rolled(problem, asked, switches, NO_NOTES[1])
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
     whole = rows.pop("regime")
     if scale.si:
@@ -231,9 +232,9 @@ def integrated(begun: Begun, times: Floats) -> Motion:
     noted = switches[~np.isnan(switches[:, 1])]
     changes = tuple(Switch(float(when) * T, REGIMES[int(what)]) for when, what in noted if what >= 0.0)
     return Motion(
-        begun.roller, begun.drive, times, **rows, regime=regime, switches=changes, onset_time=onset_time * T,
+        problem.roller, problem.drive, times, **rows, regime=regime, switches=changes, onset_time=onset_time * T,
         rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
-        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=begun.ready.error, _begun=begun,
+        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.ready.error, _begun=problem,
     )  # fmt: skip
 
 

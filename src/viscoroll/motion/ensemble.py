@@ -8,7 +8,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Parameters, Rolls, scale_of
+from ..contact_law.parameters import Parameters, Roller, scale_of
+from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
 from ..core.blocks import flattened, run_blocks, thread_count
 from ..core.checks import broadcast_shape, extent, number, one_name, yes_or_no
 from ..core.drive import Feedback, Schedule, over
@@ -19,11 +20,10 @@ from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
 from .checks import SPEED_RANGE, in_words, output_times
-from .driven import ACTING, LOSSES, ROWS, STATES, Drive, bare
+from .drive import ACTING, LOSSES, ROWS, STATES, Drive, bare
+from .ensemble_result import Ensemble
 from .flow import FlowMap, FlowResult, flow_map, look_up_ensemble
-from .many import Ensemble
-from .rolling import Asked, Begun, begin, integrate
-from .warned import look
+from .problem import MotionProblem, SolverOptions, integrate, make_problem
 
 #: a function of time of each motion
 Course = Numbers | Schedule | Callable[[float], float]
@@ -36,7 +36,7 @@ FLOW_PAYS = 4096
 
 
 def ensemble(
-    roller: Rolls,
+    roller: Roller,
     V0: Numbers | None,
     omega0: Numbers | None,
     t: Numbers,
@@ -117,15 +117,16 @@ def ensemble(
     progress = yes_or_no("progress", progress)
     if speed is not None:
         speed = number("speed", speed, unit=units, low=0.0, strict=True)
-    asked = Asked(rtol, rest, max_steps, resolve)
-    begun = begin(roller, starts, given, times[-1], asked, unsteady=unsteady, rested=rested)
-    begun.roller.look_at_starts(*starts)
-    inputs, count = _inputs(begun, given.numbers)
-    look(begun)
-    scale = begun.roller.scale
+    asked = SolverOptions(rtol, rest, max_steps, resolve)
+    problem = make_problem(roller, starts, given, times[-1], asked, unsteady=unsteady, rested=rested)
+    inputs, count = _inputs(problem, given.numbers)
+    warn_of_start(
+        problem.roller, starts, problem.ready.V0, problem.ready.omega0, problem.drive.acts or problem.unsteady
+    )
+    scale = problem.roller.scale
     many = _Many(
-        begun, inputs, np.broadcast_to(begun.caught, (count,)), times / scale["t"],
-        names if begun.drive.acts else tuple(name for name in names if name not in ACTING),
+        problem, inputs, np.broadcast_to(problem.caught, (count,)), times / scale["t"],
+        names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
         thread_count(threads), "motions" if progress else None,
     )  # fmt: skip
     try:
@@ -145,10 +146,10 @@ def ensemble(
             np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
         notes = {name: each * scale[name] for name, each in notes.items()}
     notes = {name: np.broadcast_to(each, (count,)) for name, each in notes.items()}
-    notes |= {"status": answer.status, "switches": answer.switches, "drive_error": begun.ready.error} | found
+    notes |= {"status": answer.status, "switches": answer.switches, "drive_error": problem.ready.error} | found
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | rows | notes
-    result = Ensemble(roller=begun.roller, t=times, drive=begun.drive, labels=labels, **kept)
-    begun.roller.look_at_motion(starts[0], result.V)
+    result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **kept)
+    warn_of_speeds(problem.roller, starts[0], result.V)
     return result
 
 
@@ -159,7 +160,7 @@ class _Many(NamedTuple):
     times : without dimension.  rows : what is computed; without a drive nothing acts.
     """
 
-    begun: Begun
+    problem: MotionProblem
     inputs: dict[str, NDArray]
     caught: Booleans
     times: Floats
@@ -170,9 +171,9 @@ class _Many(NamedTuple):
 
 def _answer(many: _Many, method: str, speed: float | None) -> tuple[FlowResult, dict[str, Any]]:
     """The motions, and by what they were found."""
-    begun, rows, times, count = many.begun, many.rows, many.times, many.caught.size
-    scene, (rtol, threshold, _) = begun.scene, begun.limits
-    alike = not (begun.drive.acts or begun.unsteady) and scene.like_bodies
+    problem, rows, times, count = many.problem, many.rows, many.times, many.caught.size
+    scene, (rtol, threshold, _) = problem.scene, problem.limits
+    alike = not (problem.drive.acts or problem.unsteady) and scene.like_bodies
     if method == "flow" and (scene.shape or not alike):
         what = "motions have scenes of their own" if alike else "motions are driven or unsteady, or bodies differ"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
@@ -198,14 +199,14 @@ def _answer(many: _Many, method: str, speed: float | None) -> tuple[FlowResult, 
         answer.out[:, caught] = answer.onset[caught] = answer.rest[caught] = np.nan
         answer.status[caught] = MotionStatus.CAUGHT
     steps = _integrate_others(answer, many)
-    problem = "" if chosen is None else chosen.problem
-    return answer, {"steps": steps, "flow": flow, "flow_error": error, "flow_problem": problem}
+    reason = "" if chosen is None else chosen.problem
+    return answer, {"steps": steps, "flow": flow, "flow_error": error, "flow_problem": reason}
 
 
-def _inputs(begun: Begun, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
+def _inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
     """(Parameters and start speeds, how many motions they and the ``drives`` make)."""
-    ready = begun.ready
-    arrays = {name: np.asarray(value) for name, value in begun.scene.numbers.items()}
+    ready = problem.ready
+    arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
     arrays |= {"V0": np.asarray(ready.V0), "omega0": np.asarray(ready.omega0)}
     own = 1 if ready.courses is None else ready.courses.motions
     counts = {"pieces": own, "gains": ready.gains.shape[1]}
@@ -229,8 +230,8 @@ def _map_of(
 
 def _integrate_others(answer: FlowResult, many: _Many) -> Integers:
     """Integrate the motions without an answer; returns the steps of each."""
-    begun, inputs = many.begun, many.inputs.values()
-    law, rows = _law_of(begun.scene, begun.unsteady), np.array([ROWS.index(name) for name in many.rows], np.int64)
+    problem, inputs = many.problem, many.inputs.values()
+    law, rows = _law_of(problem.scene, problem.unsteady), np.array([ROWS.index(name) for name in many.rows], np.int64)
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -238,20 +239,20 @@ def _integrate_others(answer: FlowResult, many: _Many) -> Integers:
         if not left.size:
             return
         alpha, *own = (flattened(array[left], left.shape) if array.size > 1 else array for array in inputs)
-        batch, drive = (*law(alpha, left), *own), begun.ready.for_kernel(left)
-        answer.out[:, left], info = integrate(left.size, batch, drive, many.times, begun.limits, rows)
+        batch, drive = (*law(alpha, left), *own), problem.ready.for_kernel(left)
+        answer.out[:, left], info = integrate(left.size, batch, drive, many.times, problem.limits, rows)
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     mapped = answer.status.max(initial=-1) >= 0
-    block = _MAPPED_BLOCK if mapped else 1 if begun.unsteady and np.ndim(begun.scene.alpha) else _BLOCK
-    run_blocks(work, steps.size, begun.ready.block(block), threads=many.threads, progress=many.bar)
+    block = _MAPPED_BLOCK if mapped else 1 if problem.unsteady and np.ndim(problem.scene.alpha) else _BLOCK
+    run_blocks(work, steps.size, problem.ready.block(block), threads=many.threads, progress=many.bar)
     return steps
 
 
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """(alphas of motions, which they are) -> the law that they share, or that of each in turn; whether bodies
     differ.  ``unsteady``: of one motion, with N."""
-    each: Any = scene.each
+    each: Any = scene.material_array
     if each is None and not np.ndim(scene.alpha):
         one: Any = scene.table
         law = (one.unsteady_record if unsteady else one.record), one.unlike

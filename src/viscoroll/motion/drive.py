@@ -15,8 +15,8 @@ from ..core.scale import HasUnits, Scale
 from ..core.typed import Floats
 from ..kernels.motion.records import NEITHER
 from .checks import start_speeds
-from .courses import SPEEDS, Courses
-from .schedule import Course, Curve, course
+from .drive_functions import SPEEDS, Courses
+from .piecewise import Course, Curve, course
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")

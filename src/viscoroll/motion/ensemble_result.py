@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..contact_law.assumptions import Validity
-from ..contact_law.judged import validity
-from ..contact_law.steadiness import Steadiness
+from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.free_rolling import FreeRolling
+from ..contact_law.validity.steadiness import Steadiness
+from ..contact_law.validity.validity import validity
 from ..core.checks import checked
 from ..core.errors import MotionStatus, ParameterError, described
 from ..core.labels import Labels
@@ -108,7 +109,7 @@ class Ensemble(Rolled):
         than 256 over that many of them, evenly picked.
         """
         some, V, omega = self.judged()
-        roller = self.roller.some(some, len(self))
+        roller = self.roller.take(some, len(self))
         scene, scale = roller.scene(), roller.scale
         found = validity(roller, V, omega=omega)
         if self.V is None or not some.size or scene.cover is not None:
@@ -116,7 +117,7 @@ class Ensemble(Rolled):
         speeds = np.vstack([self.V0[some], self.V[some].T])
         rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[some]) & ~np.isnan(speeds)
         x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(some.size), self.x[some].T])
-        free = scene.freely(np.nan_to_num(speeds / scale["V"])).scaled(scale)
+        free = FreeRolling.of_scene(scene, np.nan_to_num(speeds / scale["V"])).scaled(scale)
         return found._replace(steady=Steadiness.along(free, rolls, x, ends=True))
 
     def judged(self) -> tuple[Integers, Floats, Floats]:

@@ -1,4 +1,4 @@
-"""The contact law of one scene, for integrators: :func:`law`."""
+"""The contact law of one scene as a function for integrators: :func:`law`."""
 
 from __future__ import annotations
 
@@ -16,40 +16,45 @@ from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from ..materials.law_grid import LawGrid
 from .contact import contact
 from .contact_table import refuse_overflow
-from .parameters import Rolls, framed, refuse_arrays
+from .parameters import Roller, refuse_arrays, resolve_model
+from .validity.model_warnings import warn_of_contact
 
-#: what the law takes as it is; all else goes through :func:`contact`
+#: Types that the compiled function takes; others go through :func:`contact`.
 _NUMBERS = frozenset({float, int, np.float64})
-_loads, _loads_and_slopes = partial(tuple.__new__, Loads), partial(tuple.__new__, LoadsAndSlopes)
+#: Makes :class:`Loads` from four numbers, faster than its constructor.
+_loads = partial(tuple.__new__, Loads)
+#: Makes :class:`LoadsAndSlopes` from eight numbers.
+_loads_and_slopes = partial(tuple.__new__, LoadsAndSlopes)
 
 
 class Law:
-    """The law of a scene or a cylinder, bound: what :func:`law` returns.
+    """The law of a scene or a cylinder as a function of V and omega: the result of :func:`law`.
 
     Attributes
     ----------
-    roller, scene : that it is the law of, and the dimensionless scene of that.
+    roller, scene : the scene or cylinder, and its dimensionless parameters.
     """
 
-    def __init__(self, roller: Rolls) -> None:
+    def __init__(self, roller: Roller) -> None:
         from ..kernels.rows.jitted import Jitted
 
-        _, scene, scale = framed(roller, "law")
-        if scene.each is not None:
-            raise ParameterError(
-                "material", repr(scene.material), "one material, as material[i]: a law is of one scene"
-            )
+        _, scene, scale = resolve_model(roller, "law")
+        if scene.material_array is not None:
+            allowed = "one material, as material[i]: a law is of one scene"
+            raise ParameterError("material", repr(scene.material), allowed)
         refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
         table = scene.table
         assert table is not None
-        self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
-        self._take(Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale))
+        self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])
+        #: whether there are speeds that give a warning
+        self._warns = roller.body_data is not None and roller.body_data.covered_speeds is not None
+        self._use(Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale))
 
-    def _take(self, jitted: Any) -> None:
-        """Keep what is called, and the room for what it finds."""
+    def _use(self, jitted: Any) -> None:
+        """Keep the compiled function, its two kinds of user data, and the type of its output."""
         from ..kernels.rows.jitted import Room
 
-        self._jitted, self._room = jitted, Room
+        self._jitted, self._output = jitted, Room
         self._function, self._plain, self._sloped = jitted.function, jitted.plain, jitted.address
 
     @overload
@@ -85,16 +90,18 @@ class Law:
         """
         if slopes is not False:
             slopes = yes_or_no("slopes", slopes)
-        if type(V) in _NUMBERS and type(omega) in _NUMBERS:
-            out = self._room()
-            try:
-                status = self._function(V, omega, out, self._sloped if slopes else self._plain)
-            except ctypes.ArgumentError:  # an integer beyond the doubles
-                status = 1
-            if status:
-                self._refuse(checked("V", V), checked("omega", omega))
-            return _loads_and_slopes(out) if slopes else _loads(out[:4])
-        return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+        if type(V) not in _NUMBERS or type(omega) not in _NUMBERS:
+            return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+        out = self._output()
+        try:
+            status = self._function(V, omega, out, self._sloped if slopes else self._plain)
+        except ctypes.ArgumentError:  # an integer beyond the doubles
+            status = 1
+        if status:
+            self._refuse(checked("V", V), checked("omega", omega))
+        if self._warns:
+            warn_of_contact(self.roller, V, (V, V))
+        return _loads_and_slopes(out) if slopes else _loads(out[:4])
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         """The law at arrays, as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
@@ -102,7 +109,7 @@ class Law:
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
         """Raise ParameterError for finite numbers at which the law is not defined."""
-        refuse_overflow(self._fastest, V)
+        refuse_overflow(self._kappa, V)
 
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
@@ -134,16 +141,6 @@ class Law:
         return f"law of {self.roller!r}"
 
 
-class WatchedLaw(Law):
-    """The law of a cylinder that has speeds to warn of: each call with numbers looks at its speed."""
-
-    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
-        found: Any = super().__call__(V, omega, slopes=slopes)  # type: ignore[call-overload]
-        if type(V) in _NUMBERS and type(omega) in _NUMBERS:  # of arrays contact looks
-            self.roller.look(V, (V, V))
-        return found
-
-
 class _LawOfGrid(Law):
     """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
 
@@ -151,18 +148,19 @@ class _LawOfGrid(Law):
         from ..kernels.splines.law import JittedGrid
 
         self.roller: Any = grid
+        self._warns = False
         (low, high), slowest = grid.delta, grid.V[0]
-        self._take(JittedGrid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+        self._use(JittedGrid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        each = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
-        return kind(*each(checked("V", V), checked("omega", omega))[: len(kind._fields)])
+        evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
+        return kind(*evaluate(checked("V", V), checked("omega", omega))[: len(kind._fields)])
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
         self.roller.refuse_outside(V, omega)
 
 
-def law(roller: Rolls | LawGrid) -> Law:
+def law(roller: Roller | LawGrid) -> Law:
     """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
 
     ``law(V, omega)`` is :func:`contact` at a given omega with nothing left to check but V and omega, and
@@ -200,4 +198,4 @@ def law(roller: Rolls | LawGrid) -> Law:
     """
     if isinstance(roller, LawGrid):
         return _LawOfGrid(roller)
-    return WatchedLaw(roller) if isinstance(roller, Rolls) and roller.watched else Law(roller)
+    return Law(roller)

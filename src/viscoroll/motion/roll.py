@@ -5,16 +5,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 
-from ..contact_law.parameters import Rolls
+from ..contact_law.parameters import Roller
+from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
 from ..core.drive import Feedback, Schedule
 from ..core.labels import BARE
 from ..core.scale import DIMENSIONLESS
 from ..core.typed import Numbers
 from .checks import output_times
-from .driven import Drive, bare
-from .one import Motion, integrated
-from .rolling import Asked, begin
-from .warned import look
+from .drive import Drive, bare
+from .motion_result import Motion, integrated
+from .problem import SolverOptions, make_problem
 
 #: a function of time
 Course = float | Schedule | Callable[[float], float]
@@ -22,7 +22,7 @@ Acting = Course | Feedback
 
 
 def roll(
-    roller: Rolls,
+    roller: Roller,
     V0: float | None,
     omega0: float | None,
     t: Numbers,
@@ -118,16 +118,17 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    units = roller.scale if isinstance(roller, Rolls) else DIMENSIONLESS  # begin() refuses what is no roller
+    units = roller.scale if isinstance(roller, Roller) else DIMENSIONLESS  # make_problem() refuses what is no roller
     times, given = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
     if not BARE.issuperset(map(type, (V0, omega0, *given))):
         (V0, omega0), given, _ = bare((V0, omega0), given, units)
-    asked = Asked(rtol, rest, max_steps, resolve)
-    begun = begin(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
-    begun.roller.look_at_starts(V0, omega0)
-    look(begun)
-    motion = integrated(begun, times)
-    begun.roller.look_at_motion(V0, motion.V)
+    asked = SolverOptions(rtol, rest, max_steps, resolve)
+    problem = make_problem(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
+    warn_of_start(
+        problem.roller, (V0, omega0), problem.ready.V0, problem.ready.omega0, problem.drive.acts or problem.unsteady
+    )
+    motion = integrated(problem, times)
+    warn_of_speeds(problem.roller, V0, motion.V)
     if not motion.success:
         words = f"roll: {motion.status.message}; outputs not reached are NaN, and `message` says where it stood"
         warnings.warn(words, RuntimeWarning, stacklevel=2)

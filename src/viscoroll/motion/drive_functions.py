@@ -9,8 +9,8 @@ import numpy as np
 from ..core.checks import broadcast_shape
 from ..core.typed import Floats
 from ..kernels.motion.records import OMEGA, SPEED
-from .fitted import TERMS
-from .schedule import Corners, Course, Curve, at_start, curve, motions_of, of_some, pieces_of, slope_of
+from .drive_fit import TERMS
+from .piecewise import Corners, Course, Curve, at_start, curve, motions_of, of_some, pieces_of, slope_of
 
 #: by which name a speed is prescribed
 SPEEDS = {OMEGA: "omega", SPEED: "V"}
