@@ -10,7 +10,8 @@ from closeness import close
 from drives import ROLLER
 
 import viscoroll as vr
-from viscoroll.motion import drive_fit, piecewise
+from viscoroll.motion import drive_fit
+from viscoroll.motion.piecewise import Piecewise, check_function, piecewise
 
 END = 20.0
 #: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a slope without bounds
@@ -41,7 +42,7 @@ class Counted:
         return float(self.function(t))
 
 
-def values(curve: piecewise.Curve, t: np.ndarray) -> np.ndarray:
+def values(curve: Piecewise, t: np.ndarray) -> np.ndarray:
     """A curve of one motion at these times."""
     (starts,), (ends,) = curve.starts, curve.ends
     k = np.searchsorted(starts, t, side="right") - 1
@@ -54,7 +55,7 @@ def values(curve: piecewise.Curve, t: np.ndarray) -> np.ndarray:
 def test_a_callable_is_met_in_few_values(name, rtol):
     """Off by a tenth of rtol of the largest value so far, in thousands of values; most of these took no end of them."""
     function = Counted(CALLABLES[name])
-    curve = piecewise.curve(piecewise.course("torque", function, END, rtol))
+    curve = piecewise(check_function("torque", function, END, rtol))
     assert function.calls <= tol.CALLABLE_VALUES
     assert curve.starts.size <= tol.CALLABLE_PIECES
     assert (np.diff(curve.starts) > 0.0).all()

@@ -10,21 +10,27 @@ from memory import taken_beside
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.motion import drive as drives
 from viscoroll.motion import drive_functions
+from viscoroll.motion.drive import Drive
+
+
+def pieces_of(drive: Drive, end: float) -> np.ndarray:
+    """The pieces of a drive of one motion."""
+    functions = drive_functions.prepare_drive(drive, 0.1, 0.1, end, 1e-8).functions
+    assert functions is not None
+    return functions.pieces
 
 
 @pytest.mark.parametrize("count", [2_000, 200_000])
 def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
     times = np.arange(count) * 1e-3
-    drive = drives.Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
-    drives.prepared(drives.Drive(torque=0.1), 0.1, 0.1, 1.0, 1e-8)  # imports take memory too
+    drive = Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
+    assert pieces_of(Drive(torque=0.1), 1.0).size  # imports take memory too
     tracemalloc.start()
-    ready = drives.prepared(drive, 0.1, 0.1, times[-1], 1e-8)
+    pieces = pieces_of(drive, times[-1])
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert ready.pieces is not None
-    assert ready.pieces.shape[1] == 2 * count - 2
+    assert pieces.shape[1] == 2 * count - 2
     assert peak <= tol.BYTES_A_CORNER * 2 * count
 
 

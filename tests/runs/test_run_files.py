@@ -21,7 +21,7 @@ from viscoroll.io.runs.identity import identity
 from viscoroll.io.runs.rollers import roller_of
 from viscoroll.io.runs.sensitivity import sobol_indices
 from viscoroll.io.runs.store import columns_of
-from viscoroll.motion.ensemble import FLOW_PAYS
+from viscoroll.motion.batch import FLOW_PAYS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

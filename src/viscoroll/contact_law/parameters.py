@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -222,14 +222,6 @@ class Parameters(Roller):
         return f"Scene({', '.join(f'{name}={short(value)}' for name, value in self._arrays.items())})"
 
 
-class Model(NamedTuple):
-    """A roller on its slope, its dimensionless parameters, and its scale."""
-
-    roller: Roller
-    scene: Parameters
-    scale: Scale
-
-
 def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
     """Return a series in its own unit of time; (alpha = 1, 1) of one without modes.
 
@@ -244,8 +236,10 @@ def scale_of(roller: Any) -> Scale:
     return roller.scale if isinstance(roller, Roller) else DIMENSIONLESS
 
 
-def resolve_model(roller: Any, call: str, *, moves: bool = False, slope: Any = None) -> Model:
-    """Return the model of a call.
+def resolve_model(
+    roller: Any, call: str, *, moves: bool = False, slope: Any = None
+) -> tuple[Roller, Parameters, Scale]:
+    """Return (the roller on its slope, its dimensionless parameters, its scale) of a call.
 
     roller: the first argument of the call.
     call: its name, for refusals.
@@ -265,7 +259,7 @@ def resolve_model(roller: Any, call: str, *, moves: bool = False, slope: Any = N
     if moves and scene.gamma is None:
         sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
         raise ParameterError("gamma", None, "a number > 0", sentence)
-    return Model(roller, scene, roller.scale)
+    return roller, scene, roller.scale
 
 
 def refuse_cover(scene: Parameters, why: str) -> None:

@@ -1,15 +1,14 @@
-"""A callable of time as polynomials: a piece is halved until it is good, and joined to the last one where one will do.
+"""Fit of a callable of time by polynomials: a piece is halved until its fit is good, and joined to the previous one.
 
-A piece is good where the callable is met between its nodes, and at looks spread over the whole time, which find what is
-narrow: a thousand, or as many as ``resolve`` asks for.
+A fit is good where it agrees with the callable between its nodes, and at samples spread over the whole time, which find
+narrow pulses: a thousand, or as many as ``resolve`` requires.
 
-It may be off by a share of the largest value so far, or of the foot, a small part of the largest of all: what
-rises from next to nothing, as a Gauss pulse does, would else never be met.  Before it has risen to that it is 0: the
-sign of what is off would set a motion from rest out the wrong way.
+It may differ by a part of the largest value so far, or by a small part of the largest value at all: a callable that
+rises from nearly nothing, as a Gauss pulse does, would otherwise never be fitted.  Before it has risen to that level
+the fit is 0, since an error of the wrong sign would start a motion from rest in the wrong direction.
 
 Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined they are one to the left and one to the
-right, which meet in it.  A jump is followed down to the two neighbouring numbers that it lies between, where what is
-steep but smooth hardly changes.
+right, which meet in it.  A jump is located between two neighbouring doubles.
 """
 
 from __future__ import annotations
@@ -28,216 +27,252 @@ from ..core.errors import ParameterError
 from ..core.typed import Floats
 from ..kernels.numerics.nodes import powers_of_chebyshev
 
-#: terms of a polynomial, looks at a callable, values taken of it at most
-TERMS, LOOKS, MOST = 14, 1000, 500_000
-#: share of the tolerance of the motion that a fit may be off; part of the largest value of all that is the foot
-_SHARE, _FOOT = 0.1, 1e-9
-#: over what a fit may be off at the foot, values that are 0; share of a piece behind which they are to exceed that
-_SLIGHT, _SOON = 1e3, 1e-5
-#: roundings of the largest value, and of a time, that may show in a fit
-_ROUNDINGS, _BLUR = 8.0, 8.0
-#: numbers that a piece has, at least, to be halved; how much shorter than its neighbours one with a corner is
-_NUMBERS, _SHORTER = 64, 50.0
-#: nodes of a piece, its ends among them so that pieces meet, and between any two of them a place to compare at
+#: Terms of a polynomial.
+TERMS = 14
+#: Samples of a callable over the whole time, without ``resolve``: a pulse of a thousandth of the motion is seen.
+SAMPLES = 1000
+#: Largest number of values taken of a callable: some tenths of a second for a cheap one.
+MOST = 500_000
+#: Error allowed to a fit, divided by rtol of the motion: small beside the error of the integrator.
+_SHARE = 0.1
+#: Level below which errors are not compared with values so far, divided by the largest value of all.
+_FOOT = 1e-9
+#: Level up to which a callable that has not risen yet counts as 0, divided by the error allowed there.
+_ZERO_LEVEL = 1e3
+#: Part of a piece within which a callable that rises from 0 must have risen: else the piece is cut where it rises.
+_RISE = 1e-5
+#: Roundings of the largest value that a fit may show.
+_ROUNDINGS = 8.0
+#: Roundings of the time whose effect on the values a fit may show.
+_TIME_ROUNDINGS = 8.0
+#: Smallest length of a piece that is halved, in spacings of doubles.
+_LEAST_SPACINGS = 64
+#: Ratio of the neighbours' lengths to that of a piece at which the piece is taken to contain a corner.
+_SHORTER = 50.0
+#: Nodes of a piece in [-1, 1], its ends among them so that pieces meet, and points between them to compare at.
 _POINTS = -np.cos(np.pi * np.arange(2 * TERMS - 1) / (2 * TERMS - 2))
 _POINTS[TERMS - 1] = 0.0
-#: from values at the nodes to a series, by the orthogonality of the polynomials there, and from that to terms
+#: Matrix from values at the nodes to Chebyshev coefficients, by the orthogonality of the polynomials at the nodes.
 _TO_SERIES = chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
 _TO_SERIES[[0, -1]] *= 0.5
 _TO_SERIES[:, [0, -1]] *= 0.5
+#: Matrix from Chebyshev coefficients to those of powers.
 _TO_TERMS = powers_of_chebyshev(TERMS, 0.0, 1.0)
+#: Spacing of doubles at 1.
 _EPSILON = float(np.finfo(float).eps)
+
+#: Neighbouring doubles between which a piece is cut.
+Cut = tuple[float, float]
 
 
 class Piece(NamedTuple):
-    """A polynomial of x = -1 ... 1 from start to stop; the largest value in it, the largest difference seen, and the
-    largest value before it."""
+    """A polynomial of x = -1 ... 1 from ``start`` to ``stop``, in T_ref.
+
+    terms : coefficients of powers of x, (TERMS,).
+    largest : largest value in the piece.
+    error : largest difference seen.
+    so_far : largest value before the piece.
+    """
 
     start: float
     stop: float
     terms: Floats
     largest: float
-    off: float
+    error: float
     so_far: float
 
-    def at(self, t: float) -> float:
-        """Its value."""
+    def value(self, t: float) -> float:
+        """Return the polynomial at time t."""
         return float(polyval((2.0 * t - self.start - self.stop) / (self.stop - self.start), self.terms))
 
 
-Cut = tuple[float, float]
-
-
-class _Given:
-    """A callable up to ``end``, and what is known of it."""
+class _Sampled:
+    """A callable with its samples over the whole time."""
 
     def __init__(
-        self, name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, looks: int
+        self, name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, samples: int
     ) -> None:
+        """Sample a callable.
+
+        name: of the argument, for refusals.
+        function: takes t in T_ref, returns a number.
+        end: last time, in T_ref.
+        rtol: relative tolerance of the motion.
+        low: smallest value allowed.
+        samples: their number.
+        """
         self.name, self.function, self.low, self.taken = name, function, low, 0
         self.share = _SHARE * rtol
-        self.looks = end * (np.arange(looks) + 0.5) / looks
-        self.seen = self.values(self.looks)
-        self.largest = float(np.abs(self.seen).max())
+        self.times = end * (np.arange(samples) + 0.5) / samples
+        self.samples = self.values(self.times)
+        self.largest = float(np.abs(self.samples).max())
 
-    def values(self, at: Floats) -> Floats:
-        """Its values, checked."""
-        self.taken += at.size
-        found = checked(f"{self.name}(t)", [self.function(t) for t in at.tolist()], low=self.low)
-        if found.shape != at.shape:
-            raise ParameterError(f"{self.name}(t)", f"array of shape {found.shape[1:]}", "a number")
-        return found
+    def values(self, t: Floats) -> Floats:
+        """Return the values at times (n,); raises ParameterError for what is no finite number or too small."""
+        self.taken += t.size
+        values = checked(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
+        if values.shape != t.shape:
+            raise ParameterError(f"{self.name}(t)", f"array of shape {values.shape[1:]}", "a number")
+        return values
 
-    def value(self, at: float) -> float:
-        """Its value."""
-        return float(self.values(np.array([at]))[0])
+    def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
+        """Fit a piece.
 
-    def piece(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
-        """(A good piece or None, neighbouring numbers between which it is better cut or None)."""
+        start, stop: its ends, in T_ref.
+        so_far: largest value before it.
+        Returns (the piece, None if its fit is not good; where to cut it, None for its middle).
+        """
         middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
-        at = middle + half * _POINTS
-        at[0], at[-1] = start, stop
-        at = np.append(at, start + _SOON * (stop - start)) if so_far == 0.0 else at
-        values, looks = self.values(at), slice(*np.searchsorted(self.looks, [start, stop]))
+        t = middle + half * _POINTS
+        t[0], t[-1] = start, stop
+        t = np.append(t, start + _RISE * (stop - start)) if so_far == 0.0 else t
+        values, part = self.values(t), slice(*np.searchsorted(self.times, [start, stop]))
         nodes = values[: _POINTS.size : 2]
-        at, values = np.append(at, self.looks[looks]), np.append(values, self.seen[looks])
-        order = np.argsort(at, kind="stable")
-        at, values = at[order], values[order]
+        t, values = np.append(t, self.times[part]), np.append(values, self.samples[part])
+        order = np.argsort(t, kind="stable")
+        t, values = t[order], values[order]
         largest = float(np.abs(values).max())
         self.largest = max(self.largest, largest)
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
-        slight = _SLIGHT * least if so_far == 0.0 else max(self.share * so_far, least)
-        if largest <= slight:
+        zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
+        if largest <= zero:
             return Piece(start, stop, np.zeros(TERMS), 0.0, largest, so_far), None
-        if so_far == 0.0 and np.abs(values[:2]).max() <= slight:
-            return None, self.foot(at, values, slight)
+        if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
+            n = int(np.argmax(np.abs(values) > zero))
+            return None, self._bisect(t[n - 1], t[n], lambda value: abs(value) <= zero)
         allowed = np.maximum(self.share * np.maximum(np.maximum.accumulate(np.abs(values)), so_far), least)
-        # what the rounding of t makes of the values is none of the fit's
+        # The effect of the rounding of t on the values is no error of the fit.
         rounding = float(np.spacing(stop))
-        allowed += _BLUR * rounding / max(half, rounding) * np.ptp(values)
-        # what is fitted varies about 0: terms are large and of both signs, and would magnify its rounding
+        allowed += _TIME_ROUNDINGS * rounding / max(half, rounding) * np.ptp(values)
+        # Values are fitted about the first one: terms are large and of both signs, and would magnify its rounding.
         terms = _product(_product((nodes - nodes[0])[None], _TO_SERIES), _TO_TERMS)[0]
         terms[0] += nodes[0]
-        off = np.abs(polyval((at - middle) / (half or 1.0), terms) - values)
-        if (off <= allowed).all():
-            return Piece(start, stop, terms, largest, float(off.max()), so_far), None
-        return None, self.jump(at, values, float(allowed[-1]))
+        error = np.abs(polyval((t - middle) / (half or 1.0), terms) - values)
+        if (error <= allowed).all():
+            return Piece(start, stop, terms, largest, float(error.max()), so_far), None
+        return None, self._locate_jump(t, values, float(allowed[-1]))
 
-    def foot(self, at: NDArray, values: NDArray, slight: float) -> Cut:
-        """Neighbouring numbers between which it first is more than this."""
-        n = int(np.argmax(np.abs(values) > slight))
-        low, high = at[n - 1 : n + 1].tolist()
+    def _bisect(self, low: float, high: float, below: Callable[[float], bool]) -> Cut:
+        """Return the neighbouring doubles in [low, high] between which ``below`` of the value becomes false."""
+        low, high = float(low), float(high)
         while low < (middle := 0.5 * (low + high)) < high:
-            low, high = (low, middle) if abs(self.value(middle)) > slight else (middle, high)
+            value = float(self.values(np.array([middle]))[0])
+            low, high = (middle, high) if below(value) else (low, middle)
         return low, high
 
-    def jump(self, at: NDArray, values: NDArray, allowed: float) -> Cut | None:
-        """Neighbouring numbers between which it jumps, if one jump is most of how it varies."""
+    def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
+        """Return the neighbouring doubles between which the callable jumps.
+
+        t, values: ascending times of a piece and the values there, (n,).
+        allowed: error allowed to a fit at its end.
+        Returns None unless one jump is most of the variation.
+        """
         change = np.abs(np.diff(values))
         n = int(change.argmax())
         if change[n] <= allowed or 2.0 * change[n] <= change.sum():
             return None
-        (low, high), (below, above) = at[n : n + 2].tolist(), values[n : n + 2].tolist()
-        while low < (middle := 0.5 * (low + high)) < high:
-            value = self.value(middle)
-            if abs(value - below) < abs(above - value):
-                low, below = middle, value
-            else:
-                high, above = middle, value
-        return (low, high) if 2.0 * abs(above - below) > change[n] else None
+        ends = values[n : n + 2].tolist()
+
+        def is_before(value: float) -> bool:
+            before = abs(value - ends[0]) < abs(ends[1] - value)
+            ends[0 if before else 1] = value
+            return before
+
+        cut = self._bisect(t[n], t[n + 1], is_before)
+        return cut if 2.0 * abs(ends[1] - ends[0]) > change[n] else None
 
 
-def fitted(
+def fit_callable(
     name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, resolve: float | None = None
 ) -> tuple[Floats, Floats, float]:
-    """(Starts, terms (k, TERMS), largest difference seen) of a callable up to ``end``.
+    """Fit a callable by piecewise polynomials.
 
-    Parameters
-    ----------
-    name, function : the argument and the callable.
-    end, rtol, low : the last time, the tolerance of the motion, the least value allowed.
-    resolve : largest spacing of the samples; None: ``end`` over :data:`LOOKS`.
-
-    Raises
-    ------
-    ParameterError
-        Values that are no finite numbers or below ``low``; a ``resolve`` that is not above 0 or asks for more than
-        :data:`MOST` samples; a callable of which half a million values beside these are not enough.
+    name, function: the argument and the callable.
+    end: last time, in T_ref.
+    rtol: relative tolerance of the motion.
+    low: smallest value allowed.
+    resolve: largest spacing of the samples, in T_ref; None: ``end`` divided by :data:`SAMPLES`.
+    Returns (starts of the pieces (k,), terms (k, TERMS), largest difference seen).
+    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that is not above 0 or
+    requires more than :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough.
     """
-    looks = LOOKS
+    samples = SAMPLES
     if resolve is not None:
         spacing = number("resolve", resolve, low=0.0, strict=True)
         if spacing * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise ParameterError("resolve", spacing, allowed)
-        looks = max(math.ceil(end / spacing), LOOKS)
-    given = _Given(name, function, end, rtol, low, looks)
-    pieces = _with_corners(_pieces(given, end), given)
-    starts = np.array([one.start for one in pieces])
+        samples = max(math.ceil(end / spacing), SAMPLES)
+    sampled = _Sampled(name, function, end, rtol, low, samples)
+    pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
+    starts = np.array([piece.start for piece in pieces])
     starts[0] = 0.0  # a jump there leaves one value before it
-    return starts, np.stack([one.terms for one in pieces]), max(one.off for one in pieces)
+    return starts, np.stack([piece.terms for piece in pieces]), max(piece.error for piece in pieces)
 
 
-def _pieces(given: _Given, end: float) -> list[Piece]:
-    """Good pieces up to ``end``, of which no two that follow one another would be one."""
+def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
+    """Return good pieces up to ``end``, in T_ref, of which no two neighbours could be one; raises ParameterError."""
     pieces: list[Piece] = []
     failed: set[tuple[float, float]] = set()
-    todo, so_far = [(0.0, end)], 0.0
-    while todo:
-        start, stop = todo.pop()
-        one, cut = given.piece(start, stop, so_far)
-        if one is not None:
+    open_intervals, so_far = [(0.0, end)], 0.0
+    while open_intervals:
+        start, stop = open_intervals.pop()
+        piece, cut = sampled.fit(start, stop, so_far)
+        if piece is not None:
             if pieces and (pieces[-1].start, stop) not in failed:
-                whole, _ = given.piece(pieces[-1].start, stop, pieces[-1].so_far)
-                if whole is not None:
-                    one, _ = whole, pieces.pop()
-            pieces.append(one)
-            so_far = max(so_far, one.largest)
+                joined, _ = sampled.fit(pieces[-1].start, stop, pieces[-1].so_far)
+                if joined is not None:
+                    piece, _ = joined, pieces.pop()
+            pieces.append(piece)
+            so_far = max(so_far, piece.largest)
             continue
         failed.add((start, stop))
-        if given.taken - given.looks.size > MOST or (cut is None and stop - start <= _NUMBERS * np.spacing(stop)):
-            what = f"a callable that no polynomials follow near t = {start:.6g} ({given.taken} values of it were taken)"
-            raise ParameterError(given.name, what, "smooth but for jumps and corners; give it as a Schedule")
+        short = stop - start <= _LEAST_SPACINGS * np.spacing(stop)
+        if sampled.taken - sampled.times.size > MOST or (cut is None and short):
+            found = (
+                f"a callable that no polynomials follow near t = {start:.6g} ({sampled.taken} values of it were taken)"
+            )
+            raise ParameterError(sampled.name, found, "smooth but for jumps and corners; give it as a Schedule")
         left, right = cut or (0.5 * (start + stop),) * 2
-        todo += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
+        open_intervals += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
     return pieces
 
 
-def _with_corners(pieces: list[Piece], given: _Given) -> list[Piece]:
-    """Without the short pieces that hold a corner: their neighbours meet in it."""
-    kept: list[Piece] = []
-    left = pieces[::-1]
-    while left:
-        one = left.pop()
-        if kept and left:
-            long = min(kept[-1].stop - kept[-1].start, left[-1].stop - left[-1].start)
-            if _SHORTER * (one.stop - one.start) < long:
-                corner = _meeting(kept[-1], left[-1], one)
-                before, _ = given.piece(kept[-1].start, corner, kept[-1].so_far)
-                behind, _ = given.piece(corner, left[-1].stop, one.so_far)
-                if before and behind:
-                    kept[-1], left[-1] = before, behind
+def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
+    """Return the pieces without the short ones that contain a corner: their neighbours then meet in it."""
+    merged: list[Piece] = []
+    rest = pieces[::-1]
+    while rest:
+        piece = rest.pop()
+        if merged and rest:
+            before, behind = merged[-1], rest[-1]
+            if _SHORTER * (piece.stop - piece.start) < min(before.stop - before.start, behind.stop - behind.start):
+                corner = _intersection(before, behind, piece)
+                left, _ = sampled.fit(before.start, corner, before.so_far)
+                right, _ = sampled.fit(corner, behind.stop, piece.so_far)
+                if left and right:
+                    merged[-1], rest[-1] = left, right
                     continue
-        kept.append(one)
-    return kept
+        merged.append(piece)
+    return merged
 
 
-def _meeting(before: Piece, behind: Piece, between: Piece) -> float:
-    """Where two polynomials meet within the piece between them; its middle where they pass each other by."""
+def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
+    """Return the time, within a piece, at which the polynomials of its neighbours are equal; else its middle."""
 
-    def apart(t: float) -> bool:
-        return before.at(t) > behind.at(t)
+    def is_above(t: float) -> bool:
+        return before.value(t) > behind.value(t)
 
     low, high = between.start, between.stop
-    after = apart(high)
-    if apart(low) == after:
+    above_at_end = is_above(high)
+    if is_above(low) == above_at_end:
         return 0.5 * (low + high)
     while low < (middle := 0.5 * (low + high)) < high:
-        low, high = (low, middle) if apart(middle) == after else (middle, high)
+        low, high = (low, middle) if is_above(middle) == above_at_end else (middle, high)
     return high
 
 
-def _product(one: NDArray[Any], other: NDArray[Any]) -> Floats:
-    """The product of two matrices, of the same bits whatever library of linear algebra numpy has."""
-    found: Floats = np.einsum("ij,jk->ik", one, other)
-    return found
+def _product(first: NDArray[Any], second: NDArray[Any]) -> Floats:
+    """Return the product of two matrices; its bits do not depend on numpy's library of linear algebra."""
+    product: Floats = np.einsum("ij,jk->ik", first, second)
+    return product

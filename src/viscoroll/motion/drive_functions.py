@@ -1,105 +1,254 @@
-"""What acts on motions over time, as pieces for the kernels, some motions at a time: :class:`Courses`."""
+"""A drive as checked functions of time without dimension, and its layout for the kernels: :class:`DriveFunctions`."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import broadcast_shape
+from ..core.checks import broadcast_shape, checked
+from ..core.drive import Feedback, Schedule, slope_factor
+from ..core.errors import ParameterError, one_of
 from ..core.typed import Floats
-from ..kernels.motion.records import OMEGA, SPEED
+from ..kernels.motion.records import NEITHER, OMEGA, SPEED
+from .checks import start_speeds
+from .drive import Drive
 from .drive_fit import TERMS
-from .piecewise import Corners, Course, Curve, at_start, curve, motions_of, of_some, pieces_of, slope_of
+from .piecewise import (
+    Piecewise,
+    TimeFunction,
+    check_function,
+    count_motions,
+    differentiate,
+    pack_pieces,
+    piecewise,
+    take_motions,
+    values_at_start,
+)  # fmt: skip
 
-#: by which name a speed is prescribed
+#: Name of the prescribed speed by the kernel's code.
 SPEEDS = {OMEGA: "omega", SPEED: "V"}
-#: bytes of pieces that are made at a time where motions have their own: little beside the schedules, and yet many
-#: motions at once where these are short
+#: Bytes of pieces that are packed at a time where motions have functions of their own: little beside the schedules,
+#: and yet many motions at once where these are short.
 _BLOCK_BYTES = 1 << 18
+#: Largest difference between a given and the prescribed start, divided by the largest prescribed speed.
+_START = 1e-9
+#: (argument, prescribed speed beside which it must not be given, reason).
+_BESIDE = (
+    ("torque", "omega", "it is what the prescribed omega needs"), ("force", "V", "it is what the prescribed V needs"),
+    ("brake", "omega", "omega is prescribed"), ("drag", "omega", "omega is prescribed"),
+)  # fmt: skip
+#: Names of the gains in the order of the kernel's.
+_GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
+
+#: (pieces (1 or m, k, columns); gains (4, 1 or m); code of the prescribed speed), as the kernels take a drive.
+KernelDrive = tuple[Floats, Floats, int]
 
 
-class Courses(NamedTuple):
-    """What acts over time, checked and without dimension, each the same for all motions or one a motion.
+@dataclass(frozen=True, eq=False)
+class DriveFunctions:
+    """The functions of time that drive motions, dimensionless, each the same for all motions or one for each.
 
-    tangent : of the slope, which adds to the force.
-    speed : the prescribed one, of V or omega as ``prescribed`` says; None without.
+    Attributes
+    ----------
+    functions : force, torque, brake and prescribed speed by name, where there are any.
+    tangent : of the slope, which adds to the force, () or (m,).
+    prescribed : the kernel's code of the prescribed speed.
+    gains : of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
+    end : last time, in T_ref.
     """
 
-    force: Course
-    torque: Course
-    brake: Course
+    functions: dict[str, TimeFunction]
     tangent: Floats
-    speed: Course | None
     prescribed: int
+    gains: Floats
+    end: float
 
-    @property
-    def each(self) -> dict[str, Course]:
-        """Those that there are, by the name of their argument."""
-        names = "force", "torque", "brake", "slope", SPEEDS.get(self.prescribed)
-        return {name: one for name, one in zip(names, self[:-1], strict=True) if name and one is not None}
-
-    @property
-    def motions(self) -> int:
-        """Number of motions that have courses of their own; 1 if all are alike.
-
-        Raises
-        ------
-        ParameterError
-            Where two courses are of different numbers of motions.
-        """
-        counts = {name: motions_of(one) for name, one in self.each.items()}
+    @cached_property
+    def _function_motions(self) -> int:
+        """Number of motions that have functions of their own; 1 if all are alike; raises ParameterError if unequal."""
+        counts = {name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()}
         shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
         return shape[0] if shape else 1
 
     @property
+    def counts(self) -> tuple[int, int]:
+        """(Number of motions with functions of their own, with gains of their own); 1 if all are driven alike."""
+        return self._function_motions, self.gains.shape[1]
+
+    @property
     def corners(self) -> int:
         """Number of corners of a motion's schedules, and of pieces of its callables."""
-        return sum(one[0].shape[-1] for one in self.each.values() if isinstance(one, Corners | Curve))
+        corners = [f.times if isinstance(f, Schedule) else f.starts for f in self.functions.values()
+                   if isinstance(f, Schedule | Piecewise)]  # fmt: skip
+        return sum(times.shape[-1] for times in corners)
 
-    def some(self, chosen: Any) -> Courses:
-        """Those of the ``chosen`` motions, an index of numpy."""
-        force, torque, brake = (of_some(one, chosen) for one in self[:3])
-        tangent = self.tangent[chosen] if self.tangent.size > 1 else self.tangent
-        speed = None if self.speed is None else of_some(self.speed, chosen)
-        return Courses(force, torque, brake, tangent, speed, self.prescribed)
+    @property
+    def error(self) -> float:
+        """Largest difference seen between a callable and its fit, dimensionless."""
+        return max((f.error for f in self.functions.values() if isinstance(f, Piecewise)), default=0.0)
 
     def block(self, most: int) -> int:
-        """Number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""
-        if self.motions == 1:
+        """Return the number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""
+        if self._function_motions == 1:
             return most
-        columns = 2 + 5 * (TERMS if any(isinstance(one, Curve) for one in self.each.values()) else 2)
+        columns = 2 + 5 * (TERMS if any(isinstance(f, Piecewise) for f in self.functions.values()) else 2)
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
-    def starts(self) -> tuple[Floats, Floats]:
-        """(Value at t = 0, largest size) of the prescribed speed, of every motion that has its own.
-
-        Raises
-        ------
-        ParameterError
-            Where it jumps.
-        """
-        assert self.speed is not None
-        firsts, sizes, count = [], [], motions_of(self.speed)
+    def _blocks(self, count: int) -> list[slice]:
+        """Return slices of ``count`` motions, each of one block."""
         step = self.block(max(count, 1))
-        for first in range(0, max(count, 1), step):
-            one = curve(of_some(self.speed, slice(first, first + step)))
-            slope_of(SPEEDS[self.prescribed], one)
-            firsts.append(at_start(one.terms[:, 0]))
-            sizes.append(np.abs(one.terms).sum(axis=-1).max(axis=1, initial=0.0))
+        return [slice(first, first + step) for first in range(0, max(count, 1), step)]
+
+    def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
+        """Return (value at t = 0, largest size) of a prescribed speed, of every motion that has its own.
+
+        name: of the speed.
+        Raises ParameterError where it jumps.
+        """
+        speed, firsts, sizes = self.functions[name], [], []
+        for part in self._blocks(count_motions(speed)):
+            curve = piecewise(take_motions(speed, part))
+            differentiate(name, curve)
+            firsts.append(values_at_start(curve.terms[:, 0]))
+            sizes.append(np.abs(curve.terms).sum(axis=-1).max(axis=1, initial=0.0))
         return np.concatenate(firsts), np.concatenate(sizes)
 
-    def pieces(self, end: float) -> Floats:
-        """All of them over common pieces up to ``end``, (1 or m, k, columns), as the kernel takes them."""
-        force = _added(curve(self.force), self.tangent)
-        speed = rate = curve(np.zeros(()) if self.speed is None else self.speed)
-        if self.speed is not None:
-            rate = slope_of(SPEEDS[self.prescribed], speed)
-        return pieces_of((force, curve(self.torque), rate, curve(self.brake), speed), end)
+    @cached_property
+    def pieces(self) -> Floats:
+        """All functions over common pieces, in the layout of the kernels, (1 or m, k, columns)."""
+        zero, name = piecewise(np.zeros(())), SPEEDS.get(self.prescribed, "")
+        force, torque, brake, speed = (
+            piecewise(self.functions[f]) if f in self.functions else zero for f in ("force", "torque", "brake", name)
+        )
+        tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
+        tilt[:, 0, 0] = self.tangent
+        rate = differentiate(name, speed) if name else speed
+        return pack_pieces((force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end)
+
+    def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
+        """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
+        pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
+        gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
+        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), self.prescribed
+
+    def _take(self, index: Any) -> DriveFunctions:
+        """Return the functions of some motions; ``index`` of numpy."""
+        functions = {name: take_motions(f, index) for name, f in self.functions.items()}
+        return replace(
+            self, functions=functions, tangent=self.tangent[index] if self.tangent.size > 1 else self.tangent
+        )
+
+    @property
+    def acts_at_end(self) -> bool:
+        """Whether anything still acts at the end, on any motion."""
+        if self.prescribed or self.gains.any():
+            return True
+        return any(self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self._function_motions))
 
 
-def _added(one: Curve, more: Any) -> Curve:
-    """A curve with a number, or one a motion, added."""
-    flat = np.zeros((np.size(more), 1, one.terms.shape[-1]))
-    flat[:, 0, 0] = more
-    return one._replace(terms=one.terms + flat)
+@cache
+def undriven() -> KernelDrive:
+    """Return the kernel's drive of free motions."""
+    from ..kernels.motion.load import FIRST, FUNCTIONS
+
+    return np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER
+
+
+class DrivenStart(NamedTuple):
+    """The functions that drive motions, None of free ones, and the start speeds, dimensionless."""
+
+    functions: DriveFunctions | None
+    V0: Any
+    omega0: Any
+
+
+def prepare_drive(
+    drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None
+) -> DrivenStart:
+    """Check a drive and the start speeds.
+
+    drive: dimensionless.
+    V0, omega0: start speeds, dimensionless; None where they are prescribed.
+    end: last time, in T_ref.
+    rtol, resolve: as of :func:`viscoroll.roll`.
+    Raises ParameterError for what is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what follows
+    from them given as well; a start that is not the prescribed one; ``resolve`` without a callable.
+    """
+    if resolve is not None and not drive.has_callable:
+        sentence = f"resolve = {resolve!s:.60} is given, but nothing that drives is a function of t: leave it out"
+        raise ParameterError("resolve", resolve, "left out", sentence)
+    if not drive.acts:
+        return DrivenStart(None, *start_speeds(V0, omega0))
+    tangent = np.asarray(slope_factor(drive.slope)[0])
+    _refuse_both(drive)
+    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NEITHER)
+    names = ["force", "torque", "brake", *([SPEEDS[prescribed]] if prescribed else [])]
+    functions = {
+        name: check_function(
+            name, getattr(drive, name), end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
+        )
+        for name in names
+    }
+    checked_drive = DriveFunctions(functions, tangent, prescribed, _gains(drive), end)
+    starts = {"V": V0, "omega": omega0}
+    if prescribed:
+        name = names[-1]
+        starts[name] = _prescribed_start(name, starts[name], checked_drive, getattr(drive, name))
+    for name, start in starts.items():
+        if start is None:
+            raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")
+    return DrivenStart(checked_drive, *start_speeds(*starts.values()))
+
+
+def _refuse_both(drive: Drive) -> None:
+    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given."""
+    if drive.V is not None and drive.omega is not None:
+        raise one_of("V", "omega", both=True)
+    for name, speed, why in _BESIDE:
+        if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
+            raise ParameterError(name, value, "left out", f"{name} is given beside {speed}=: leave it out, {why}")
+
+
+def _prescribed_start(name: str, given: Any, functions: DriveFunctions, speed: Any) -> Any:
+    """Return the start that is prescribed: a number where it is the same for all, else one for each motion.
+
+    name: "V" or "omega".
+    given: the start that the caller gave; None without.
+    functions: with the prescribed speed.
+    speed: the prescribed speed as the caller gave it.
+    Raises ParameterError where ``given`` is another start, or where the speed jumps.
+    """
+    if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
+        raise ParameterError(name, "an empty array", "a number, one a motion, or a function of t")
+    start, scale = functions.speed_at_start(name)
+    if callable(speed):  # its fit has rounding errors, and may be of the other sign
+        start = np.array([float(speed(0.0))])
+    if given is not None and not (np.abs(checked(f"{name}0", given) - start) <= _START * scale).all():
+        raise ParameterError(f"{name}0", given, f"None, or {float(start[0]):.12g} as prescribed")
+    if start.size > 1:
+        return start
+    return float(start[0]) if np.ndim(given) == 0 else np.full(np.shape(given), start[0])
+
+
+def _gains(drive: Drive) -> Floats:
+    """Return the gains of a drive, with the drag in that of the torque on omega, (4, 1 or m)."""
+    pairs = [(x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0) for x in (drive.force, drive.torque)]
+    rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
+    rows[3] = rows[3] - checked("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
+    count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
+    return np.array([np.broadcast_to(row, count) for row in rows])
+
+
+def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
+    """Raise ParameterError where a motion is to end at rest while something drives it to the end.
+
+    rest: threshold, dimensionless; 0 for none.  Where nothing drives, speeds below it stay below.
+    functions: that drive.
+    """
+    if rest > 0.0 and functions is not None and functions.acts_at_end:
+        sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
+        sentence += " (what a brake stops and holds is at rest in finite time: switches say when)"
+        raise ParameterError("rest", rest, "None", sentence)

@@ -3,36 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Parameters, Roller, scale_of
+from ..contact_law.parameters import Roller, scale_of
 from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
-from ..core.blocks import flattened, run_blocks, thread_count
-from ..core.checks import broadcast_shape, extent, number, one_name, yes_or_no
+from ..core.blocks import flattened, thread_count
+from ..core.checks import broadcast_shape, number, one_name, yes_or_no
 from ..core.drive import Feedback, Schedule, over
-from ..core.errors import MotionStatus, ParameterError, refuse_unknown
-from ..core.scale import OF_TIME
-from ..core.typed import Booleans, Floats, Integers, Numbers
-from ..materials.bodies import Bodies
-from ..materials.law_each import law_of_alphas, law_of_materials
-from ..materials.law_table import law_table
-from .checks import SPEED_RANGE, in_words, output_times
-from .drive import ACTING, LOSSES, ROWS, STATES, Drive, bare
+from ..core.errors import ParameterError, refuse_unknown
+from ..core.typed import Numbers
+from .batch import Batch, Solution, solve_batch
+from .checks import in_words, output_times
+from .drive import ACTING, ROWS, Drive, strip_units
 from .ensemble_result import Ensemble
-from .flow import FlowMap, FlowResult, flow_map, look_up_ensemble
-from .problem import MotionProblem, SolverOptions, integrate, make_problem
+from .problem import MotionProblem, SolverOptions, make_problem
 
-#: a function of time of each motion
-Course = Numbers | Schedule | Callable[[float], float]
+#: A function of time of each motion.
+Function = Numbers | Schedule | Callable[[float], float]
+#: Fields that an ensemble may keep.
 FIELDS = ROWS
-#: motions a block: where all are integrated, and where most come from a map
-_BLOCK, _MAPPED_BLOCK = 256, 1 << 14
-#: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
-#: thousand (docs/benchmark.md, "One scene")
-FLOW_PAYS = 4096
 
 
 def ensemble(
@@ -41,13 +33,13 @@ def ensemble(
     omega0: Numbers | None,
     t: Numbers,
     *,
-    force: Course | Feedback | None = None,
-    torque: Course | Feedback | None = None,
+    force: Function | Feedback | None = None,
+    torque: Function | Feedback | None = None,
     slope: Numbers | None = None,
-    brake: Course | None = None,
+    brake: Function | None = None,
     drag: Numbers | None = None,
-    omega: Course | None = None,
-    V: Course | None = None,
+    omega: Function | None = None,
+    V: Function | None = None,
     method: Literal["auto", "flow", "integrate"] = "auto",
     rtol: float = 1e-8,
     rest: float | None = None,
@@ -113,162 +105,68 @@ def ensemble(
     units = scale_of(roller)
     times, names = output_times(t, units), refuse_unknown("fields", fields, FIELDS, "a field")
     one_name("method", method, "auto", "flow", "integrate")
-    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
+    start, drive, labels = strip_units((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
     progress = yes_or_no("progress", progress)
     if speed is not None:
         speed = number("speed", speed, unit=units, low=0.0, strict=True)
-    asked = SolverOptions(rtol, rest, max_steps, resolve)
-    problem = make_problem(roller, starts, given, times[-1], asked, unsteady=unsteady, rested=rested)
-    inputs, count = _inputs(problem, given.numbers)
-    warn_of_start(
-        problem.roller, starts, problem.ready.V0, problem.ready.omega0, problem.drive.acts or problem.unsteady
-    )
+    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
+    problem = make_problem(roller, start, drive, times[-1], options)
+    inputs, count = _broadcast_inputs(problem, drive.numbers)
+    warn_of_start(problem.roller, start, problem.V0, problem.omega0, problem.driven)
     scale = problem.roller.scale
-    many = _Many(
+    batch = Batch(
         problem, inputs, np.broadcast_to(problem.caught, (count,)), times / scale["t"],
         names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
         thread_count(threads), "motions" if progress else None,
     )  # fmt: skip
     try:
-        answer, found = _answer(many, method, over("speed", speed, scale))
+        solution = solve_batch(batch, method, over("speed", speed, scale))
     except ParameterError as error:
         raise in_words(error, scale) from error
-    rows: dict[str, Any] = {name: np.zeros((count, times.size)) for name in names}
-    rows |= dict(zip(many.rows, answer.out, strict=True))
-    notes: dict[str, Any] = {
-        "onset_time": answer.onset,
-        "rest_time": answer.rest,
-        "V0": inputs["V0"],
-        "omega0": inputs["omega0"],
-    }
-    if scale.si:
-        for name, row in rows.items():
-            np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
-        notes = {name: each * scale[name] for name, each in notes.items()}
-    notes = {name: np.broadcast_to(each, (count,)) for name, each in notes.items()}
-    notes |= {"status": answer.status, "switches": answer.switches, "drive_error": problem.ready.error} | found
-    kept: dict[str, Any] = dict.fromkeys(FIELDS) | rows | notes
-    result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **kept)
-    warn_of_speeds(problem.roller, starts[0], result.V)
+    columns: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
+    columns |= _in_units(batch, solution)
+    result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **columns)
+    warn_of_speeds(problem.roller, start[0], result.V)
     return result
 
 
-class _Many(NamedTuple):
-    """Motions to be rolled.
+def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
+    """Return the parameters and start speeds of an ensemble, and the number of its motions.
 
-    inputs : parameters and start speeds, one for all or one a motion.  caught : those that a rest keeps.
-    times : without dimension.  rows : what is computed; without a drive nothing acts.
+    problem: its motions.
+    drives: numbers that drive them, by name.
+    Returns (arrays of one or n values by name; n).
+    Raises ParameterError where they do not broadcast to (n,).
     """
-
-    problem: MotionProblem
-    inputs: dict[str, NDArray]
-    caught: Booleans
-    times: Floats
-    rows: tuple[str, ...]
-    threads: int | None
-    bar: str | None
-
-
-def _answer(many: _Many, method: str, speed: float | None) -> tuple[FlowResult, dict[str, Any]]:
-    """The motions, and by what they were found."""
-    problem, rows, times, count = many.problem, many.rows, many.times, many.caught.size
-    scene, (rtol, threshold, _) = problem.scene, problem.limits
-    alike = not (problem.drive.acts or problem.unsteady) and scene.like_bodies
-    if method == "flow" and (scene.shape or not alike):
-        what = "motions have scenes of their own" if alike else "motions are driven or unsteady, or bodies differ"
-        raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
-    answer, chosen, error = None, None, np.nan
-    if alike and not scene.shape and (method == "flow" or (method == "auto" and count >= FLOW_PAYS)):
-        unit = scene.in_own_time()[1]
-        V0, omega0 = (many.inputs[name] if unit == 1.0 else many.inputs[name] * unit for name in ("V0", "omega0"))
-        chosen = _map_of(scene, V0, omega0, speed and speed * unit, many.threads)
-        if chosen is not None:
-            error = chosen.stated_error(path=_among(rows, "x", "angle"), loss=_among(rows, *LOSSES))
-        if chosen is not None and error <= rtol:
-            of = tuple((STATES + LOSSES).index(name) for name in rows)
-            given = scene.gamma * unit * unit, threshold * unit, V0, omega0, times / unit
-            answer = look_up_ensemble(chosen, *given, of, threads=many.threads, progress=many.bar)
-            if unit != 1.0:
-                for n, name in enumerate(rows):
-                    answer.out[n] *= unit ** OF_TIME.get(name, 0)
-                answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
-    if answer is None:
-        answer = FlowResult.empty(len(rows), count, times.size)
-    flow = answer.status >= 0
-    if (caught := many.caught).any():  # motions that never leave the imprint of their rest
-        answer.out[:, caught] = answer.onset[caught] = answer.rest[caught] = np.nan
-        answer.status[caught] = MotionStatus.CAUGHT
-    steps = _integrate_others(answer, many)
-    reason = "" if chosen is None else chosen.problem
-    return answer, {"steps": steps, "flow": flow, "flow_error": error, "flow_problem": reason}
-
-
-def _inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
-    """(Parameters and start speeds, how many motions they and the ``drives`` make)."""
-    ready = problem.ready
     arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
-    arrays |= {"V0": np.asarray(ready.V0), "omega0": np.asarray(ready.omega0)}
-    own = 1 if ready.courses is None else ready.courses.motions
-    counts = {"pieces": own, "gains": ready.gains.shape[1]}
-    shape = broadcast_shape(**arrays, **drives, **{name: np.zeros(n) for name, n in counts.items() if n > 1})
+    arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
+    counts = (1, 1) if problem.functions is None else problem.functions.counts
+    own = {name: np.zeros(n) for name, n in zip(("pieces", "gains"), counts, strict=True) if n > 1}
+    shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
     count = shape[0] if shape else 1
     return {name: flattened(array, (count,)) for name, array in arrays.items()}, count
 
 
-def _map_of(
-    scene: Parameters, V0: NDArray, omega0: NDArray, speed: float | None, threads: int | None
-) -> FlowMap | None:
-    """The flow map for these starts; None where all are at rest."""
-    if speed is None:
-        speed = max((abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0)
-    elif speed > SPEED_RANGE[1]:
-        raise ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]")
-    return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
+def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
+    """Return the fields of an :class:`Ensemble` in the units of its roller, by name.
 
-
-def _integrate_others(answer: FlowResult, many: _Many) -> Integers:
-    """Integrate the motions without an answer; returns the steps of each."""
-    problem, inputs = many.problem, many.inputs.values()
-    law, rows = _law_of(problem.scene, problem.unsteady), np.array([ROWS.index(name) for name in many.rows], np.int64)
-    steps = np.zeros(answer.status.size, dtype=np.int64)
-
-    def work(start: int, stop: int) -> None:
-        left = start + np.flatnonzero(answer.status[start:stop] < 0)
-        if not left.size:
-            return
-        alpha, *own = (flattened(array[left], left.shape) if array.size > 1 else array for array in inputs)
-        batch, drive = (*law(alpha, left), *own), problem.ready.for_kernel(left)
-        answer.out[:, left], info = integrate(left.size, batch, drive, many.times, problem.limits, rows)
-        answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
-
-    mapped = answer.status.max(initial=-1) >= 0
-    block = _MAPPED_BLOCK if mapped else 1 if problem.unsteady and np.ndim(problem.scene.alpha) else _BLOCK
-    run_blocks(work, steps.size, problem.ready.block(block), threads=many.threads, progress=many.bar)
-    return steps
-
-
-def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
-    """(alphas of motions, which they are) -> the law that they share, or that of each in turn; whether bodies
-    differ.  ``unsteady``: of one motion, with N."""
-    each: Any = scene.material_array
-    if each is None and not np.ndim(scene.alpha):
-        one: Any = scene.table
-        law = (one.unsteady_record if unsteady else one.record), one.unlike
-        return lambda alpha, which: law
-
-    def made(alpha: NDArray, which: Integers) -> tuple[Any, bool]:
-        if each is None:
-            return law_table(alpha.item()).unsteady_record if unsteady else law_of_alphas(alpha), False
-        which = np.minimum(which, len(each) - 1)
-        if unsteady:
-            given: Any = scene.material
-            return law_table(given[which.item()]).unsteady_record, False
-        return law_of_materials(each, which), isinstance(each, Bodies)
-
-    return made
-
-
-def _among(names: tuple[str, ...], *some: str) -> bool:
-    return not set(names).isdisjoint(some)
+    batch: its motions.
+    solution: dimensionless.
+    """
+    found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.caught.size,)
+    rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))
+    times = {
+        "onset_time": found.onset,
+        "rest_time": found.rest,
+        "V0": batch.inputs["V0"],
+        "omega0": batch.inputs["omega0"],
+    }
+    if scale.si:
+        for name, row in rows.items():
+            np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
+        times = {name: value * scale[name] for name, value in times.items()}
+    times = {name: np.broadcast_to(value, shape) for name, value in times.items()}
+    notes = {"status": found.status, "switches": found.switches, "drive_error": batch.problem.drive_error}
+    return rows | times | notes | solution.about

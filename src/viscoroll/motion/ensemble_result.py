@@ -1,10 +1,10 @@
-"""Many motions as they are given back: :class:`Ensemble`."""
+"""The result of many motions: :class:`Ensemble`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,17 +17,30 @@ from ..core.errors import MotionStatus, ParameterError, described
 from ..core.labels import Labels
 from ..core.results import Row
 from ..core.typed import Booleans, Floats, Integers
-from .result import Rolled
+from .result import RollResult
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: motions that validity looks at
-_JUDGED = 256
+#: Largest number of motions that ``validity`` examines: some tenths of a second.
+_EXAMINED = 256
+
+
+class Fastest(NamedTuple):
+    """Motions of an ensemble and their highest speeds.
+
+    motion : indices of the motions, (m,).
+    V, omega : highest speeds that each starts with or reaches, (m,); omega < 0 where the start speeds have opposite
+        signs.
+    """
+
+    motion: Integers
+    V: Floats
+    omega: Floats
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble(Rolled):
+class Ensemble(RollResult):
     """Motions 0 ... n - 1 at common output times, in the units of what rolled, as of a :class:`Motion`.
 
     Attributes
@@ -103,35 +116,35 @@ class Ensemble(Rolled):
         return summary_of(self, tuple(levels.tolist()))
 
     def validity(self) -> Validity:
-        """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
+        """Report which assumptions of the model the motions violate, at the highest speeds of each.
 
-        ``steady`` looks at all speeds on the way.  See :func:`viscoroll.validity`; arrays over the motions, of more
-        than 256 over that many of them, evenly picked.
+        ``steady`` examines all speeds of a motion.  See :func:`viscoroll.validity`; arrays over the motions, for more
+        than 256 over that many of them, evenly spaced.
         """
-        some, V, omega = self.judged()
-        roller = self.roller.take(some, len(self))
+        index, V, omega = self.fastest()
+        roller = self.roller.take(index, len(self))
         scene, scale = roller.scene(), roller.scale
-        found = validity(roller, V, omega=omega)
-        if self.V is None or not some.size or scene.cover is not None:
-            return found
-        speeds = np.vstack([self.V0[some], self.V[some].T])
-        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[some]) & ~np.isnan(speeds)
-        x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(some.size), self.x[some].T])
+        report = validity(roller, V, omega=omega)
+        if self.V is None or not index.size or scene.cover is not None:
+            return report
+        speeds = np.vstack([self.V0[index], self.V[index].T])
+        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(speeds)
+        x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(index.size), self.x[index].T])
         free = FreeRolling.of_scene(scene, np.nan_to_num(speeds / scale["V"])).scaled(scale)
-        return found._replace(steady=Steadiness.along(free, rolls, x, ends=True))
+        return report._replace(steady=Steadiness.along(free, rolls, x, ends=True))
 
-    def judged(self) -> tuple[Integers, Floats, Floats]:
-        """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""
-        fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
-        for name, found in fastest.items():
+    def fastest(self) -> Fastest:
+        """Return the motions that :meth:`validity` examines, with their highest speeds."""
+        speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
+        for name, start in speeds.items():
             if (values := getattr(self, name)) is not None:
-                fastest[name] = np.fmax(found, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
-        some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(np.int64))
-        return some, fastest["V"][some], np.copysign(fastest["omega"], self.V0 * self.omega0)[some]
+                speeds[name] = np.fmax(start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
+        index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
+        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
 
     def _card(self) -> tuple[str, list[Row]]:
         ends = [Row("ended", f"{count}: {message}") for message, count in self.messages().items()]
-        rows = [self._times()]
+        rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
             if (values := getattr(self, name)) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]

@@ -18,7 +18,7 @@ from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.prony import Prony
 from .drive import ROWS, STATES
-from .result import Rolled
+from .result import RollResult
 
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
 #: what it is, the first flag, meanings
@@ -44,7 +44,7 @@ def provenance(title: str) -> dict[str, str]:
 
 
 def _dataset(
-    result: Rolled, title: str, dims: tuple[str, ...], more: dict[str, Any], about: dict[str, Any]
+    result: RollResult, title: str, dims: tuple[str, ...], more: dict[str, Any], about: dict[str, Any]
 ) -> xr.Dataset:
     """Its rows over ``dims``, what drove it and what rolled, beside ``more`` variables and attributes."""
     whole, described = result.drive.acts or "motion" in dims, partial(column_attributes, si=result.scale.si)
@@ -69,7 +69,7 @@ def _dataset(
     return xr.Dataset(data | more | drives, {"t": ("t", result.t, described("t"))}, attrs)
 
 
-def _drive(result: Rolled) -> tuple[dict[str, Any], dict[str, Any]]:
+def _drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
     """(Variables ``drive_force`` and the like, with their times where they have some; attributes for callables).
 
     Numbers stand over () or (motion), schedules over (drive_force_time) or (motion, drive_force_time), or where

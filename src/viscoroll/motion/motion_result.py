@@ -20,19 +20,20 @@ from ..core.results import Row, Values
 from ..core.typed import Floats
 from .checks import SPEED_RANGE, output_times
 from .drive import ROWS
-from .problem import NO_NOTES, MotionProblem, rolled
-from .result import Rolled
+from .problem import NO_NOTES, MotionProblem, integrate_one
+from .result import RollResult
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: changes of regime that are kept
+#: Changes of regime that are kept.
 _SWITCHES_KEPT = 1000
-#: times of a figure, beside the ends of steps, between which lines are straight
+#: Times of a figure, beside the ends of steps: lines between them are straight.
 _DRAWN = 201
-#: room for the ends of steps at first
-_STEPS = 1000
+#: Steps, beside twice those of the motion, for which the ends are kept and which a repeated integration may take.
+_MORE_STEPS = 1000
+#: Names of the regimes by their codes.
 REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
 
 
@@ -44,7 +45,7 @@ class Switch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion(Rolled):
+class Motion(RollResult):
     """One motion, in the units of what rolled: of a scene without dimension, of a cylinder in SI units per m of length.
 
     Attributes
@@ -74,28 +75,34 @@ class Motion(Rolled):
     """
 
     reversals: Floats
-    _begun: MotionProblem = field(repr=False)
+    _problem: MotionProblem = field(repr=False)
 
     @property
     def message(self) -> str:
-        """The status in words; of a motion that was given up also where it stood."""
-        words = self.status.message
+        """The status in words; for a motion that was given up also the state that it had reached."""
+        text = self.status.message
         if self.success or self.status == MotionStatus.CAUGHT:
-            return words
-        stood = self._stood
-        at = (f"{name} = {float(stood[name][0]):.6g} {self._unit(name)}".rstrip() for name in ("t", "V", "omega"))
-        t, V, omega = at
-        return f"{words}; it stood at {t} in {REGIMES[stood.regime[0]]}, {V}, {omega}"
+            return text
+        last = self._last_reached
+        t, V, omega = (f"{x} = {float(last[x][0]):.6g} {self._unit(x)}".rstrip() for x in ("t", "V", "omega"))
+        return f"{text}; it stood at {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
 
     @cached_property
-    def _stood(self) -> Motion:
-        """The motion up to where it was given up."""
-        ends = np.full(self.steps + 1, np.nan)
-        rolled(self._begun, np.array([self._begun.end]), NO_NOTES[0], ends)
-        reached = float(np.nanmax(np.append(ends, 0.0)))
-        # a last panel that is cut at this end may take more steps than one that was not
-        limits = (*self._begun.limits[:2], 2 * self.steps + _STEPS)
-        return integrated(self._begun._replace(end=reached, limits=limits), np.array([reached * self.scale["t"]]))
+    def _step_ends(self) -> Floats:
+        """Ends of the integration steps, ascending, in T_ref."""
+        ends = np.full(2 * self.steps + _MORE_STEPS, np.nan)
+        integrate_one(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
+        return ends[~np.isnan(ends)]
+
+    @cached_property
+    def _last_reached(self) -> Motion:
+        """The motion at the last time that it reached, for one that was given up."""
+        reached = float(self._step_ends.max(initial=0.0))
+        # A last step that is cut at this end may take more steps than one that was not.
+        limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
+        return integrate_motion(
+            self._problem._replace(end=reached, limits=limits), np.array([reached * self.scale["t"]])
+        )
 
     @property
     def power_force(self) -> Floats:
@@ -141,31 +148,33 @@ class Motion(Rolled):
         return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
 
     def validity(self) -> Validity:
-        """Which assumptions of the model the motion strains, at each output time that it reached.
+        """Report which assumptions of the model the motion violates, at each output time that it reached.
 
-        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` looks at its speeds so far.
+        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far.
         """
         reached = self.regime >= 0
         V = self.V[reached]
-        found = validity(self.roller, V, omega=self.omega[reached])
+        report = validity(self.roller, V, omega=self.omega[reached])
         if not reached.any() or self.scene.cover is not None:
-            return found
-        free, rolls = FreeRolling.of_scene(self.scene, V / self.scale["V"]).scaled(self.scale), self.regime[reached] > 0
-        return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))
+            return report
+        free, rolls = FreeRolling.of_scene(self.scene, V / self.scale["V"]), self.regime[reached] > 0
+        steady = Steadiness.along(free.scaled(self.scale), rolls, self.x[reached], ends=False)
+        return report._replace(steady=steady)
 
     def _card(self) -> tuple[str, list[Row]]:
-        rows = [self._times()]
-        rows += [Row(name, _course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
+        """Title and rows of the printed report."""
+        rows = [self._row_of_times()]
+        rows += [Row(name, _describe_course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
         for name, given in self.drive.given.items():
-            called = f"prescribed {name}" if name in ("V", "omega") else name  # which have a row of their own above
-            rows.append(Row(called, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
+            title = f"prescribed {name}" if name in ("V", "omega") else name  # V and omega have rows of their own above
+            rows.append(Row(title, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
         if not np.isnan(self.onset_time):
             rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
         if self.switches:
             last = self.switches[-1]
-            died = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(self.rest_time) else ""
+            end = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(self.rest_time) else ""
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
-            rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{died}"))
+            rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{end}"))
         if self.reversals.size:
             rows.append(Row("reversals of V", str(self.reversals.size)))
         return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
@@ -188,26 +197,23 @@ class Motion(Rolled):
             Times that are not ascending or lie beyond the end of the motion.
         """
         times = output_times(t, self.scale)
-        end = self._begun.end * self.scale["t"]
-        if times[-1] > end and float(times[-1]) / self.scale["t"] > self._begun.end:
+        end = self._problem.end * self.scale["t"]
+        if times[-1] > end and float(times[-1]) / self.scale["t"] > self._problem.end:
             raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
-        return integrated(self._begun, times)
+        return integrate_motion(self._problem, times)
 
     @cached_property
     def course(self) -> Motion:
-        """The same motion at 0, at the ends of its steps, at places between them, and at its end."""
-        ends, end, most = np.empty(0), self._begun.end, self._begun.limits[2]
-        while ends.size < most and not np.isnan(ends).any():  # full: there may be more
-            ends = np.full(min(max(4 * ends.size, _STEPS), most), np.nan)
-            rolled(self._begun, np.array([end]), NO_NOTES[0], ends)
+        """The same motion at 0, at the ends of its steps, at points between them, and at its end."""
+        ends, end = self._step_ends, self._problem.end
         return self.at(np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"])
 
     def _figure(self) -> Figure:
-        """All of it where it was asked for at one time."""
+        """Figure of the motion; of the whole course where only one output time was requested."""
         if self.t.size > 1:
-            return Rolled._figure(self)
+            return RollResult._figure(self)
         t = self.course.t
-        return Rolled._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
+        return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
@@ -216,35 +222,43 @@ class Motion(Rolled):
         return motion_dataset(self)
 
 
-def integrated(problem: MotionProblem, times: Floats) -> Motion:
-    """The motion at ``times``, up to its end, in the units of what rolled."""
+def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
+    """Integrate one motion.
+
+    problem: of one motion.
+    times: output times, ascending, in the unit of its roller; the motion is integrated to its end in any case.
+    """
     scale, end = problem.roller.scale, problem.end
-    T, at = scale["t"], np.minimum(times / scale["t"], end)
-    asked = at if at[-1] == end else np.append(at, end)
-    switches = np.empty((_SWITCHES_KEPT, 2))
-    switches.fill(np.nan)
-    out, (status, steps, _, onset_time, rest_time) = rolled(problem, asked, switches, NO_NOTES[1])
+    T, t = scale["t"], np.minimum(times / scale["t"], end)
+    if t[-1] != end:
+        t = np.append(t, end)
+    noted = np.empty((_SWITCHES_KEPT, 2))
+    noted.fill(np.nan)
+    out, (status, steps, _, onset_time, rest_time) = integrate_one(problem, t, noted, NO_NOTES[1])
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
-    whole = rows.pop("regime")
+    codes = rows.pop("regime")
     if scale.si:
         rows = {name: row * scale[name] for name, row in rows.items()}
-    regime = np.where(np.isnan(whole), -1, whole).astype(np.int8)
-    noted = switches[~np.isnan(switches[:, 1])]
-    changes = tuple(Switch(float(when) * T, REGIMES[int(what)]) for when, what in noted if what >= 0.0)
+    regime = np.where(np.isnan(codes), -1, codes).astype(np.int8)
+    noted = noted[~np.isnan(noted[:, 1])]
+    switches = tuple(Switch(float(when) * T, REGIMES[int(code)]) for when, code in noted if code >= 0.0)
     return Motion(
-        problem.roller, problem.drive, times, **rows, regime=regime, switches=changes, onset_time=onset_time * T,
+        problem.roller, problem.drive, times, **rows, regime=regime, switches=switches, onset_time=onset_time * T,
         rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
-        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.ready.error, _begun=problem,
+        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.drive_error, _problem=problem,
     )  # fmt: skip
 
 
-def _course(t: NDArray, values: NDArray) -> str:
-    """The first and the last value that was reached, and one between them that is larger in size with its time."""
+def _describe_course(t: NDArray, values: NDArray) -> str:
+    """Describe values over time: the first, the last that was reached, and the largest between them with its time.
+
+    t, values: (times,); NaN where the motion did not get.
+    """
     if np.isnan(values).all():
         return "not reached"
-    reached, at = values[~np.isnan(values)], int(np.nanargmax(np.abs(values)))
-    first, most, last = (f"{value:.6g}" for value in (reached[0], values[at], reached[-1]))
+    reached, peak = values[~np.isnan(values)], int(np.nanargmax(np.abs(values)))
+    first, most, last = (f"{value:.6g}" for value in (reached[0], values[peak], reached[-1]))
     if t.size == 1:
         return first
-    peak = "" if most in (first, last) else f"largest {most} (at t = {t[at]:.6g}), "
-    return f"first {first}, {peak}last {last}"
+    largest = "" if most in (first, last) else f"largest {most} (at t = {t[peak]:.6g}), "
+    return f"first {first}, {largest}last {last}"

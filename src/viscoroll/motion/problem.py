@@ -1,4 +1,4 @@
-"""Motions that may be rolled, and the kernel that rolls them: one and many."""
+"""Motions that are checked and ready to be integrated: :class:`MotionProblem`; and the calls of the kernel."""
 
 from __future__ import annotations
 
@@ -20,92 +20,134 @@ from ..core.scale import HasUnits
 from ..core.typed import Floats, Integers
 from ..materials.law_table import law_table
 from .checks import controls, in_words, refuse_end, refuse_many
-from .drive import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
+from .drive import LOSSES, ROWS, STATES, Drive
+from .drive_functions import DriveFunctions, DrivenStart, KernelDrive, prepare_drive, refuse_rest, undriven
 
-_ALL = np.arange(len(ROWS))
-#: of a map's motions: as tight as the integrator goes, where with alpha of 1e10 it takes tens of thousands of steps
-_RTOL, _MOST_STEPS = 1e-12, 100_000
+#: Indices of all rows of the kernel's output.
+_ALL_ROWS = np.arange(len(ROWS))
+#: Indices of the rows of free motions.
+_FREE_ROWS = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
+#: (rtol, threshold of rest, step limit) of the motions of a flow map: as accurate as the integrator is, where alpha =
+#: 1e10 takes tens of thousands of steps.
+_MAP_LIMITS = (1e-12, 0.0, 100_000)
+#: Motions of a flow map in a block of work.
 _BLOCK = 40
-#: status, steps, switches, onset and rest time
-_INFO = 5
-#: no room for switches and ends of steps
+#: Empty arrays for the switches and for the ends of steps, where they are not kept.
 NO_NOTES = np.empty((0, 2)), np.empty(0)
 
 
 class SolverOptions(NamedTuple):
-    """How motions are to be rolled: ``rtol``, ``rest``, ``max_steps`` and ``resolve`` of :func:`viscoroll.roll`."""
+    """How motions are integrated: the arguments of :func:`viscoroll.roll` of these names."""
 
     rtol: float
     rest: float | None
     max_steps: int
     resolve: float | None = None
+    unsteady: bool = False
+    rested: bool | float = False
 
 
 class MotionProblem(NamedTuple):
-    """Motions that may be rolled, without dimension but for what rolls and its drive.
+    """Checked motions; dimensionless but for roller and drive.
 
-    roller, scene : on the slope.  caught : those that a rest keeps.  end : the last time.
-    limits : rtol, the threshold of rest and max_steps.
+    roller, scene : on the slope.
+    drive : as given, without loads of 0.
+    functions : what drives; None for free motions.
+    V0, omega0 : start speeds, less what leaving the indentation of a standstill costs; numbers or (n,).
+    caught : whether a motion stays in its indentation, in the shape of the speeds.
+    end : last time, in T_ref.
+    limits : (rtol, threshold of rest, step limit).
+    unsteady : whether the added mass N acts.
+    driven : whether something drives the motions, or the added mass acts.
     """
 
     roller: Roller
     scene: Parameters
     drive: Drive
-    ready: Prepared
+    functions: DriveFunctions | None
+    V0: Any
+    omega0: Any
     caught: Any
     end: float
     limits: tuple[float, float, int]
     unsteady: bool
+    driven: bool
+
+    @property
+    def drive_error(self) -> float:
+        """Largest difference seen between a callable and its fit, dimensionless."""
+        return 0.0 if self.functions is None else self.functions.error
+
+    def kernel_drive(self, index: Any = slice(None)) -> KernelDrive:
+        """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
+        return undriven() if self.functions is None else self.functions.for_kernel(index)
 
 
 def make_problem(
-    roller: Roller, starts: tuple[Any, Any], given: Drive, end: float, asked: SolverOptions,
-    *, unsteady: bool, rested: bool | float, one: bool = False,
-) -> MotionProblem:  # fmt: skip
-    """All that is refused of motions up to a time before any is rolled, or of ``one``.
+    roller: Roller, start: tuple[Any, Any], drive: Drive, end: float, options: SolverOptions, *, single: bool = False
+) -> MotionProblem:
+    """Check motions before any is integrated.
 
-    Raises ParameterError.
+    roller: scene or cylinder.
+    start: V0 and omega0 in its units, plain numbers; None where they are prescribed.
+    drive: in its units, plain numbers.
+    end: last output time, in its unit.
+    options: how to integrate.
+    single: whether only one motion is allowed.
+    Raises ParameterError for everything that :func:`viscoroll.roll` and :func:`viscoroll.ensemble` refuse.
     """
-    acts = given.acts
-    if one:
-        refuse_many(V0=starts[0], omega0=starts[1], **(given.numbers if acts else {}))
-    drive, (rtol, rest, max_steps, resolve) = given.acting if acts else given, asked
-    roller, scene, scale = resolve_model(roller, "roll" if one else "ensemble", moves=True, slope=drive.slope)
-    if one and scene.shape:
+    acts = drive.acts
+    if single:
+        refuse_many(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
+    drive, (rtol, rest, max_steps, resolve, unsteady, rested) = drive.without_zeros() if acts else drive, options
+    roller, scene, scale = resolve_model(roller, "roll" if single else "ensemble", moves=True, slope=drive.slope)
+    if single and scene.shape:
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
-    unsteady = unsteady is not False and yes_or_no("unsteady", unsteady)
-    if unsteady:
-        refuse_cover(scene, "N is not known: leave unsteady=True out")
-    if unsteady and not scene.like_bodies:
-        sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
-        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
+    unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     try:
         limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end) / scale["t"]
         if last == math.inf:
             refuse_end(float(end), scale["t"])
-        own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
+        V0, omega0 = over("V0", start[0], scale), over("omega0", start[1], scale)
         spacing = None if resolve is None else over("resolve", resolve, scale)
-        ready = prepared(drive.over(scale), *own, last, rtol, spacing)
-        if ready.courses is not None:  # a step ends at every corner
-            limits = (*limits[:2], limits[2] + ready.courses.corners)
-        refuse_rest(limits[1], ready)
-        ready, caught = _climbed(ready, scene, _time_of_rest(rested, scale) / scale["t"])
+        driven = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
+        functions = driven.functions
+        if functions is not None:  # a step ends at every corner
+            limits = (*limits[:2], limits[2] + functions.corners)
+        refuse_rest(limits[1], functions)
+        V0, omega0, caught = _apply_standstill(driven, scene, _standstill_time(rested, scale) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
-    if one and ready.courses is not None and (many := ready.motions) > 1:
+    many = 1 if functions is None else max(functions.counts)
+    if single and many > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
-    return MotionProblem(roller, scene, drive, ready, caught, last, limits, bool(unsteady))
+    driven = unsteady or (acts and drive.acts)
+    return MotionProblem(roller, scene, drive, functions, V0, omega0, caught, last, limits, unsteady, driven)
 
 
-def _time_of_rest(rested: Any, units: HasUnits) -> float:
-    """The time of the rest, infinite for a long one.
+def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
+    """Return whether the added mass acts; raises ParameterError where N, or the part of either body, is not known.
 
-    Raises
-    ------
-    ParameterError
-        What is not one number >= 0.
+    unsteady: as given.
+    scene: parameters.
+    """
+    if not yes_or_no("unsteady", unsteady):
+        return False
+    refuse_cover(scene, "N is not known: leave unsteady=True out")
+    if not scene.like_bodies:
+        sentence = "unsteady = True: the bodies differ, and the added mass of either is not known then"
+        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
+    return True
+
+
+def _standstill_time(rested: Any, units: HasUnits) -> float:
+    """Return the time of the standstill before the start, infinite for a long one, in the unit of the roller.
+
+    rested: as given.
+    units: of the roller.
+    Raises ParameterError for what is not one number >= 0.
     """
     if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
@@ -115,35 +157,43 @@ def _time_of_rest(rested: Any, units: HasUnits) -> float:
     return float(time)
 
 
-def _climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepared, Any]:
-    """(What is rolled once the cylinder has left the imprint of a rest, whether it was caught there).
+def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
+    """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    Raises
-    ------
-    ParameterError
-        A prescribed speed, or a start in full slip, of which the cost is not known.
+    start: speeds and drive, dimensionless.
+    scene: parameters.
+    rested: time of the standstill, in T_ref.
+    Returns (V0, omega0, whether the cylinder stays in its indentation).
+    Raises ParameterError for a prescribed speed, or a start in full slip, whose cost is not known.
     """
     if rested == 0.0:
-        return ready, False
-    refuse_cover(scene, "what leaving the imprint of a rest costs is not known: leave rested out")
-    V = np.asarray(ready.V0, np.float64)
+        return start.V0, start.omega0, False
+    refuse_cover(scene, "the cost of leaving the indentation of a standstill is not known: leave rested out")
+    V = np.asarray(start.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
-    if ready.prescribed or np.any(np.abs(ready.omega0 - V) > limit):
-        what = "a speed is prescribed" if ready.prescribed else "it starts in full slip"
-        sentence = f"rested is given, but {what}: what leaving the imprint costs is not known then"
+    prescribed = start.functions is not None and start.functions.prescribed
+    if prescribed or np.any(np.abs(start.omega0 - V) > limit):
+        why = "a speed is prescribed" if prescribed else "it starts in full slip"
+        sentence = f"rested is given, but {why}: the cost of leaving the indentation is not known then"
         raise ParameterError("rested", rested, "left out", sentence)
     lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
-    return ready._replace(V0=V * (1.0 - lost), omega0=ready.omega0 * (1.0 - lost)), lost > CAUGHT
+    return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > CAUGHT
 
 
 def integrate(
-    count: int, batch: tuple[Any, ...], drive: tuple[NDArray, NDArray, int], times: Floats,
+    count: int, batch: tuple[Any, ...], drive: KernelDrive, times: Floats,
     limits: tuple[float, float, int], rows: Integers, notes: tuple[NDArray, ...] = NO_NOTES,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """(Rows of :data:`ROWS` of ``count`` motions at the times; status, steps, switches, onset and rest time of each).
+    """Integrate motions in the kernel.
 
-    ``batch`` : law, whether bodies differ, kappa, mu, gamma, j, V0 and omega0.  ``notes`` : room for the switches and
-    for the ends of steps.
+    count: their number.
+    batch: law, whether bodies differ, kappa, mu, gamma, j, V0, omega0, each one number or (count,).
+    drive: of the motions.
+    times: output times, ascending, in T_ref.
+    limits: (rtol, threshold of rest, step limit).
+    rows: indices into :data:`ROWS`.
+    notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
+    Returns (rows (rows, count, times); status, steps, switches, onset and rest time of each motion (count, 5)).
     """
     from ..kernels.motion.loop import INFO, motion_loop
 
@@ -152,42 +202,51 @@ def integrate(
     return out, info
 
 
-def rolled(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
-    """What :func:`integrate` finds, of one motion."""
-    scene, ready = problem.scene, problem.ready
+def integrate_one(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
+    """Integrate one motion; returns all rows (rows, times), and status, steps, switches, onset and rest time.
+
+    problem: of one motion.
+    times: output times, ascending, in T_ref.
+    notes: as of :func:`integrate`.
+    """
+    scene = problem.scene
     if problem.caught:
-        return np.full((_ALL.size, times.size), np.nan), [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
+        return np.full((_ALL_ROWS.size, times.size), np.nan), [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
     law = scene.table
     assert law is not None
-    own = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
-    own.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
-    batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *own
-    out, info = integrate(1, batch, ready.for_kernel(), times, problem.limits, _ALL, notes)
+    numbers = scene.kappa, scene.mu, scene.gamma, scene.j, problem.V0, problem.omega0
+    arrays = np.array(numbers, float).reshape(-1, 1)
+    arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
+    batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *arrays
+    out, info = integrate(1, batch, problem.kernel_drive(), times, problem.limits, _ALL_ROWS, notes)
     return out[:, 0], info[0].tolist()
 
 
 def motions(
     parameters: tuple[Any, ...], starts: tuple[Floats, Floats], gamma: Floats, t: Floats, *, threads: int | None = 1
 ) -> tuple[Floats, Floats]:
-    """(V, omega, x, angle, delta, regime, slip_loss, rolling_loss of motions at common times; status and the like).
+    """Integrate the motions from which a flow map is built and by which it is tested.
 
-    What a flow map is made from and measured by; none of the kernels is compiled for it alone.
+    No kernel is compiled for them alone.
 
-    Parameters
-    ----------
-    starts : V and omega.
-    gamma : one a motion, which makes the common times what that counts in.
+    parameters: (alpha or series, kappa, mu, j).
+    starts: V0 and omega0, (n,).
+    gamma: of each motion, (n,); the times count in its unit.
+    t: output times, common to all.
+    threads: to use.
+    Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss (8, n, times); status, steps, switches, onset
+    and rest time (n, 5)).
     """
-    rows = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
-    given, kappa, mu, j = parameters
-    law, limits = law_table(given), (_RTOL, 0.0, _MOST_STEPS)
+    material, kappa, mu, j = parameters
+    law, count = law_table(material), starts[0].size
     arrays = [flattened(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
-    out, info = np.empty((rows.size, starts[0].size, t.size)), np.empty((starts[0].size, _INFO))
+    blocks: dict[int, tuple[Floats, Floats]] = {}
 
     def work(start: int, stop: int) -> None:
-        own = (array[start:stop] if array.size > 1 else array for array in arrays)
-        batch = law.record, law.unlike, *own
-        out[:, start:stop], info[start:stop] = integrate(stop - start, batch, undriven(), t, limits, rows)
+        parts = (array[start:stop] if array.size > 1 else array for array in arrays)
+        batch = law.record, law.unlike, *parts
+        blocks[start] = integrate(stop - start, batch, undriven(), t, _MAP_LIMITS, _FREE_ROWS)
 
-    run_blocks(work, starts[0].size, _BLOCK, threads=threads)
-    return out, info
+    run_blocks(work, count, _BLOCK, threads=threads)
+    out, info = zip(*(blocks[start] for start in sorted(blocks)), strict=True)
+    return np.concatenate(out, axis=1), np.concatenate(info)

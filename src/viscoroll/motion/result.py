@@ -1,4 +1,4 @@
-"""What one motion and many have in common as they are given back: :class:`Rolled`."""
+"""Common data of one motion and of an ensemble: :class:`RollResult`."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .drive import Drive
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Rolled(Shown):
-    """What was rolled, and its rows over the output times."""
+class RollResult(Shown):
+    """The roller, its drive, and the rows over the output times."""
 
     roller: Roller
     drive: Drive
@@ -48,16 +48,18 @@ class Rolled(Shown):
 
     @property
     def scale(self) -> Scale:
-        """What 1 of each quantity is: in SI units of a cylinder."""
+        """1 of each dimensionless quantity: in SI units for a cylinder."""
         return self.roller.scale
 
     @property
     def success(self) -> Any:
-        """Whether it reached the last output time, or rest; of many, which did."""
+        """Whether the motion reached the last output time, or rest; of an ensemble for each motion."""
         return self.status <= MotionStatus.RESTED
 
     def _unit(self, name: str) -> str:
+        """Unit of a quantity for a printed report."""
         return unit_of(attributes(name, self.scale.si))
 
-    def _times(self) -> Row:
+    def _row_of_times(self) -> Row:
+        """Row of a printed report: number of output times, and the last one."""
         return Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))

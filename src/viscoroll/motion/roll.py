@@ -5,20 +5,20 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 
-from ..contact_law.parameters import Roller
+from ..contact_law.parameters import Roller, scale_of
 from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
 from ..core.drive import Feedback, Schedule
 from ..core.labels import BARE
-from ..core.scale import DIMENSIONLESS
 from ..core.typed import Numbers
 from .checks import output_times
-from .drive import Drive, bare
-from .motion_result import Motion, integrated
+from .drive import Drive, strip_units
+from .motion_result import Motion, integrate_motion
 from .problem import SolverOptions, make_problem
 
-#: a function of time
-Course = float | Schedule | Callable[[float], float]
-Acting = Course | Feedback
+#: A function of time.
+Function = float | Schedule | Callable[[float], float]
+#: A load, which may follow the speeds too.
+Load = Function | Feedback
 
 
 def roll(
@@ -28,13 +28,13 @@ def roll(
     t: Numbers,
     *,
     rtol: float = 1e-8,
-    force: Acting | None = None,
-    torque: Acting | None = None,
+    force: Load | None = None,
+    torque: Load | None = None,
     slope: float | None = None,
-    brake: Course | None = None,
+    brake: Function | None = None,
     drag: float | None = None,
-    omega: Course | None = None,
-    V: Course | None = None,
+    omega: Function | None = None,
+    V: Function | None = None,
     rest: float | None = None,
     unsteady: bool = False,
     rested: bool | float = False,
@@ -118,18 +118,16 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    units = roller.scale if isinstance(roller, Roller) else DIMENSIONLESS  # make_problem() refuses what is no roller
-    times, given = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
-    if not BARE.issuperset(map(type, (V0, omega0, *given))):
-        (V0, omega0), given, _ = bare((V0, omega0), given, units)
-    asked = SolverOptions(rtol, rest, max_steps, resolve)
-    problem = make_problem(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
-    warn_of_start(
-        problem.roller, (V0, omega0), problem.ready.V0, problem.ready.omega0, problem.drive.acts or problem.unsteady
-    )
-    motion = integrated(problem, times)
+    units = scale_of(roller)
+    times, drive = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
+    if not BARE.issuperset(map(type, (V0, omega0, *drive))):
+        (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
+    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
+    problem = make_problem(roller, (V0, omega0), drive, times[-1], options, single=True)
+    warn_of_start(problem.roller, (V0, omega0), problem.V0, problem.omega0, problem.driven)
+    motion = integrate_motion(problem, times)
     warn_of_speeds(problem.roller, V0, motion.V)
     if not motion.success:
-        words = f"roll: {motion.status.message}; outputs not reached are NaN, and `message` says where it stood"
-        warnings.warn(words, RuntimeWarning, stacklevel=2)
+        text = f"roll: {motion.status.message}; outputs not reached are NaN, and `message` gives the last state"
+        warnings.warn(text, RuntimeWarning, stacklevel=2)
     return motion

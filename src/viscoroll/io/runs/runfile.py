@@ -32,9 +32,11 @@ from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
 from ...core.typed import Floats
 from ...materials.file import as_toml, materials_of
+from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
 from ...motion.drive import Drive
-from ...motion.ensemble import FIELDS, FLOW_PAYS, SolverOptions, make_problem
+from ...motion.ensemble import FIELDS
+from ...motion.problem import SolverOptions, make_problem
 from ...motion.summaries import QUANTITIES
 from ..config import check_sections, located
 from ..sampling import Design
@@ -294,9 +296,9 @@ def _begin(run: Run, values: dict[str, Any]) -> None:
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
             raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
-    options = SolverOptions(settings.rtol, settings.rest, 1)
+    options = SolverOptions(settings.rtol, settings.rest, 1, None, settings.unsteady, settings.rested)
     drive = Drive(**drive_of(content))
-    make_problem(roller, start, drive, run.t[-1], options, unsteady=settings.unsteady, rested=settings.rested)
+    make_problem(roller, start, drive, run.t[-1], options)
 
 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:

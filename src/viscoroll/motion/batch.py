@@ -1,0 +1,180 @@
+"""Solution of many motions, by the flow map of their scene or by integration: :func:`solve_batch`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact_law.parameters import Parameters
+from ..core.blocks import flattened, run_blocks
+from ..core.checks import extent
+from ..core.errors import MotionStatus, ParameterError
+from ..core.scale import OF_TIME
+from ..core.typed import Booleans, Floats, Integers
+from ..materials.bodies import Bodies
+from ..materials.law_each import law_of_alphas, law_of_materials
+from ..materials.law_table import law_table
+from .checks import SPEED_RANGE
+from .drive import LOSSES, ROWS, STATES
+from .flow import FlowResult, flow_map, look_up_ensemble
+from .problem import MotionProblem, integrate
+
+#: Motions in a block of work where all are integrated: some hundredths of a second.
+_BLOCK = 256
+#: Motions in a block of work where most come from a flow map.
+_MAPPED_BLOCK = 1 << 14
+#: Motions from which on method "auto" uses the flow map: building one takes as long as integrating three to five
+#: thousand (docs/benchmark.md, "One scene").
+FLOW_PAYS = 4096
+
+
+class Batch(NamedTuple):
+    """Motions to be solved; dimensionless.
+
+    inputs : parameters and start speeds by name, vectors of one or n values.
+    caught : motions that stay in the indentation of a standstill, (n,).
+    times : output times.
+    rows : names of the rows to compute.
+    threads : to use.
+    progress : title of a progress bar, None for none.
+    """
+
+    problem: MotionProblem
+    inputs: dict[str, NDArray]
+    caught: Booleans
+    times: Floats
+    rows: tuple[str, ...]
+    threads: int | None
+    progress: str | None
+
+
+class Solution(NamedTuple):
+    """Solved motions, dimensionless, and their source.
+
+    motions : rows, status, onset and rest times, number of switches.
+    about : steps and ``flow`` (whether from the flow map) of each motion; ``flow_error``, ``flow_problem`` of the map.
+    """
+
+    motions: FlowResult
+    about: dict[str, Any]
+
+
+def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
+    """Solve motions; those outside the flow map are integrated.
+
+    batch: the motions.
+    method: "auto", "flow" or "integrate", as of :func:`viscoroll.ensemble`.
+    speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
+    Raises ParameterError for method "flow" where no map applies.
+    """
+    scene = batch.problem.scene
+    free = not batch.problem.driven and scene.like_bodies
+    if method == "flow" and (scene.shape or not free):
+        which = "motions have scenes of their own" if free else "motions are driven or unsteady, or bodies differ"
+        raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
+    found = None
+    about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
+    mapped = method == "flow" or (method == "auto" and batch.caught.size >= FLOW_PAYS)
+    if free and not scene.shape and mapped:
+        found = _look_up(batch, speed, about)
+    if found is None:
+        found = FlowResult.empty(len(batch.rows), batch.caught.size, batch.times.size)
+    about["flow"] = found.status >= 0
+    if (caught := batch.caught).any():
+        found.out[:, caught] = found.onset[caught] = found.rest[caught] = np.nan
+        found.status[caught] = MotionStatus.CAUGHT
+    about["steps"] = _integrate_others(found, batch)
+    return Solution(found, about)
+
+
+def _look_up(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowResult | None:
+    """Look motions up in the flow map of their scene, which counts in the material's own time.
+
+    batch: motions of one scene.
+    speed: as of :func:`solve_batch`.
+    about: receives the error and the problem of the map.
+    Returns None where all motions are at rest, or the stated error exceeds rtol.
+    """
+    scene, rows = batch.problem.scene, batch.rows
+    rtol, threshold, _ = batch.problem.limits
+    unit = scene.in_own_time()[1]
+    V0, omega0 = (batch.inputs[name] if unit == 1.0 else batch.inputs[name] * unit for name in ("V0", "omega0"))
+    if speed is None:
+        speed = max((abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0)
+    elif (speed := speed * unit) > SPEED_RANGE[1]:
+        raise ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]")
+    if not speed > 0.0:
+        return None
+    chosen = flow_map(scene, speed, threads=batch.threads)
+    error = chosen.stated_error(path=not {"x", "angle"}.isdisjoint(rows), loss=not set(LOSSES).isdisjoint(rows))
+    about |= {"flow_error": error, "flow_problem": chosen.problem}
+    if not error <= rtol:
+        return None
+    wanted = tuple((STATES + LOSSES).index(name) for name in rows)
+    scales = scene.gamma * unit * unit, threshold * unit
+    found = look_up_ensemble(
+        chosen, *scales, V0, omega0, batch.times / unit, wanted, threads=batch.threads, progress=batch.progress
+    )
+    if unit == 1.0:
+        return found
+    for n, name in enumerate(rows):
+        found.out[n] *= unit ** OF_TIME.get(name, 0)
+    return found._replace(onset=found.onset * unit, rest=found.rest * unit)
+
+
+def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
+    """Integrate the motions that have no result yet, status < 0.
+
+    found: receives their results.
+    batch: all motions.
+    Returns the steps of each motion, (n,).
+    """
+    problem = batch.problem
+    law, rows = _law_of(problem.scene, problem.unsteady), np.array([ROWS.index(name) for name in batch.rows], np.int64)
+    steps = np.zeros(batch.caught.size, dtype=np.int64)
+
+    def work(start: int, stop: int) -> None:
+        left = start + np.flatnonzero(found.status[start:stop] < 0)
+        if not left.size:
+            return
+        inputs = batch.inputs.values()
+        alpha, *others = (flattened(array[left], left.shape) if array.size > 1 else array for array in inputs)
+        arguments = (*law(alpha, left), *others), problem.kernel_drive(left), batch.times, problem.limits, rows
+        found.out[:, left], info = integrate(left.size, *arguments)
+        found.status[left], steps[left], found.switches[left], found.onset[left], found.rest[left] = info.T
+
+    mapped = found.status.max(initial=-1) >= 0
+    block = _MAPPED_BLOCK if mapped else 1 if problem.unsteady and np.ndim(problem.scene.alpha) else _BLOCK
+    if problem.functions is not None:
+        block = problem.functions.block(block)
+    run_blocks(work, steps.size, block, threads=batch.threads, progress=batch.progress)
+    return steps
+
+
+def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
+    """Return the function that gives the kernel's law of some motions.
+
+    scene: parameters.
+    unsteady: whether the added mass acts; then several materials are asked for one motion at a time.
+    The function takes alphas and indices of motions, and returns (law; whether bodies differ).
+    """
+    several: Any = scene.material_array
+    if several is None and not np.ndim(scene.alpha):
+        table: Any = scene.table
+        law = (table.unsteady_record if unsteady else table.record), table.unlike
+        return lambda alpha, index: law
+
+    def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
+        if several is not None:
+            index = np.minimum(index, len(several) - 1)
+        if unsteady:
+            one: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]
+            return law_table(one.item() if several is None else one).unsteady_record, False
+        if several is None:
+            return law_of_alphas(alpha), False
+        return law_of_materials(several, index), isinstance(several, Bodies)
+
+    return make
