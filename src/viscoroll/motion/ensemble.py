@@ -112,7 +112,7 @@ def ensemble(
     options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
     problem = make_problem(roller, start, drive, times[-1], options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
-    warn_of_start(problem.roller, start, problem.V0, problem.omega0, problem.driven)
+    warn_of_start(problem.roller, problem.scene, start, problem.V0, problem.omega0, problem.driven)
     scale = problem.roller.scale
     batch = Batch(
         problem, inputs, np.broadcast_to(problem.caught, (count,)), times / scale["t"],

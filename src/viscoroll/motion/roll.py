@@ -124,7 +124,7 @@ def roll(
         (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
     options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
     problem = make_problem(roller, (V0, omega0), drive, times[-1], options, single=True)
-    warn_of_start(problem.roller, (V0, omega0), problem.V0, problem.omega0, problem.driven)
+    warn_of_start(problem.roller, problem.scene, (V0, omega0), problem.V0, problem.omega0, problem.driven)
     motion = integrate_motion(problem, times)
     warn_of_speeds(problem.roller, V0, motion.V)
     if not motion.success:

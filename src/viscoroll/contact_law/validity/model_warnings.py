@@ -148,12 +148,15 @@ def warn_of_speeds(roller: Roller, V0: Any, V: Any) -> None:
     warn_of_contact(roller, fastest, motion=True)
 
 
-def warn_of_start(roller: Roller, start: tuple[Any, Any], V0: Any, omega0: Any, driven: bool) -> None:
+def warn_of_start(
+    roller: Roller, scene: Parameters, start: tuple[Any, Any], V0: Any, omega0: Any, driven: bool
+) -> None:
     """Warn of motions for which the model fails grossly, judged by their start.
 
     One motion from two floats costs one or two microseconds; of many some, evenly spaced, are examined.
 
-    roller: scene or cylinder.
+    roller: scene or cylinder, on its slope.
+    scene: its dimensionless parameters.
     start: the start speeds as the caller gave them, m/s and rad/s for a cylinder; None for prescribed ones.
     V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
     driven: whether something drives the motions, or they are rolled with the added mass N.
@@ -164,7 +167,6 @@ def warn_of_start(roller: Roller, start: tuple[Any, Any], V0: Any, omega0: Any, 
         if float(np.max(np.maximum(V, omega * roller.body_data.R), initial=0.0)) > wave_speed:  # type: ignore[union-attr]
             fault = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
             _warn_of_faults([fault], "motion", "validity() of cylinder or result")
-    scene = roller.scene()
     if type(V0) is type(omega0) is float and not scene.shape:
         material = scene.alpha if scene.material is None else scene.material
         faults = _start_faults(material, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, driven)
