@@ -112,12 +112,12 @@ def make_problem(
             refuse_end(float(end), scale["t"])
         V0, omega0 = over("V0", start[0], scale), over("omega0", start[1], scale)
         spacing = None if resolve is None else over("resolve", resolve, scale)
-        driven = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
-        functions = driven.functions
+        prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
+        functions = prepared.functions
         if functions is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + functions.corners)
         refuse_rest(limits[1], functions)
-        V0, omega0, caught = _apply_standstill(driven, scene, _standstill_time(rested, scale) / scale["t"])
+        V0, omega0, caught = _apply_standstill(prepared, scene, _standstill_time(rested, scale) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
     many = 1 if functions is None else max(functions.counts)
