@@ -12,7 +12,7 @@ from ..core.checks import broadcast_shape, checked
 from ..core.drive import Feedback, Schedule, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.typed import Floats
-from ..kernels.motion.records import NEITHER, OMEGA, SPEED
+from ..kernels.motion.workspace import NOT_PRESCRIBED, PRESCRIBED_OMEGA, PRESCRIBED_V
 from .checks import start_speeds
 from .drive import Drive
 from .drive_fit import TERMS
@@ -29,7 +29,7 @@ from .piecewise import (
 )  # fmt: skip
 
 #: Name of the prescribed speed by the kernel's code.
-SPEEDS = {OMEGA: "omega", SPEED: "V"}
+SPEEDS = {PRESCRIBED_OMEGA: "omega", PRESCRIBED_V: "V"}
 #: Bytes of pieces that are packed at a time where motions have functions of their own: little beside the schedules,
 #: and yet many motions at once where these are short.
 _BLOCK_BYTES = 1 << 18
@@ -152,9 +152,9 @@ class DriveFunctions:
 @cache
 def undriven() -> KernelDrive:
     """Return the kernel's drive of free motions."""
-    from ..kernels.motion.load import FIRST, FUNCTIONS
+    from ..kernels.motion.workspace import COL_COEFFICIENTS, N_DRIVE_FUNCTIONS
 
-    return np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER
+    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
 
 
 class DrivenStart(NamedTuple):
@@ -184,7 +184,7 @@ def prepare_drive(
         return DrivenStart(None, *start_speeds(V0, omega0))
     tangent = np.asarray(slope_factor(drive.slope)[0])
     _refuse_both(drive)
-    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NEITHER)
+    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NOT_PRESCRIBED)
     names = ["force", "torque", "brake", *([SPEEDS[prescribed]] if prescribed else [])]
     functions = {
         name: check_function(

@@ -9,7 +9,7 @@ import numpy as np
 from ..core.typed import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.states import states
-from ..kernels.motion.records import PARTIAL
+from ..kernels.motion.workspace import PARTIAL_SLIP
 from .flow_rows import octaves
 from .problem import motions
 
@@ -63,6 +63,6 @@ class FlowProblem(NamedTuple):
             raise NoFlowMap(OUT_OF_RANGE)
         starts = V, V * (1.0 + delta)
         (V, _, _, _, delta, regime, *_), _ = motions(self.parameters, starts, gamma, t, threads=self.threads)
-        if not ((regime == PARTIAL) & (V > 0.0)).all():
+        if not ((regime == PARTIAL_SLIP) & (V > 0.0)).all():
             raise NoFlowMap(reason)
         return V, delta

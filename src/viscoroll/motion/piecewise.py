@@ -169,7 +169,7 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     Returns (m, k, 2 + terms of all functions).  Where motions have times of their own, pieces between equal times have
     no length; the kernels skip them.
     """
-    from ..kernels.motion.load import FIRST, SCALE, START
+    from ..kernels.motion.workspace import COL_COEFFICIENTS, COL_SCALE, COL_START
 
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
@@ -178,17 +178,17 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     kept = max(int((starts < end).any(axis=0).sum()), 1)
     starts, ends = starts[:, :kept], _ends(starts)[:, :kept]
     count, terms = max(len(f.terms) for f in functions), max(f.terms.shape[-1] for f in functions)
-    packed, lengths = np.zeros((count, kept, FIRST + len(functions) * terms)), ends - starts
-    packed[..., START] = starts
-    packed[..., SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT)
+    packed, lengths = np.zeros((count, kept, COL_COEFFICIENTS + len(functions) * terms)), ends - starts
+    packed[..., COL_START] = starts
+    packed[..., COL_SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT)
     for n, function in enumerate(functions):
         part = _restrict(function, rows, starts, ends)
-        packed[..., FIRST + n * terms :][..., : part.shape[-1]] = part
+        packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
     if late.any():  # the last piece before the end acts behind it too
-        acting = packed[np.arange(count), np.broadcast_to(at_end, count), FIRST:]
-        packed[..., FIRST:] = np.where(late[..., None], acting[:, None], packed[..., FIRST:])
+        acting = packed[np.arange(count), np.broadcast_to(at_end, count), COL_COEFFICIENTS:]
+        packed[..., COL_COEFFICIENTS:] = np.where(late[..., None], acting[:, None], packed[..., COL_COEFFICIENTS:])
     return packed
 
 
