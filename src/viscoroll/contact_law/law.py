@@ -104,7 +104,7 @@ class Law:
         return _loads_and_slopes(out) if slopes else _loads(out[:4])
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        """The law at arrays, as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
+        """Return the law at arrays ``V`` and ``omega`` as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
@@ -114,24 +114,24 @@ class Law:
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
         """(V, omega) -> :class:`LoadsAndSlopes` for numba's jitted functions, which take it as an argument or from
-        around them.  NaN, and no error, where the law would raise one.
+        around them.  It returns NaN where the law would raise an error.
         """
         return self._jitted
 
     @property
     def address(self) -> tuple[int, int]:
-        """Address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of its user
-        data.
+        """The address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of
+        its user data.
 
         It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
-        error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
-        there.  All laws of half-spaces share the function, and all laws of covers another one.
+        error, with NaN, and returns another number.  Any number of threads may call it, while this law exists.  All
+        laws of half-spaces share the function, and all laws of covers another one.
         """
         return self._jitted.function_address, self._jitted.address
 
     @property
     def ctypes(self) -> tuple[Any, Any]:
-        """Both for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them; either keeps what it needs."""
+        """Function and user data for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them."""
         return self._jitted.ctypes
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -153,17 +153,20 @@ class _LawOfGrid(Law):
         self._use(JittedGrid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
+        """Return the law at arrays, one state after another; see :class:`Law`."""
         evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
         return kind(*evaluate(checked("V", V), checked("omega", omega))[: len(kind._fields)])
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
+        """Raise OutOfTableError for a state outside the axes of the grid."""
         self.roller.refuse_outside(V, omega)
 
 
 def law(roller: Roller | LawGrid) -> Law:
-    """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
+    """The contact law of one scene as a function of V and omega, for integrators of one's own: Eqs. (6)-(10),
+    (15)-(18).
 
-    ``law(V, omega)`` is :func:`contact` at a given omega with nothing left to check but V and omega, and
+    ``law(V, omega)`` is :func:`contact` at a given omega, where only V and omega remain to be checked;
     ``law.jitted`` and ``law.address`` are the same for numba and C.
 
     Parameters
@@ -185,16 +188,24 @@ def law(roller: Roller | LawGrid) -> Law:
 
     Notes
     -----
-    For numbers the digits are those of :func:`contact` to the bit, and for arrays it is :func:`contact` that is called
+    For numbers the bits are those of :func:`contact`; for arrays :func:`contact` is called
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
-    a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
+    a corner in V only; the slopes there are those of full slip.  A call without slopes does not compute them.
 
     Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
 
-    Of a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file states
+    For a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file states
     (``tests/tables/test_splines.py``): clipped to \\|Q\\| <= mu P; below the slowest speed Q is that at the slowest,
     and M in proportion to V; beyond both ends of delta \\|Q\\| is mu P where the grid slips fully there.  Other states
     outside of the axes raise OutOfTableError.  Arrays are looked up one state after another.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> law = vr.law(vr.Scene(alpha=11.0, kappa=10.0, mu=0.3))
+    >>> loads = law(0.5, 0.51)
+    >>> loads.Q > 0.0
+    True
     """
     if isinstance(roller, LawGrid):
         return _LawOfGrid(roller)

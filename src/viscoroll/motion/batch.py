@@ -14,6 +14,7 @@ from ..core.checks import extent
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import OF_TIME
 from ..core.typed import Booleans, Floats, Integers
+from ..kernels.flow.records import Motions
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
@@ -114,10 +115,8 @@ def _look_up(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowRe
     if not error <= rtol:
         return None
     wanted = tuple((STATES + LOSSES).index(name) for name in rows)
-    scales = scene.gamma * unit * unit, threshold * unit
-    found = look_up_ensemble(
-        chosen, *scales, V0, omega0, batch.times / unit, wanted, threads=batch.threads, progress=batch.progress
-    )
+    motions = Motions(scene.gamma * unit * unit, threshold * unit, V0, omega0, batch.times / unit, wanted)
+    found = look_up_ensemble(chosen, motions, threads=batch.threads, progress=batch.progress)
     if unit == 1.0:
         return found
     for n, name in enumerate(rows):

@@ -115,6 +115,10 @@ class _Sampled:
             raise ParameterError(f"{self.name}(t)", f"array of shape {values.shape[1:]}", "a number")
         return values
 
+    def value(self, t: float) -> float:
+        """Return the value at a time."""
+        return float(self.values(np.array([t]))[0])
+
     def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
         """Fit a piece.
 
@@ -139,7 +143,7 @@ class _Sampled:
             return Piece(start, stop, np.zeros(TERMS), 0.0, largest, so_far), None
         if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
             n = int(np.argmax(np.abs(values) > zero))
-            return None, self._bisect(t[n - 1], t[n], lambda value: abs(value) <= zero)
+            return None, _bisect(t[n - 1], t[n], lambda time: abs(self.value(time)) <= zero)
         allowed = np.maximum(self.share * np.maximum(np.maximum.accumulate(np.abs(values)), so_far), least)
         # The effect of the rounding of t on the values is no error of the fit.
         rounding = float(np.spacing(stop))
@@ -151,14 +155,6 @@ class _Sampled:
         if (error <= allowed).all():
             return Piece(start, stop, terms, largest, float(error.max()), so_far), None
         return None, self._locate_jump(t, values, float(allowed[-1]))
-
-    def _bisect(self, low: float, high: float, below: Callable[[float], bool]) -> Cut:
-        """Return the neighbouring doubles in [low, high] between which ``below`` of the value becomes false."""
-        low, high = float(low), float(high)
-        while low < (middle := 0.5 * (low + high)) < high:
-            value = float(self.values(np.array([middle]))[0])
-            low, high = (middle, high) if below(value) else (low, middle)
-        return low, high
 
     def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
         """Return the neighbouring doubles between which the callable jumps.
@@ -173,13 +169,26 @@ class _Sampled:
             return None
         ends = values[n : n + 2].tolist()
 
-        def is_before(value: float) -> bool:
+        def is_before(time: float) -> bool:
+            value = self.value(time)
             before = abs(value - ends[0]) < abs(ends[1] - value)
             ends[0 if before else 1] = value
             return before
 
-        cut = self._bisect(t[n], t[n + 1], is_before)
+        cut = _bisect(t[n], t[n + 1], is_before)
         return cut if 2.0 * abs(ends[1] - ends[0]) > change[n] else None
+
+
+def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
+    """Return the neighbouring doubles between which a condition of time becomes false.
+
+    low, high: times between which it does, in T_ref.
+    is_before: the condition.
+    """
+    low, high = float(low), float(high)
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if is_before(middle) else (low, middle)
+    return low, high
 
 
 def fit_callable(
@@ -211,7 +220,12 @@ def fit_callable(
 
 
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
-    """Return good pieces up to ``end``, in T_ref, of which no two neighbours could be one; raises ParameterError."""
+    """Return good pieces of which no two neighbours could be one.
+
+    sampled: the callable.
+    end: last time, in T_ref.
+    Raises ParameterError where polynomials do not follow the callable.
+    """
     pieces: list[Piece] = []
     failed: set[tuple[float, float]] = set()
     open_intervals, so_far = [(0.0, end)], 0.0
@@ -239,7 +253,11 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 
 
 def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
-    """Return the pieces without the short ones that contain a corner: their neighbours then meet in it."""
+    """Return the pieces without the short ones that contain a corner: their neighbours then meet in it.
+
+    pieces: consecutive.
+    sampled: the callable.
+    """
     merged: list[Piece] = []
     rest = pieces[::-1]
     while rest:
@@ -258,7 +276,11 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
 
 
 def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
-    """Return the time, within a piece, at which the polynomials of its neighbours are equal; else its middle."""
+    """Return the time, within a piece, at which the polynomials of its neighbours are equal; else its middle.
+
+    before, behind: the neighbours.
+    between: the piece.
+    """
 
     def is_above(t: float) -> bool:
         return before.value(t) > behind.value(t)
@@ -267,9 +289,7 @@ def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
     above_at_end = is_above(high)
     if is_above(low) == above_at_end:
         return 0.5 * (low + high)
-    while low < (middle := 0.5 * (low + high)) < high:
-        low, high = (low, middle) if is_above(middle) == above_at_end else (middle, high)
-    return high
+    return _bisect(low, high, lambda t: is_above(t) != above_at_end)[1]
 
 
 def _product(first: NDArray[Any], second: NDArray[Any]) -> Floats:

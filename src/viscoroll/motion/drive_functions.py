@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.checks import broadcast_shape, checked
-from ..core.drive import Feedback, Schedule, slope_factor
+from ..core.drive import Feedback, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.typed import Floats
 from ..kernels.motion.workspace import NOT_PRESCRIBED, PRESCRIBED_OMEGA, PRESCRIBED_V
@@ -20,6 +20,7 @@ from .piecewise import (
     Piecewise,
     TimeFunction,
     check_function,
+    count_corners,
     count_motions,
     differentiate,
     pack_pieces,
@@ -81,14 +82,12 @@ class DriveFunctions:
     @property
     def corners(self) -> int:
         """Number of corners of a motion's schedules, and of pieces of its callables."""
-        corners = [f.times if isinstance(f, Schedule) else f.starts for f in self.functions.values()
-                   if isinstance(f, Schedule | Piecewise)]  # fmt: skip
-        return sum(times.shape[-1] for times in corners)
+        return sum(map(count_corners, self.functions.values()))
 
     @property
     def error(self) -> float:
         """Largest difference seen between a callable and its fit, dimensionless."""
-        return max((f.error for f in self.functions.values() if isinstance(f, Piecewise)), default=0.0)
+        return max(getattr(function, "error", 0.0) for function in self.functions.values())
 
     def block(self, most: int) -> int:
         """Return the number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""

@@ -52,7 +52,7 @@ def ensemble(
     threads: int | None = None,
     progress: bool = False,
 ) -> Ensemble:
-    """Roll n motions; the result is the same bits for any number of threads.
+    """Motions of n cylinders or n starts; the result has the same bits for any number of threads.
 
     Parameters
     ----------
@@ -60,25 +60,27 @@ def ensemble(
         have a scene of its own.
     V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
     t : output times, ascending, common to all; one number: the final state only.
-    force, torque, slope, brake, drag, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays
-        of n, times and values of a :class:`Schedule` of shape (n, k).
+    force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`; numbers may be
+    arrays
+        (n,), times and values of a :class:`Schedule` of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
         error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
-        yet.  "auto": "flow" for 4096 motions or more of one scene.  The map stands in only
-        where its stated error is at most ``rtol``, and only for the motions that it holds;
+        yet.  "auto": "flow" for 4096 motions or more of one scene.  The map is used only
+        where its stated error is at most ``rtol``, and only for the motions that it contains;
         all others are integrated.  The result says which, and the map's error.  Driven motions, and
         those of bodies that differ, are integrated: "flow" is refused.
     rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of the result are
-        what a rest left of them.  With a material each an unsteady motion takes some milliseconds more, for its N.
+        those after the cost of a standstill.  With a material each an unsteady motion takes some milliseconds more,
+        for its N.
     fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
         work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
         some rtol of the energy that moves.
     speed : highest speed that the flow map is made for; default the largest of the starts.
-        Where a large ensemble is rolled in several calls, one number for all makes the
-        bits independent of how it is cut.
+        Where a large ensemble is computed in several calls, one number for all makes the
+        bits independent of how it is divided.
     threads : threads to use; default ``$VISCOROLL_THREADS`` or the cores available.
-    progress : draw a progress bar if it takes longer than a second.
+    progress : draw a progress bar if the call takes longer than a second.
 
     Returns
     -------

@@ -41,14 +41,15 @@ class Fastest(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ensemble(RollResult):
-    """Motions 0 ... n - 1 at common output times, in the units of what rolled, as of a :class:`Motion`.
+    """Motions 0 ... n - 1 at common output times, in the units of the roller, as of a :class:`Motion`.
 
     Attributes
     ----------
-    roller : what rolled, on its slope.
+    roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
     t : output times.
-    V, omega, x, angle, delta, regime : shape (n, len(t)); those not asked for are None.
-    slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2 or in J/m: the integrals of
+    V, omega, x, angle, delta, regime : shape (n, len(t)); those not requested are None.
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_epsilon)^2 or in J/m: the
+    integrals of
         gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
         (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
     force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
@@ -57,13 +58,13 @@ class Ensemble(RollResult):
     success, status : (n,), whether each came to its end, and its :class:`MotionStatus`; outputs a motion did not reach
         are NaN.
     switches, steps : (n,), changes of regime, and integration steps taken.
-    flow : (n,), whether the flow map gave this motion; the others were integrated.
+    flow : (n,), whether the motion is from the flow map; the others were integrated.
     flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
         ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
         relative to the energy at the start if larger; NaN without a map.
     flow_problem : why a map that was tried could not be used, or "".
     drive_error : as of a :class:`Motion`.
-    drive : what was given to drive them.
+    drive : loads and prescribed speeds as they were given.
     labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
     """
 
@@ -79,7 +80,7 @@ class Ensemble(RollResult):
 
     @property
     def message(self) -> str:
-        """How they ended, in words."""
+        """How the motions ended, in words."""
         return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
 
     def messages(self) -> dict[str, int]:
@@ -143,6 +144,7 @@ class Ensemble(RollResult):
         return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
 
     def _card(self) -> tuple[str, list[Row]]:
+        """Title and rows of the printed report."""
         ends = [Row("ended", f"{count}: {message}") for message, count in self.messages().items()]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):

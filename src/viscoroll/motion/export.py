@@ -86,7 +86,8 @@ def _dataset(
 
 
 def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return (variables ``drive_force`` and the like, with the times of schedules; attributes for callables).
+    """Return (variables ``drive_force`` and the like, with the times of schedules; attributes for callables) of a
+    result.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
     motions have times of their own (motion, drive_force_corner); gains of a feedback are attributes.
@@ -161,7 +162,7 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
 
 
 def motion_dataset(motion: Any) -> xr.Dataset:
-    """Return the dataset of a :class:`Motion` over t; for a driven one with loads, works and losses."""
+    """Return the dataset over t of a ``motion``, a :class:`Motion`; for a driven one with loads, works and losses."""
     about_reversals = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {
         "onset_time": motion.onset_time,
@@ -175,7 +176,7 @@ def motion_dataset(motion: Any) -> xr.Dataset:
 
 
 def ensemble_dataset(result: Any) -> xr.Dataset:
-    """Return the dataset of an :class:`Ensemble` over (motion, t)."""
+    """Return the dataset over (motion, t) of a ``result``, an :class:`Ensemble`."""
     si, variables = result.scale.si, _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:
         value = np.asarray(getattr(result.scene, name))

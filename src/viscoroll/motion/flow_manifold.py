@@ -16,8 +16,8 @@ from ..materials.law_build import paired
 from .flow_problem import FULL_SLIP_RETURNS, OUT_OF_RANGE, SPEEDS, FlowProblem, NoFlowMap
 from .flow_rows import NODES, Rows
 
-#: Nodes and weights of the 5-point Gauss-Legendre rule on [0, 1], as in :mod:`..kernels.flow.lookup`.
-_GAUSS_X, _GAUSS_W = gauss(5)
+#: 5-point Gauss-Legendre rule on [0, 1], (nodes, weights), as in :mod:`..kernels.flow.lookup`.
+_GAUSS = gauss(5)
 #: Edges of the rows over the slow logarithm, dimensionless.
 _SLOW_LOG_EDGES = np.concatenate(
     [layout.SLOW_WIDTH * np.arange(-layout.SLOW_BINS, 0), np.ldexp(1.0, np.arange(layout.SLOW_OCTAVES + 1)) - 1.0]
@@ -48,9 +48,9 @@ class SlowManifold(NamedTuple):
         """
         end, value = start - span, self.rows.value
         x, angle = (value(one, start) - value(one, end) for one in self.path)
-        V, delta = (value(one, end[..., None] + span[..., None] * _GAUSS_X) for one in self.speeds)
+        V, delta = (value(one, end[..., None] + span[..., None] * _GAUSS[0]) for one in self.speeds)
         near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
-        direct = [(_GAUSS_W * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))]
+        direct = [(_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))]
         return np.where(near, direct[0], x), np.where(near, direct[1], angle)
 
 

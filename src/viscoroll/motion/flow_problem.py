@@ -11,7 +11,7 @@ from ..kernels.flow import layout
 from ..kernels.flow.states import states
 from ..kernels.motion.workspace import PARTIAL_SLIP
 from .flow_rows import octaves
-from .problem import motions
+from .problem import integrate_motions
 
 #: Reason: the rolling resistance exceeds the friction.
 STOPS = "rolling resistance can hold the sliding cylinder at a speed"
@@ -62,7 +62,7 @@ class FlowProblem(NamedTuple):
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):
             raise NoFlowMap(OUT_OF_RANGE)
         starts = V, V * (1.0 + delta)
-        (V, _, _, _, delta, regime, *_), _ = motions(self.parameters, starts, gamma, t, threads=self.threads)
+        (V, _, _, _, delta, regime, *_), _ = integrate_motions(self.parameters, starts, gamma, t, threads=self.threads)
         if not ((regime == PARTIAL_SLIP) & (V > 0.0)).all():
             raise NoFlowMap(reason)
         return V, delta

@@ -56,7 +56,7 @@ class Histogram(msgspec.Struct):
         return cls(bins, counts, kept.size, *moments, kept if exact else None)
 
     def merge(self, other: Histogram) -> Histogram:
-        """Return the histogram of the values of both, without them.
+        """Return the histogram of its values and those of ``other``, without keeping them.
 
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
         """

@@ -1,4 +1,4 @@
-"""One motion as it is given back: :class:`Motion`."""
+"""The result of one motion: :class:`Motion`."""
 
 from __future__ import annotations
 
@@ -38,7 +38,11 @@ REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
 
 
 class Switch(NamedTuple):
-    """A change of regime: when, and what follows."""
+    """A change of regime.
+
+    t : when, in the unit of the roller.
+    regime : the new regime, a name of ``REGIMES``.
+    """
 
     t: float
     regime: str
@@ -46,30 +50,30 @@ class Switch(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion(RollResult):
-    """One motion, in the units of what rolled: of a scene without dimension, of a cylinder in SI units per m of length.
+    """One motion, in the units of its roller: dimensionless for a scene, for a cylinder SI units per m of length.
 
     Attributes
     ----------
-    roller : what rolled, on its slope: the :class:`Scene` or :class:`Cylinder`.
-    drive : what was given to drive it.
+    roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
+    drive : loads and prescribed speeds as they were given.
     t, V, omega : output times and speeds; s, m/s, rad/s.
-    x, angle : distance travelled, over R or in m, and angle turned in radians, both 0 at t = 0.
-    delta : creep ratio (infinite where V = 0 while sliding).
+    x, angle : distance travelled, divided by R or in m, and angle turned in radians, both 0 at t = 0.
+    delta : creepage (infinite where V = 0 while sliding).
     regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by a brake, or by a
-        prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing stops: a driven motion is told to be
-        at rest where V has decayed to less than doubles hold.
+        prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing stops: a driven motion counts as
+        at rest where V has decayed below the smallest double.
     switches : every change of regime, located to rounding; under a drive to a small part of ``rtol``.
     reversals : times at which V changes its sign under a drive.
-    force, torque : over P and P R, or N/m and N m/m: what acted, the pull of a slope with it, or what a prescribed
-        speed needed; without the brake.
-    work_force, work_torque : work of either since t = 0, over m (R/T_epsilon)^2 or in J/m.
+    force, torque : divided by P and P R, or N/m and N m/m: the loads with the pull of a slope, or the loads that a
+        prescribed speed required; without the brake.
+    work_force, work_torque : work of either since t = 0, divided by m (R/T_epsilon)^2 or in J/m.
     brake_loss, slip_loss, rolling_loss : energy lost since t = 0 in brake, slip and rolling, likewise.  The works
         are the change of (V^2 + j omega^2)/2 plus the three losses.
-    power_force, power_torque : force V and torque omega, over P R/T_epsilon or in W/m.
-    drive_error : the largest difference seen between a callable and the polynomials it was fitted by, dimensionless.
+    power_force, power_torque : force V and torque omega, divided by P R/T_epsilon or in W/m.
+    drive_error : largest difference seen between a callable and the polynomials that fit it, dimensionless.
     onset_time : first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
-    success, status, message : whether the motion came to its end, and how it ended, and where it stood if that was not
+    success, status, message : whether the motion came to its end, how it ended, and its last state if that was not
         its end; outputs it did not reach are NaN.
     steps : integration steps taken, rejected ones included.
     """
@@ -180,7 +184,7 @@ class Motion(RollResult):
         return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
 
     def at(self, t: ArrayLike) -> Motion:
-        """The same motion at other times within [0, end]; by the continuous output of the methods.
+        """The same motion at other times within [0, end], by the dense output of the steps.
 
         Parameters
         ----------
@@ -189,7 +193,7 @@ class Motion(RollResult):
         Returns
         -------
         Motion
-            As exact between the steps as at their ends (``tests/motion/test_motion.py``).
+            As accurate between the steps as at their ends (``tests/motion/test_motion.py``).
 
         Raises
         ------

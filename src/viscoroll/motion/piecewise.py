@@ -90,6 +90,13 @@ def count_motions(function: TimeFunction) -> int:
     return function.size
 
 
+def count_corners(function: TimeFunction) -> int:
+    """Return the number of corners of a function that is a schedule, of its pieces if it is a fit, else 0."""
+    if isinstance(function, Piecewise):
+        return function.starts.shape[-1]
+    return function.times.shape[-1] if isinstance(function, Schedule) else 0
+
+
 def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
     """Return a function for some motions, by an index of numpy; itself where it is the same for all."""
     if isinstance(function, Piecewise) or count_motions(function) == 1:

@@ -222,7 +222,7 @@ def integrate_one(problem: MotionProblem, times: Floats, *notes: NDArray) -> tup
     return out[:, 0], info[0].tolist()
 
 
-def motions(
+def integrate_motions(
     parameters: tuple[Any, ...], starts: tuple[Floats, Floats], gamma: Floats, t: Floats, *, threads: int | None = 1
 ) -> tuple[Floats, Floats]:
     """Integrate the motions from which a flow map is built and by which it is tested.

@@ -49,41 +49,43 @@ def roll(
         One, no arrays.
     V0, omega0 : start speeds, any sign; the larger of the two 0, or in [1e-300, 1e100] R/T_ref.
     t : output times, ascending; one number: the final state only, and ``course`` of the result is the whole motion.
-    rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
-        proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
-        speed magnifies any earlier error: mostly below rtol, at most 30 rtol on the scenes
+    rtol : relative tolerance in [1e-12, 1e-2].  The global relative error of x and of the switch times is
+        proportional to it; that of V and omega too, multiplied by t |V'|/|V|, by which a late
+        speed magnifies any earlier error.  Errors are mostly below rtol, at most 30 rtol for the scenes
         of ``tests/motion/test_motion.py``; rare motions elsewhere may exceed that a little.
-    force, torque : over P along V, and over P R along omega, what pushes the axis and turns the cylinder:
+    force, torque : force on the axis along V, divided by P, and torque on the cylinder along omega, divided by P R:
 
         - a number;
-        - ``vr.Schedule(times, values)``: linear between, constant outside, a time given twice is a jump;
-        - a callable of t, smooth but for jumps and corners, fitted by polynomials to a tenth of ``rtol`` of its largest
-          value so far, and of 1e-9 of its largest of all, below which it begins at 0 (``drive_error`` says how well).
-          It is sampled in a thousand places first, between which a pulse can be missed: ``resolve`` sets how many;
-        - ``vr.Feedback(value, V=gain, omega=gain)``: any of these and more with the speeds.
-    slope : angle in radians, > 0 pushes along +V: P sin(slope) is added to ``force``.  The load is P cos(slope)
-        then, over which of a scene force, torque, Q and M are; ``scene`` of the result has kappa and gamma of it.
-    brake : the most torque over P R that a brake takes, >= 0, as for ``force``.  It acts against omega, and holds
-        omega = 0 while |Q + M_cylinder - torque| is no more.
-    drag : torque over P R against omega, for each unit of omega, as a bearing has it, >= 0; part of ``torque`` of the
-        result.  It drives to the end: speeds decay by it too.
-    omega : prescribed speed of the motor, in place of ``torque``; ``omega0`` is None or what it starts at.
+        - ``vr.Schedule(times, values)``: linear between the times, constant outside; a time given twice is a jump;
+        - a callable of t, smooth but for jumps and corners.  It is fitted by polynomials to a tenth of ``rtol`` of its
+          largest value so far; below 1e-9 of its largest value of all it starts at 0 (``drive_error`` is the error of
+          the fit).  A thousand samples are taken first, between which a pulse can be missed: see ``resolve``;
+        - ``vr.Feedback(value, V=gain, omega=gain)``: any of these plus gains times the speeds.
+    slope : angle in radians, > 0 pushes along +V: P sin(slope) is added to ``force``.  The load is then
+        P cos(slope), by which force, torque, Q and M of a scene are divided; ``scene`` of the result has the kappa and
+        gamma of that load.
+    brake : largest torque of a brake divided by P R, >= 0, as for ``force``.  It acts against omega, and keeps
+        omega = 0 while |Q + M_cylinder - torque| is no larger.
+    drag : torque divided by P R against omega, for each unit of omega, as of a bearing, >= 0; part of ``torque`` of the
+        result.  It acts to the end: speeds decay by it too.
+    omega : prescribed speed of the motor, in place of ``torque``; ``omega0`` is None or its value at t = 0.
     V : prescribed speed of the axis, in place of ``force``; ``V0`` likewise.  A prescribed speed must not jump.
     rest : end the motion where max(|V|, R |omega|) falls below this once nothing drives any more; refused where
         something drives to the end.  Nothing stops in finite time: at small V the speed decays like
         exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.
-        From there on V = omega = 0 and x, angle stay; the distance so left out is close to (1 + j) V/(gamma c).
-    unsteady : in partial slip take M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N) V' = -gamma M where
-        creep is slow.  Errors of V that the law of steady rolling makes become some five times smaller
+        From there on V = omega = 0, and x and angle stay; the omitted distance is close to (1 + j) V/(gamma c).
+    unsteady : in partial slip use M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N) V' = -gamma M where
+        creepage is small.  The errors of V by the law of steady rolling become some five times smaller
         (docs/validity.md).  The motion ends where gamma N is 1 + j or -(1 + j)/2, at least -1: below that speed the
-        contact comes to stand in its own imprint.  A drive may jump; V' does too then, which the contact in truth
-        follows late.  Refused where bodies differ.
-    rested : whether the contact had rested long before it starts to roll, or the time that it had.
-        Leaving its imprint takes energy (``validity(V0).steady.start``): V0 and omega0 become what is left of them; a
-        motion that would lose seven tenths is caught there.  It tells of free rolling: with a force it is near.
+        cylinder stays in its own indentation.  A drive may jump; V' then jumps too, which the real contact
+        follows with a delay.  Refused where the bodies differ.
+    rested : whether the cylinder stood still for long before the start, or the time for which it did.
+        Leaving its indentation costs energy (``validity(V0).steady.start``), and V0 and omega0 are reduced; a
+        motion that would lose seven tenths of its energy stays there.  The cost is that of free rolling: with a force
+        it is an approximation.
     max_steps : step limit, at most 10^7; every corner of a schedule, at which a step ends, adds one to it.
-    resolve : largest spacing, a time, of the samples of a callable that drives; a pulse that lasts longer is seen.
-        Default, and at most: a thousandth of the motion.  Refused where it makes more than 5 10^5 samples, and where
+    resolve : largest spacing, a time, of the samples of a callable; a pulse that lasts longer is seen.
+        Default, and at most: a thousandth of the motion.  Refused where it requires more than 5 10^5 samples, and where
         nothing is a callable.
 
     Returns
@@ -95,13 +97,14 @@ def roll(
     ParameterError
         NaN, infinite or oversized input, unsorted times, an array where one number belongs; both speeds prescribed,
         a prescribed speed that jumps or does not match its start, a callable that
-        no polynomials follow; ``unsteady`` with bodies that differ; ``rested`` below 0, with a prescribed speed, or at
-        a start in full slip.
+        polynomials do not follow; ``unsteady`` with bodies that differ; ``rested`` below 0, with a prescribed speed,
+        or at a start in full slip.
 
     Notes
     -----
-    Under a drive, and with bodies that differ, V and omega are off by at most 30 ``rtol`` of the largest speed so far,
-    mostly below 3 (``tests/motion/test_drive.py``), near a saddle (``vr.steady``) times what neighbours part by.
+    Under a drive, and with bodies that differ, the errors of V and omega are at most 30 ``rtol`` of the largest
+    speed so far, mostly below 3 (``tests/motion/test_drive.py``); near a saddle (``vr.steady``) multiplied by the
+    ratio at which neighbouring motions diverge.
 
     Examples
     --------
@@ -116,7 +119,7 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
+        Where the motion could not be integrated to the end; ``status`` and ``message`` say why.
     """
     units = scale_of(roller)
     times, drive = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)

@@ -147,7 +147,7 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
 
 
 def merge_summaries(summaries: Iterator[Summary]) -> Summary:
-    """Return one summary from those of blocks, given in the order of blocks."""
+    """Return one summary from the ``summaries`` of blocks, given in the order of blocks."""
     total = next(summaries)
     for other in summaries:
         for name, histograms in total.histograms.items():
