@@ -91,6 +91,12 @@ class Cylinder(Methods):
         material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
     ) -> None:  # fmt: skip
+        """Check and freeze the parameters, which the class describes.
+
+        R, m, E, nu, T_epsilon, T_sigma, mu, j, g, plane, material, base, load: as of the class.
+        pressed: field of ``load``, for :func:`dataclasses.replace`.
+        Raises ParameterError as the class says.
+        """
         values: dict[str, Any] = {
             "R": R, "m": m, "E": E, "nu": nu, "T_epsilon": T_epsilon, "T_sigma": T_sigma, "mu": mu, "j": j, "g": g,
             "plane": plane, "material": material, "base": base, "pressed": pressed if load is None else load,

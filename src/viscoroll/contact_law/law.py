@@ -36,6 +36,7 @@ class Law:
     """
 
     def __init__(self, roller: Roller) -> None:
+        """Check that ``roller`` is one scene of one material, and compile its law; raises ParameterError."""
         from ..kernels.rows.jitted import Jitted
 
         _, scene, scale = resolve_model(roller, "law")
@@ -145,6 +146,7 @@ class _LawOfGrid(Law):
     """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
 
     def __init__(self, grid: LawGrid) -> None:
+        """Compile the splines of a ``grid``."""
         from ..kernels.splines.law import JittedGrid
 
         self.roller: Any = grid

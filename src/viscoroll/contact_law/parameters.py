@@ -111,6 +111,7 @@ class Parameters(Roller):
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
 
     def __post_init__(self) -> None:
+        """Check and freeze the parameters; raises ParameterError as :class:`viscoroll.Scene` says."""
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
         if (material is None) == (values["alpha"] is None):
@@ -272,6 +273,7 @@ def refuse_cover(scene: Parameters, why: str) -> None:
 def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a single number") -> None:
     """Raise ParameterError where a parameter is an array.
 
+    scene: the parameters.
     names: of the parameters.
     allowed: what the message says instead.
     """

@@ -36,7 +36,7 @@ class Batch(NamedTuple):
     """Motions to be solved; dimensionless.
 
     inputs : parameters and start speeds by name, vectors of one or n values.
-    caught : motions that stay in the indentation of a standstill, (n,).
+    immobile : motions that stay in the indentation of a standstill, (n,).
     times : output times.
     rows : names of the rows to compute.
     threads : to use.
@@ -45,7 +45,7 @@ class Batch(NamedTuple):
 
     problem: MotionProblem
     inputs: dict[str, NDArray]
-    caught: Booleans
+    immobile: Booleans
     times: Floats
     rows: tuple[str, ...]
     threads: int | None
@@ -78,15 +78,15 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
-    mapped = method == "flow" or (method == "auto" and batch.caught.size >= FLOW_PAYS)
+    mapped = method == "flow" or (method == "auto" and batch.immobile.size >= FLOW_PAYS)
     if free and not scene.shape and mapped:
         found = _look_up(batch, speed, about)
     if found is None:
-        found = FlowResult.empty(len(batch.rows), batch.caught.size, batch.times.size)
+        found = FlowResult.empty(len(batch.rows), batch.immobile.size, batch.times.size)
     about["flow"] = found.status >= 0
-    if (caught := batch.caught).any():
-        found.out[:, caught] = found.onset[caught] = found.rest[caught] = np.nan
-        found.status[caught] = MotionStatus.CAUGHT
+    if (immobile := batch.immobile).any():
+        found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
+        found.status[immobile] = MotionStatus.CAUGHT
     about["steps"] = _integrate_others(found, batch)
     return Solution(found, about)
 
@@ -133,7 +133,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     """
     problem = batch.problem
     law, rows = _law_of(problem.scene, problem.unsteady), np.array([ROWS.index(name) for name in batch.rows], np.int64)
-    steps = np.zeros(batch.caught.size, dtype=np.int64)
+    steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
         left = start + np.flatnonzero(found.status[start:stop] < 0)

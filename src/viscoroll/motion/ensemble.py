@@ -92,6 +92,14 @@ def ensemble(
         NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
         unknown fields or method; method "flow" with parameters that differ between motions.
 
+    Examples
+    --------
+    >>> import numpy as np, viscoroll as vr
+    >>> V0 = np.linspace(1.0, 2.0, 5)
+    >>> result = vr.ensemble(vr.presets.RUBBER_CYLINDER, V0, V0 / 0.1, [0.5, 1.0])
+    >>> result.V.shape
+    (5, 2)
+
     Notes
     -----
     The flow map has no entry for scenes in which full slip returns or rolling resistance can
@@ -117,7 +125,7 @@ def ensemble(
     warn_of_start(problem.roller, problem.scene, start, problem.V0, problem.omega0, problem.driven)
     scale = problem.roller.scale
     batch = Batch(
-        problem, inputs, np.broadcast_to(problem.caught, (count,)), times / scale["t"],
+        problem, inputs, np.broadcast_to(problem.immobile, (count,)), times / scale["t"],
         names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
         thread_count(threads), "motions" if progress else None,
     )  # fmt: skip
@@ -157,7 +165,7 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     batch: its motions.
     solution: dimensionless.
     """
-    found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.caught.size,)
+    found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))
     times = {
         "onset_time": found.onset,

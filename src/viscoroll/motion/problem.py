@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..contact_law.contact import contact
 from ..contact_law.parameters import Parameters, Roller, refuse_cover, resolve_model
 from ..contact_law.validity.free_rolling import FreeRolling
-from ..contact_law.validity.steadiness import CAUGHT
+from ..contact_law.validity.steadiness import LARGEST_LOSS
 from ..core.blocks import flattened, run_blocks
 from ..core.checks import checked, yes_or_no
 from ..core.drive import over
@@ -54,7 +54,7 @@ class MotionProblem(NamedTuple):
     drive : as given, without loads of 0.
     functions : what drives; None for free motions.
     V0, omega0 : start speeds, less what leaving the indentation of a standstill costs; numbers or (n,).
-    caught : whether a motion stays in its indentation, in the shape of the speeds.
+    immobile : whether a motion stays in its indentation, in the shape of the speeds.
     end : last time, in T_ref.
     limits : (rtol, threshold of rest, step limit).
     unsteady : whether the added mass N acts.
@@ -67,7 +67,7 @@ class MotionProblem(NamedTuple):
     functions: DriveFunctions | None
     V0: Any
     omega0: Any
-    caught: Any
+    immobile: Any
     end: float
     limits: tuple[float, float, int]
     unsteady: bool
@@ -117,14 +117,14 @@ def make_problem(
         if functions is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + functions.corners)
         refuse_rest(limits[1], functions)
-        V0, omega0, caught = _apply_standstill(prepared, scene, _standstill_time(rested, scale) / scale["t"])
+        V0, omega0, immobile = _apply_standstill(prepared, scene, _standstill_time(rested, scale) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
     many = 1 if functions is None else max(functions.counts)
     if single and many > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
     driven = unsteady or (acts and drive.acts)
-    return MotionProblem(roller, scene, drive, functions, V0, omega0, caught, last, limits, unsteady, driven)
+    return MotionProblem(roller, scene, drive, functions, V0, omega0, immobile, last, limits, unsteady, driven)
 
 
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
@@ -177,7 +177,7 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
         sentence = f"rested is given, but {why}: the cost of leaving the indentation is not known then"
         raise ParameterError("rested", rested, "left out", sentence)
     lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
-    return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > CAUGHT
+    return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS
 
 
 def integrate(
@@ -210,7 +210,7 @@ def integrate_one(problem: MotionProblem, times: Floats, *notes: NDArray) -> tup
     notes: as of :func:`integrate`.
     """
     scene = problem.scene
-    if problem.caught:
+    if problem.immobile:
         return np.full((_ALL_ROWS.size, times.size), np.nan), [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
     law = scene.table
     assert law is not None

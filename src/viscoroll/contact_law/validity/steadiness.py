@@ -16,7 +16,7 @@ from .free_rolling import FreeRolling, Reach, Start
 STEADY_LIMIT = 0.1
 #: Largest part of its speed that a start from rest may lose, dimensionless (seven tenths of its energy): a cylinder
 #: that loses more stays in its indentation.
-CAUGHT = 0.45
+LARGEST_LOSS = 0.45
 #: Speed in units of u that stands for rest where a motion ended, dimensionless: the lower end of the start speeds.
 _REST = 1e-300
 
@@ -137,7 +137,7 @@ def _describe_free(free: FreeRolling) -> str:
     if fine.speed:
         end = f"down to {most.speed:.2g}{speed}, after {most.time:.3g}{time} and {most.left:.2g}{length} before the end"
         text += f"10 % {end if most.speed else 'to the end'}"
-    if start.speed > CAUGHT * float(free.u * free.speed):
+    if start.speed > LARGEST_LOSS * float(free.u * free.speed):
         return text + "; after a long standstill the cylinder would stay in its indentation"
     return text + f"; a start after a long standstill loses {start.speed:.2g}{speed} and {start.way:.2g}{length}"
 
