@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..contact_law.validity.assumptions import Validity
-from ..contact_law.validity.free_rolling import FreeRolling
-from ..contact_law.validity.steadiness import Steadiness
 from ..contact_law.validity.validity import validity
 from ..core.checks import checked
 from ..core.errors import MotionStatus, ParameterError, described
@@ -66,6 +64,13 @@ class Ensemble(RollResult):
     drive_error : as of a :class:`Motion`.
     drive : loads and prescribed speeds as they were given.
     labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> result = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+    >>> len(result), bool(result.success.all())
+    (2, True)
     """
 
     V0: Floats
@@ -124,15 +129,13 @@ class Ensemble(RollResult):
         """
         index, V, omega = self.fastest()
         roller = self.roller.take(index, len(self))
-        scene, scale = roller.scene(), roller.scale
         report = validity(roller, V, omega=omega)
-        if self.V is None or not index.size or scene.cover is not None:
+        if self.V is None or not index.size or roller.scene().cover is not None:
             return report
         speeds = np.vstack([self.V0[index], self.V[index].T])
         rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(speeds)
         x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(index.size), self.x[index].T])
-        free = FreeRolling.of_scene(scene, np.nan_to_num(speeds / scale["V"])).scaled(scale)
-        return report._replace(steady=Steadiness.along(free, rolls, x, ends=True))
+        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
 
     def fastest(self) -> Fastest:
         """Return the motions that :meth:`validity` examines, with their highest speeds."""

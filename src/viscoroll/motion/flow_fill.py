@@ -48,10 +48,10 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     """
     _, kappa, mu, j = problem.parameters
     V, least = SPEEDS.x / kappa, 2.0**layout.LOW / kappa
-    found = problem.at(V, np.zeros(V.shape))
-    limit = found[DELTA_STAR] * V
+    state = problem.contact_states(V, np.zeros(V.shape))
+    limit = state[DELTA_STAR] * V
     for n, sign in enumerate((1.0, -1.0)):
-        rate = mu - sign * 0.5 * found[MOMENT]
+        rate = mu - sign * 0.5 * state[MOMENT]
         if not np.isfinite(limit / rate).all():
             raise NoFlowMap(OUT_OF_RANGE)
         if not (rate > 0.0).all():
@@ -59,15 +59,15 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         half = SPEEDS.half / kappa
         T = NODES.integrals(1.0 / rate, half, least / mu)
         X = NODES.integrals(V / rate, half, 0.5 * least * least / mu)
-        kept = 2.0 * mu * T - V * (1.0 - j) + sign * j * limit
-        if not (np.diff(kept.ravel(), prepend=0.0) > 0.0).all():
+        slip = 2.0 * mu * T - V * (1.0 - j) + sign * j * limit
+        if not (np.diff(slip.ravel(), prepend=0.0) > 0.0).all():
             raise NoFlowMap(STOPS)
-        time, path, onset = NODES.powers(T), NODES.powers(X), NODES.powers(kept)
+        time, path, onset = NODES.powers(T), NODES.powers(X), NODES.powers(slip)
         parts.slide[n] = np.concatenate([paired(time, NODES.powers(limit)), path], axis=-1)
         # nearly held: the inverse would end before the speeds that are served
         if not kappa * mu * time[-3].sum() < 2.0 ** (layout.HIGH - 1):
             raise NoFlowMap(STOPS)
         parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
         u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
-        at = [NODES.powers(value) for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))]
-        parts.onset[n] = np.concatenate([paired(*at[:2]), at[2]], axis=-1)
+        values = [NODES.powers(value) for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))]
+        parts.onset[n] = np.concatenate([paired(*values[:2]), values[2]], axis=-1)

@@ -41,21 +41,21 @@ def fill_layers(
     slow : the slow manifold.  asymptote, layer : views of the tables, written.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
-    V0 = onsets.at(_COARSE) / kappa
+    V0 = onsets.node_positions(_COARSE) / kappa
     k0 = _stiff_rate(problem, V0)
     split_powers = _split_powers(problem, sign, onsets)
     split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
     V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
     # over (octave, V, octave of u, u)
-    per = np.where(np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT, split[..., None] / (1.0 - _LOWEST_U), 1.0)
-    half, share = per * _LAYER.half, V / V0[..., None, None]
-    loss = delta * share * problem.at(V, delta)[TRACTION] / (V0 * k0)[..., None, None]
-    slopes = share - 1.0, share * (1.0 + delta) - 1.0, loss
-    columns = [np.log(share), delta, *(_COARSE.integrals(slope, half) for slope in slopes)]
+    width = np.where(np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT, split[..., None] / (1.0 - _LOWEST_U), 1.0)
+    half, V_ratio = width * _LAYER.half, V / V0[..., None, None]
+    loss = delta * V_ratio * problem.contact_states(V, delta)[TRACTION] / (V0 * k0)[..., None, None]
+    slopes = V_ratio - 1.0, V_ratio * (1.0 + delta) - 1.0, loss
+    columns = [np.log(V_ratio), delta, *(_COARSE.integrals(slope, half) for slope in slopes)]
     for column, values in enumerate(columns):
         powers = _COARSE.powers(np.moveaxis(_COARSE.powers(values), 1, -1))
         layer[:, :, column] = powers.reshape(*layer.shape[:2], -1)
-    # what they have in common with the slow manifold, which they have come to
+    # the motion on the slow manifold that they have reached at the end of the layer
     E = split + _JOIN_E
     x, angle, lost = (_COARSE.end(slope, half) for slope in slopes)
     end = SPEEDS.value(slow.slow_log, kappa * V_end)
@@ -64,27 +64,27 @@ def fill_layers(
     slow_x, slow_angle = slow.path_between(slow_log, span, problem.slow_rate)
     x, angle = V0 / k0 * (E + x) - slow_x, V0 / k0 * (E + angle) - slow_angle
     lost = V0 * V0 * lost - (slow.rows.value(slow.loss, slow_log) - slow.rows.value(slow.loss, end))
-    known = slow.slow_log[first - layout.LOW :][: layout.OCTAVES]
+    slow_log_at_V = slow.slow_log[first - layout.LOW :][: layout.OCTAVES]
     above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
-    gained = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
+    excess = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
     asymptote[:] = np.concatenate(
-        [paired(known + _padded(above), rates), _padded(split_powers), paired(*gained[:2]), gained[2]], axis=-1
+        [paired(slow_log_at_V + _padded(above), rates), _padded(split_powers), paired(*excess[:2]), excess[2]], axis=-1
     )
 
 
 def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     """k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes."""
-    return (1.0 + 1.0 / problem.parameters[3]) * problem.at(V, np.zeros(V.shape))[STIFFNESS] / V
+    return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V, np.zeros(V.shape))[STIFFNESS] / V
 
 
 def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Floats) -> tuple[Floats, Floats]:
     """(V, delta) in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip at V."""
     _, _, mu, j = problem.parameters
-    found = problem.at(V, np.zeros(V.shape))
-    push, half_moment, tau = sign * mu, 0.5 * found[MOMENT], _LEAD * gamma
+    state = problem.contact_states(V, np.zeros(V.shape))
+    push, half_moment, tau = sign * mu, 0.5 * state[MOMENT], _LEAD * gamma
     before = V - tau * (push - half_moment)
-    return before, (V * (1.0 + sign * found[DELTA_STAR]) + tau * (push + half_moment) / j) / before - 1.0
+    return before, (V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / j) / before - 1.0
 
 
 def _layer_motions(
@@ -98,7 +98,7 @@ def _layer_motions(
     Returns V and delta, (octave, node of V, octave of u, node of u), and V at the end of the layer, (octave, node of
     V).
     """
-    u, gamma = _LAYER.at(_COARSE), (split / k0).ravel()
+    u, gamma = _LAYER.node_positions(_COARSE), (split / k0).ravel()
     starts = _state_before_onset(problem, sign, V0.ravel(), gamma)
     before = _LEAD + np.append((u[:_OCTAVES_BEFORE_SPLIT] - _LOWEST_U) / (1.0 - _LOWEST_U), 1.0)
     V, delta = problem.integrate(*starts, gamma, before, STICK_ENDS)
@@ -119,25 +119,25 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
 
     Returns (octaves, powers).
     """
-    found = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
-    found[:, 0] = 1.0
+    powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
+    powers[:, 0] = 1.0
     if sign != np.sign(1.0 - problem.parameters[3]):
-        return found
-    V = (onsets.at(_SPLIT_NODES) / problem.parameters[1]).ravel()
+        return powers
+    V = (onsets.node_positions(_SPLIT_NODES) / problem.parameters[1]).ravel()
     gamma = 1.0 / _stiff_rate(problem, V)
     _, delta = problem.integrate(*_state_before_onset(problem, sign, V, gamma), gamma, _LEAD + _CROSSINGS, STICK_ENDS)
     passed = sign * delta < 0.0
-    at = np.clip(passed.argmax(axis=1), 2, _CROSSINGS.size - 2)[:, None] + np.arange(-2, 2)
-    E, delta = _CROSSINGS[at], np.take_along_axis(delta, at, axis=1)
+    index = np.clip(passed.argmax(axis=1), 2, _CROSSINGS.size - 2)[:, None] + np.arange(-2, 2)
+    E, delta = _CROSSINGS[index], np.take_along_axis(delta, index, axis=1)
     # the inverse of a cubic
     split = np.zeros(V.size)
     for n in range(4):
         others = [delta[:, m] / (delta[:, m] - delta[:, n]) for m in range(4) if m != n]
         split += E[:, n] * np.prod(others, axis=0)
-    split = split.reshape(found.shape)
-    turns = np.all(passed.any(axis=1).reshape(found.shape), axis=1)
-    found[turns] = _SPLIT_NODES.powers(split[turns])
-    return found
+    split = split.reshape(powers.shape)
+    turns = np.all(passed.any(axis=1).reshape(powers.shape), axis=1)
+    powers[turns] = _SPLIT_NODES.powers(split[turns])
+    return powers
 
 
 def _padded(powers: Floats) -> Floats:

@@ -47,8 +47,8 @@ class SlowManifold(NamedTuple):
         start : slow logarithms at the beginning.  span : their decrease.  rate : decrease in unit time.
         """
         end, value = start - span, self.rows.value
-        x, angle = (value(one, start) - value(one, end) for one in self.path)
-        V, delta = (value(one, end[..., None] + span[..., None] * _GAUSS[0]) for one in self.speeds)
+        x, angle = (value(powers, start) - value(powers, end) for powers in self.path)
+        V, delta = (value(powers, end[..., None] + span[..., None] * _GAUSS[0]) for powers in self.speeds)
         near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
         direct = [(_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))]
         return np.where(near, direct[0], x), np.where(near, direct[1], angle)
@@ -63,7 +63,7 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     integrals from V -> 0 upward.
     """
     rows, V, delta = _integrate_manifold(problem)
-    slopes = V, V * (1.0 + delta), V * delta * problem.at(V, delta)[TRACTION]
+    slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]
     to_go = []
     for slope, n in zip(slopes, (1, 1, 3), strict=True):  # V falls like exp(lambda)
         below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
@@ -84,12 +84,12 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     at the last state.
     """
     kappa, j, rate = problem.parameters[1], problem.parameters[3], problem.slow_rate
-    V, delta, one = np.array([2.0 ** (layout.HIGH + _RUN_IN_OCTAVES) / kappa]), np.zeros(1), np.ones(1)
+    V, delta, gamma = np.array([2.0 ** (layout.HIGH + _RUN_IN_OCTAVES) / kappa]), np.zeros(1), np.ones(1)
     halves, steps = [], []
     while kappa * V[0] > _SLOW_LOG_ORIGIN:
         between = 0.75 * V
-        step = math.log(2.0) * (1.0 + j) * between / problem.at(between, np.zeros(1))[MOMENT]
-        (V,), (delta,) = problem.integrate(V, delta, one, step, FULL_SLIP_RETURNS)
+        step = math.log(2.0) * (1.0 + j) * between / problem.contact_states(between, np.zeros(1))[MOMENT]
+        (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
             raise NoFlowMap(OUT_OF_RANGE)
         halves.append((V, delta))
@@ -97,12 +97,12 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     starts = np.append(np.cumsum(steps[:0:-1])[::-1], 0.0)
     rows = Rows(_SLOW_LOG_EDGES[: np.searchsorted(_SLOW_LOG_EDGES, starts[0])])
     nodes = rows.x.ravel()[::-1]
-    found = np.empty((2, nodes.size))
+    states = np.empty((2, nodes.size))
     for (V, delta), start, end in zip(halves, starts, [*starts[1:], -np.inf], strict=True):
-        some = np.flatnonzero((nodes <= start) & (nodes > end))
-        if some.size:
-            (found[0, some],), (found[1, some],) = problem.integrate(
-                V, delta, one, (start - nodes[some]) / rate, FULL_SLIP_RETURNS
+        inside = np.flatnonzero((nodes <= start) & (nodes > end))
+        if inside.size:
+            (states[0, inside],), (states[1, inside],) = problem.integrate(
+                V, delta, gamma, (start - nodes[inside]) / rate, FULL_SLIP_RETURNS
             )
-    V, delta = found[:, ::-1].reshape(2, *rows.x.shape)
+    V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
     return rows, V, delta

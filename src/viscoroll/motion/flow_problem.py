@@ -43,8 +43,13 @@ class FlowProblem(NamedTuple):
     slow_rate: float
     threads: int | None
 
-    def at(self, V: Floats, delta: Floats) -> Floats:
-        """Contact states at V and delta: rows of :mod:`..kernels.flow.states`, in the shape of V."""
+    def contact_states(self, V: Floats, delta: Floats) -> Floats:
+        """Return contact states.
+
+        V, delta : speeds and creepages, dimensionless, of one shape.
+
+        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V.
+        """
         _, kappa, mu, _ = self.parameters
         out = np.empty((4, V.size))
         states(np.ascontiguousarray(V).ravel(), np.ascontiguousarray(delta).ravel(), kappa, mu, self.law, out)

@@ -12,8 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..contact_law.contact import contact
 from ..contact_law.validity.assumptions import Validity
-from ..contact_law.validity.free_rolling import FreeRolling
-from ..contact_law.validity.steadiness import Steadiness
 from ..contact_law.validity.validity import validity
 from ..core.errors import MotionStatus, ParameterError
 from ..core.results import Row, Values
@@ -76,6 +74,13 @@ class Motion(RollResult):
     success, status, message : whether the motion came to its end, how it ended, and its last state if that was not
         its end; outputs it did not reach are NaN.
     steps : integration steps taken, rejected ones included.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+    >>> motion.success, motion.V.shape
+    (True, (2,))
     """
 
     reversals: Floats
@@ -161,9 +166,8 @@ class Motion(RollResult):
         report = validity(self.roller, V, omega=self.omega[reached])
         if not reached.any() or self.scene.cover is not None:
             return report
-        free, rolls = FreeRolling.of_scene(self.scene, V / self.scale["V"]), self.regime[reached] > 0
-        steady = Steadiness.along(free.scaled(self.scale), rolls, self.x[reached], ends=False)
-        return report._replace(steady=steady)
+        rolls, x = self.regime[reached] > 0, self.x[reached]
+        return self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
 
     def _card(self) -> tuple[str, list[Row]]:
         """Title and rows of the printed report."""

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..contact_law.parameters import Parameters, Roller
+from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.free_rolling import FreeRolling
+from ..contact_law.validity.steadiness import Steadiness
 from ..core.errors import MotionStatus
 from ..core.results import Row, Shown, unit_of
 from ..core.scale import Scale
@@ -55,6 +58,18 @@ class RollResult(Shown):
     def success(self) -> Any:
         """Whether the motion reached the last output time, or rest; of an ensemble for each motion."""
         return self.status <= MotionStatus.RESTED
+
+    def _add_steadiness(
+        self, report: Validity, roller: Roller, V: Floats, rolls: Any, x: Any, *, ends: bool
+    ) -> Validity:
+        """Add to a report whether the law of steady rolling may drive the motions.
+
+        report: of the motions' states.
+        roller: of the motions.
+        V: speeds in its unit, (times, ...); rolls, x, ends: as of :meth:`.Steadiness.along`.
+        """
+        free = FreeRolling.of_scene(roller.scene(), V / roller.scale["V"]).scaled(roller.scale)
+        return report._replace(steady=Steadiness.along(free, rolls, x, ends=ends))
 
     def _unit(self, name: str) -> str:
         """Unit of a quantity for a printed report."""

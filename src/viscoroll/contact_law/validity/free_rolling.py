@@ -217,12 +217,13 @@ class FreeRolling:
     def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
         """Return the states of a scene at speeds V, dimensionless, any shape; raises ParameterError for a cover."""
         refuse_cover(scene, "how it rolls freely from rest needs N, which is not known")
-        given: Any
         materials: Any
         unit: Any
         if scene.material_array is None:
-            given, unit = scene.in_own_time()
-            materials, index = np.unique(given, return_inverse=True) if np.ndim(given) else ([given], np.zeros((), int))
+            material, unit = scene.in_own_time()
+            materials, index = (
+                np.unique(material, return_inverse=True) if np.ndim(material) else ([material], np.zeros((), int))
+            )
         else:
             pairs = (series_in_own_time(one_series(one)) for one in scene.material_array)
             materials, unit = zip(*pairs, strict=True)

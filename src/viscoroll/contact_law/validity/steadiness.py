@@ -34,6 +34,13 @@ class Steadiness(Assumption):
     whole : the distance to rest.
     share : part of that distance, or of the distance of a motion, at which the error of V exceeds 10 %; None where it
         is not known.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> steady = vr.presets.RUBBER_CYLINDER.validity(2.0).steady
+    >>> bool(steady.holds), float(steady.whole) > 50.0  # m
+    (True, True)
     """
 
     #: the states, in the units of the call
@@ -45,7 +52,7 @@ class Steadiness(Assumption):
     def of(cls, free: FreeRolling) -> Assumption:
         """Return the assumption ``steady`` of states from which the cylinder rolls freely."""
         if free.u.size and not free.u.any():
-            return Assumption(None, None, "at rest the law of steady rolling has no error: give a speed")
+            return Assumption(None, None, "at rest the assumption is not checked: give a speed")
         return cls._create(free.unsteadiness, free)
 
     @classmethod
