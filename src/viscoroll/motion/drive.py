@@ -41,9 +41,8 @@ class Drive(NamedTuple):
     @property
     def numbers(self) -> dict[str, Floats]:
         """What is given as a number, or as one of each motion, by name."""
-        functions = Feedback | Schedule
-        numbers = {n: x for n, x in self.given.items() if not (callable(x) or isinstance(x, functions))}
-        return {name: checked(name, value) for name, value in numbers.items()}
+        others = Feedback | Schedule
+        return {n: checked(n, x) for n, x in self.given.items() if not (callable(x) or isinstance(x, others))}
 
     @property
     def has_callable(self) -> bool:

@@ -167,13 +167,18 @@ def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float
     return low, high
 
 
+def _largest(values: Any) -> float:
+    """Return the largest of ``values``, any shape; 0 of none."""
+    return float(np.max(values, initial=0.0))
+
+
 def assess_small_contact(reach: Any) -> Assumption:
     """Compare the far end of the contact with :data:`REACH_LIMIT`.
 
     reach: distance from the axis to the far end of the contact divided by R, any shape.
     Returns the assumption ``small_contact``.
     """
-    far = float(np.max(reach, initial=0.0))
+    far = _largest(reach)
     return Assumption(
         reach <= REACH_LIMIT, reach,
         f"the contact reaches {far:.2g} R from the axis, where the parabola in place of the circle has an error of "
@@ -188,7 +193,7 @@ def assess_position(epsilon: Any) -> Assumption:
     epsilon: shift of the contact towards the leading edge in half contact lengths, any shape.
     Returns the assumption ``under_axis``.
     """
-    ahead = float(np.max(epsilon, initial=0.0))
+    ahead = _largest(epsilon)
     where = (
         "the whole contact lies ahead of the axis, which is allowed" if ahead > 1.0 else "the axis is above the contact"
     )
@@ -224,7 +229,7 @@ def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
         return UNKNOWN.quasistatic
     return Assumption(
         wave_ratio <= WAVE_LIMIT, wave_ratio,
-        f"the speed is {100.0 * float(np.max(wave_ratio, initial=0.0)):.2g} % of the shear wave speed; up to "
+        f"the speed is {100.0 * _largest(wave_ratio):.2g} % of the shear wave speed; up to "
         f"{100.0 * WAVE_LIMIT:g} % is allowed, where the load is within 10 % of the static one"
         + "".join(f"; the density of {body} is not known" for body in unknown),
     )  # fmt: skip
