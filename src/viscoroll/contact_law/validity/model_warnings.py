@@ -25,7 +25,8 @@ from ...materials.prony import Prony
 from ..parameters import PARAMETERS, Parameters, Roller
 from .assumptions import LEAST_KAPPA, NOT_SMALL, WAVE_LIMIT, assess_measured_band, transit_frequency
 from .cylinder import NO_SPEEDS, BodyData, extent_of, is_outside
-from .free_rolling import FreeRolling, curve_of
+from .free_rolling import FreeRolling
+from .free_rolling_curve import curve_of
 from .steadiness import STEADY_LIMIT
 
 #: Creepage from which on a start in full slip has M in doubt, dimensionless: the surface speeds then differ by V.
