@@ -37,7 +37,8 @@ class Law:
 
     def __init__(self, roller: Roller) -> None:
         """Check that ``roller`` is one scene of one material, and compile its law; raises ParameterError."""
-        from ..kernels.rows.jitted import Jitted
+        from ..kernels.rows.c_function import pack_scenes
+        from ..kernels.rows.jitted_law import Jitted
 
         _, scene, scale = resolve_model(roller, "law")
         if scene.material_array is not None:
@@ -49,13 +50,14 @@ class Law:
         self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])
         #: whether there are speeds that give a warning
         self._warns = roller.body_data is not None and roller.body_data.covered_speeds is not None
-        self._use(Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale))
+        scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
+        self._use(Jitted(scenes, table))
 
     def _use(self, jitted: Any) -> None:
         """Keep the compiled function, its two kinds of user data, and the type of its output."""
-        from ..kernels.rows.jitted import Room
+        from ..kernels.rows.jitted_law import ResultBuffer
 
-        self._jitted, self._output = jitted, Room
+        self._jitted, self._output = jitted, ResultBuffer
         self._function, self._plain, self._sloped = jitted.function, jitted.plain, jitted.address
 
     @overload
@@ -147,12 +149,12 @@ class _LawOfGrid(Law):
 
     def __init__(self, grid: LawGrid) -> None:
         """Compile the splines of a ``grid``."""
-        from ..kernels.splines.law import JittedGrid
+        from ..kernels.splines.law import jitted_grid
 
         self.roller: Any = grid
         self._warns = False
         (low, high), slowest = grid.delta, grid.V[0]
-        self._use(JittedGrid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+        self._use(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         """Return the law at arrays, one state after another; see :class:`Law`."""

@@ -98,7 +98,7 @@ def stress(
 
 def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """The stresses at points; ``numbers``: alphas, or of the materials, which lie together where they share one."""
-    from ..kernels.rows.stress import memories, stress_loop
+    from ..kernels.rows.stress import new_memory_weights, stress_loop
 
     ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(numbers))
     for first, last in pairwise([0, *ends, p.size]):
@@ -107,4 +107,5 @@ def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Float
             given = one_series(scene.material_array[int(numbers[min(first, numbers.size - 1)])])
         series, alpha = kernel_series(given)
         some = points._make(part[first:last] if part.size > 1 else part for part in points)
-        stress_loop(series, alpha, memories(series), memories(series), some, p[first:last], tau[first:last])
+        weights = new_memory_weights(series), new_memory_weights(series)
+        stress_loop(series, alpha, *weights, some, p[first:last], tau[first:last])

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from ..core.checks import checked, number
 from ..core.errors import ParameterError
 from ..core.typed import Floats
-from ..kernels.numerics.nodes import powers_of_chebyshev
+from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.
 TERMS = 14

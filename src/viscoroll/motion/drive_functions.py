@@ -12,7 +12,6 @@ from ..core.checks import broadcast_shape, checked
 from ..core.drive import Feedback, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.typed import Floats
-from ..kernels.motion.workspace import NOT_PRESCRIBED, PRESCRIBED_OMEGA, PRESCRIBED_V
 from .checks import start_speeds
 from .drive import Drive
 from .drive_fit import TERMS
@@ -29,8 +28,6 @@ from .piecewise import (
     values_at_start,
 )  # fmt: skip
 
-#: Name of the prescribed speed by the kernel's code.
-SPEEDS = {PRESCRIBED_OMEGA: "omega", PRESCRIBED_V: "V"}
 #: Bytes of pieces that are packed at a time where motions have functions of their own: little beside the schedules,
 #: and yet many motions at once where these are short.
 _BLOCK_BYTES = 1 << 18
@@ -56,14 +53,14 @@ class DriveFunctions:
     ----------
     functions : force, torque, brake and prescribed speed by name, where there are any.
     tangent : of the slope, which adds to the force, () or (m,).
-    prescribed : the kernel's code of the prescribed speed.
+    prescribed : name of the prescribed speed, "omega", "V" or "".
     gains : of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
     end : last time, in T_ref.
     """
 
     functions: dict[str, TimeFunction]
     tangent: Floats
-    prescribed: int
+    prescribed: str
     gains: Floats
     end: float
 
@@ -118,7 +115,7 @@ class DriveFunctions:
     @cached_property
     def pieces(self) -> Floats:
         """All functions over common pieces, in the layout of the kernels, (1 or m, k, columns)."""
-        zero, name = piecewise(np.zeros(())), SPEEDS.get(self.prescribed, "")
+        zero, name = piecewise(np.zeros(())), self.prescribed
         force, torque, brake, speed = (
             piecewise(self.functions[f]) if f in self.functions else zero for f in ("force", "torque", "brake", name)
         )
@@ -131,7 +128,7 @@ class DriveFunctions:
         """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
         pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
-        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), self.prescribed
+        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _code_of(self.prescribed)
 
     def _take(self, index: Any) -> DriveFunctions:
         """Return the functions of some motions; ``index`` of numpy."""
@@ -149,11 +146,19 @@ class DriveFunctions:
 
 
 @cache
+def _code_of(speed: str) -> int:
+    """Return the kernel's code of a prescribed ``speed``, "omega", "V" or "" for none."""
+    from ..kernels.motion.workspace import NOT_PRESCRIBED, PRESCRIBED_OMEGA, PRESCRIBED_V
+
+    return {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}[speed]
+
+
+@cache
 def undriven() -> KernelDrive:
     """Return the kernel's drive of free motions."""
     from ..kernels.motion.workspace import COL_COEFFICIENTS, N_DRIVE_FUNCTIONS
 
-    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
+    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), _code_of("")
 
 
 class DrivenStart(NamedTuple):
@@ -183,8 +188,8 @@ def prepare_drive(
         return DrivenStart(None, *start_speeds(V0, omega0))
     tangent = np.asarray(slope_factor(drive.slope)[0])
     _refuse_both(drive)
-    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NOT_PRESCRIBED)
-    names = ["force", "torque", "brake", *([SPEEDS[prescribed]] if prescribed else [])]
+    prescribed = next((name for name in ("omega", "V") if getattr(drive, name) is not None), "")
+    names = ["force", "torque", "brake", *([prescribed] if prescribed else [])]
     functions = {
         name: check_function(
             name, getattr(drive, name), end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
@@ -194,8 +199,8 @@ def prepare_drive(
     checked_drive = DriveFunctions(functions, tangent, prescribed, _gains(drive), end)
     starts = {"V": V0, "omega": omega0}
     if prescribed:
-        name = names[-1]
-        starts[name] = _prescribed_start(name, starts[name], checked_drive, getattr(drive, name))
+        start = starts[prescribed], checked_drive, getattr(drive, prescribed)
+        starts[prescribed] = _prescribed_start(prescribed, *start)
     for name, start in starts.items():
         if start is None:
             raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")

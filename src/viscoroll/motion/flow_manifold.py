@@ -11,7 +11,7 @@ from ..core.typed import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import MOMENT, TRACTION
-from ..kernels.numerics.nodes import gauss
+from ..kernels.numerics.interpolation import gauss
 from ..materials.law_build import paired
 from .flow_problem import FULL_SLIP_RETURNS, OUT_OF_RANGE, SPEEDS, FlowProblem, NoFlowMap
 from .flow_rows import NODES, Rows
