@@ -238,7 +238,7 @@ def test_a_belt_of_a_fit_that_was_saved(run, here):
     (here / "roller.toml").write_text(f'{roller}[base]\nfile = "belt.toml"\nthickness = 0.006\n')
     shown = run("validity", "roller.toml", "--V", "100")
     assert "the base was measured from 0.0628 to 628 rad/s" in shown
-    assert "half the contact is up to" in shown
+    assert "half the contact length is up to" in shown
 
 
 def test_a_cylinder_of_a_file_is_in_si(run, here):
