@@ -129,7 +129,7 @@ def test_a_full_disk(tmp_path: Path) -> None:
 def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text("as it was")
-    with pytest.raises(TypeError), files.replacing(path) as temporary:
+    with pytest.raises(TypeError), files.replace_file(path) as temporary:
         temporary.write_text("half") + "no number"
     assert path.read_text() == "as it was"
     assert list(tmp_path.iterdir()) == [path]
@@ -152,12 +152,12 @@ def test_all_is_on_disk_before_the_name_is(tmp_path: Path, monkeypatch: pytest.M
 def test_no_change_goes_unnoticed() -> None:
     """Every flipped bit breaks the seal or unmakes it; so does what is cut or added."""
     sealed = files.seal(b"some content")
-    assert files.seal_holds(sealed)
+    assert files.seal_matches(sealed)
     whole = int.from_bytes(sealed, "big")
     changed = [(whole ^ 1 << bit).to_bytes(len(sealed), "big") for bit in range(8 * len(sealed))]
     changed += [sealed[:end] for end in range(len(sealed))] + [sealed + b"\n"]
-    assert not any(map(files.seal_holds, changed))
-    assert files.seal_holds(b"some content") is None
+    assert not any(map(files.seal_matches, changed))
+    assert files.seal_matches(b"some content") is None
 
 
 # --- what is read is what was written ---

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_law.validity.cylinder import BodyData
-from .core.checks import broadcast_shape, checked, frozen, one_name
-from .core.drive import slope_factor
-from .core.errors import ParameterError, one_of
-from .core.results import Row, Shown, short
+from .core.checks import broadcast_shape, check_array, read_only, check_choice
+from .core.drive import slope_tan_cos
+from .core.errors import ParameterError, exactly_one_error
+from .core.results import SummaryRow, Result, format_value
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
 from .materials.law_table import LawTable
@@ -104,7 +104,7 @@ class Cylinder(Methods):
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
-            raise one_of("material", solid, both=True)
+            raise exactly_one_error("material", solid, both=True)
         if material is None and missing:
             sentence = f"give material=, or all of E, nu, T_epsilon and T_sigma: {missing} not given"
             raise ParameterError(missing, None, "given, or material", sentence)
@@ -113,9 +113,9 @@ class Cylinder(Methods):
         for name in numbers:
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
             called = "load" if name == "pressed" else name
-            values[name] = frozen(checked(called, values[name], unit=SI, low=low, strict=True, high=high))
+            values[name] = read_only(check_array(called, values[name], unit=SI, low=low, strict=True, high=high))
         broadcast_shape(**{name: np.asarray(values[name]) for name in numbers})
-        one_name("plane", plane, "strain", "stress")
+        check_choice("plane", plane, "strain", "stress")
         for name, value in values.items():
             object.__setattr__(self, name, value)
         if material is None:
@@ -173,18 +173,18 @@ class Cylinder(Methods):
 
     def on_slope(self, slope: Any) -> Cylinder:
         """Return the same cylinder under the load P cos(slope); ``slope`` in rad."""
-        return self.replace(load=self.load * slope_factor(slope)[1])
+        return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Title and rows of the printed report."""
         values = self.numbers | {"load": self.load, "plane": self.plane}
-        rows = [Row(name, short(value), UNITS.get(name, "")) for name, value in values.items()]
+        rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in values.items()]
         for name in ("material", "base"):
             if (body := getattr(self, name)) is not None:
-                rows.append(Row(name, getattr(body, "name", "") or repr(body)))
+                rows.append(SummaryRow(name, getattr(body, "name", "") or repr(body)))
         return "Cylinder, SI units, per m of length", rows
 
-    __repr__, _repr_html_ = Shown.__repr__, Shown._repr_html_
+    __repr__, _repr_html_ = Result.__repr__, Result._repr_html_
 
     @property
     def load(self) -> Any:
@@ -236,7 +236,7 @@ class Cylinder(Methods):
         own = self.pair.cover(self.l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
             found = f"the law of a layer of {cover.thickness:.6g} l0"
-            raise ParameterError("material", found, f"that of {short(own.thickness)} l0, which load and R give")
+            raise ParameterError("material", found, f"that of {format_value(own.thickness)} l0, which load and R give")
 
     @cached_property
     def body_data(self) -> BodyData:  # type: ignore[override]

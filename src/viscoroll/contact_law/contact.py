@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal, overload
 
-from ..core.checks import checked, checked_extent, yes_or_no
-from ..core.errors import one_of
-from ..core.labels import unlabelled
+from ..core.checks import check_array, check_array_extent, check_bool
+from ..core.errors import exactly_one_error
+from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
-from ..core.typed import Numbers
+from ..core.array_types import Numbers
 from .contact_fields import field_names
 from .contact_table import contact_states
 from .parameters import Roller, resolve_model
@@ -118,14 +118,14 @@ def contact(
     """
     _, scene, scale = resolve_model(roller, "contact")
     if (delta is None) == (omega is None):
-        raise one_of("delta", "omega", both=delta is not None)
+        raise exactly_one_error("delta", "omega", both=delta is not None)
     if slopes is not False:
-        slopes = yes_or_no("slopes", slopes)
+        slopes = check_bool("slopes", slopes)
     names = field_names(fields, scene.material, scale.si, slopes, method)
     creep_name = "omega" if delta is None else "delta"
-    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta}, scale)
-    speed, ends = checked_extent("V", given["V"])
-    creep = checked(creep_name, given[creep_name])
+    given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
+    speed, ends = check_array_extent("V", given["V"])
+    creep = check_array(creep_name, given[creep_name])
     given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:

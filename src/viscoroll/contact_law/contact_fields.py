@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
-from ..core.checks import one_name
-from ..core.errors import ParameterError, refuse_unknown
+from ..core.checks import check_choice
+from ..core.errors import ParameterError, check_names
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 
@@ -42,10 +42,10 @@ def field_names(fields: Iterable[str] | None, material: Any, si: bool, slopes: b
     slopes, method: as of ``contact``.
     Raises ParameterError for an unknown name or method, and for a field that the method or the material does not have.
     """
-    one_name("method", method, "table", "direct")
+    check_choice("method", method, "table", "direct")
     like, cover = not isinstance(material, Bodies) or material.like, isinstance(material, Cover)
     if fields is not None:
-        names = refuse_unknown("fields", fields, ALL_FIELDS, "a field")
+        names = check_names("fields", fields, ALL_FIELDS, "a field")
     elif si:
         names = ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)
     else:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.blocks import elements, run_blocks
+from ..core.blocks import block_reader, run_blocks
 from ..core.checks import broadcast_shape, extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
@@ -64,13 +64,13 @@ def contact_states(
             raise ParameterError("fields", repr(UNSTEADY), "requested with one material, as material[i]")
         arrays["alpha"] = np.arange(len(law), dtype=np.float64)
     solved = solved_fields(names, law.unlike if isinstance(law, LawTable) else isinstance(law, Bodies))
-    found = states_of(law, [*arrays.values()], shape, creep_is_omega, solved, method == "direct")
+    found = evaluate_law(law, [*arrays.values()], shape, creep_is_omega, solved, method == "direct")
     if not shape:
         return add_derived(dict(zip(solved, found[:, 0].tolist(), strict=True)), names)
     return add_derived({name: row.reshape(shape) for name, row in zip(solved, found, strict=True)}, names)
 
 
-def states_of(
+def evaluate_law(
     given: LawTable | Prony | Bodies | None,
     arrays: list[Any],
     shape: tuple[int, ...],
@@ -126,15 +126,15 @@ def states_of(
         states.flags.writeable = False  # as all that a kernel reads, see elements
         fill(0, count, *states)
         return out
-    parts = [elements(np.asarray(array), shape) for array in arrays]
+    parts = [block_reader(np.asarray(array), shape) for array in arrays]
     block = _BLOCK_EACH if isinstance(given, Prony | Bodies) else _BLOCK
     run_blocks(lambda start, stop: fill(start, stop, *(part(start, stop) for part in parts)), count, block)
     return out
 
 
-def rolling(law: LawTable, u: NDArray, *names: str) -> NDArray:
+def pure_rolling_fields(law: LawTable, u: NDArray, *names: str) -> NDArray:
     """Fields in pure rolling at kappa |V| = u, a row each; kappa = mu = 1."""
-    return states_of(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
+    return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
 
 
 @lru_cache(maxsize=64)

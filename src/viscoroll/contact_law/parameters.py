@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from ..core.checks import broadcast_shape, checked, checked_extent, frozen
-from ..core.drive import slope_factor
-from ..core.errors import ParameterError, one_of
-from ..core.results import short
+from ..core.checks import broadcast_shape, check_array, check_array_extent, read_only
+from ..core.drive import slope_tan_cos
+from ..core.errors import ParameterError, exactly_one_error
+from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
-from ..core.typed import Floats, Integers
+from ..core.array_types import Floats, Integers
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.law_grid import LawGrid
@@ -115,7 +115,7 @@ class Parameters(Roller):
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
         if (material is None) == (values["alpha"] is None):
-            raise one_of("alpha", "material", both=material is not None)
+            raise exactly_one_error("alpha", "material", both=material is not None)
         if isinstance(material, LawTable):
             object.__setattr__(self, "_law", material)
             material = material.material
@@ -125,11 +125,11 @@ class Parameters(Roller):
             if not isinstance(material, Prony | Bodies):
                 raise ParameterError("material", f"{material!r:.60}", "a Prony series, or Bodies of two")
             values["alpha"] = material.alpha
-        arrays = {"alpha": checked("alpha", values.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
+        arrays = {"alpha": check_array("alpha", values.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
         for name, value in values.items():
             if name != "gamma" or value is not None:
-                arrays[name], extents[name] = checked_extent(name, value, low=0.0, strict=True)
+                arrays[name], extents[name] = check_array_extent(name, value, low=0.0, strict=True)
         object.__setattr__(self, "shape", broadcast_shape(**arrays))
         object.__setattr__(self, "material", material)
         if arrays["mu"].size and arrays["kappa"].size:
@@ -138,7 +138,7 @@ class Parameters(Roller):
             if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
                 _refuse_ratio(arrays["mu"], arrays["kappa"])
         for name, array in arrays.items():
-            object.__setattr__(self, name, frozen(array))
+            object.__setattr__(self, name, read_only(array))
 
     @property
     def table(self) -> LawTable | None:
@@ -206,7 +206,7 @@ class Parameters(Roller):
 
     def on_slope(self, slope: Any) -> Self:
         """Return the scene under the load P cos(slope), see :meth:`Roller.on_slope`."""
-        cosine = slope_factor(slope)[1]
+        cosine = slope_tan_cos(slope)[1]
         changes = {"kappa": self.kappa / np.sqrt(cosine), "gamma": None if self.gamma is None else self.gamma * cosine}
         if self.cover is not None:  # its thickness is divided by the l0 of that load
             changes["material"] = self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))
@@ -220,7 +220,7 @@ class Parameters(Roller):
         return {"material": self.material} | {name: x for name, x in self.numbers.items() if name != "alpha"}
 
     def __repr__(self) -> str:
-        return f"Scene({', '.join(f'{name}={short(value)}' for name, value in self._arrays.items())})"
+        return f"Scene({', '.join(f'{name}={format_value(value)}' for name, value in self._arrays.items())})"
 
 
 def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
@@ -266,7 +266,7 @@ def resolve_model(
 def refuse_cover(scene: Parameters, why: str) -> None:
     """Raise ParameterError where a body is a layer of finite thickness; ``why``: what is not known of such a layer."""
     if scene.cover is not None:
-        sentence = f"thickness = {short(scene.cover.thickness)} (divided by l0): of a layer of finite thickness {why}"
+        sentence = f"thickness = {format_value(scene.cover.thickness)} (divided by l0): of a layer of finite thickness {why}"
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
 
 

@@ -7,12 +7,12 @@ from typing import Any, overload
 
 import numpy as np
 
-from ..core.blocks import elements, run_blocks
-from ..core.checks import broadcast_shape, checked
-from ..core.errors import one_of
-from ..core.labels import unlabelled
+from ..core.blocks import block_reader, run_blocks
+from ..core.checks import broadcast_shape, check_array
+from ..core.errors import exactly_one_error
+from ..core.labels import strip_labels
 from ..core.results import Values
-from ..core.typed import Floats, Numbers
+from ..core.array_types import Floats, Numbers
 from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
 from .contact_table import contact_states
@@ -60,10 +60,10 @@ def stress(
     _, scene, scale = resolve_model(roller, "stress")
     refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
-        raise one_of("delta", "omega", both=delta is not None)
+        raise exactly_one_error("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
-    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
-    at, speed, creep = (checked(*given) for given in places.items())
+    places, labels = strip_labels({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
+    at, speed, creep = (check_array(*given) for given in places.items())
     places = dict(zip(places, (at, speed, creep), strict=True))
     if scale.si:
         warn_of_contact(roller, speed)
@@ -79,7 +79,7 @@ def stress(
     given |= {"mirror": mirror, "sign": np.sign(state["delta"]) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
-    x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
+    x_of, *others, alpha_of, mirror_of, sign_of = (block_reader(array, shape) for array in arrays.values())
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.errors import ParameterError
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from .bodies import Bodies
 from .prony import Prony
 from .prony_forms import Modes

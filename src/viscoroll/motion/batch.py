@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters
-from ..core.blocks import flattened, run_blocks
+from ..core.blocks import broadcast_vector, run_blocks
 from ..core.checks import extent
 from ..core.errors import MotionStatus, ParameterError
-from ..core.scale import OF_TIME
-from ..core.typed import Booleans, Floats, Integers
+from ..core.scale import TIME_POWERS
+from ..core.array_types import Booleans, Floats, Integers
 from ..kernels.flow.records import Motions
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials
@@ -120,7 +120,7 @@ def _look_up(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowRe
     if unit == 1.0:
         return found
     for n, name in enumerate(rows):
-        found.out[n] *= unit ** OF_TIME.get(name, 0)
+        found.out[n] *= unit ** TIME_POWERS.get(name, 0)
     return found._replace(onset=found.onset * unit, rest=found.rest * unit)
 
 
@@ -140,7 +140,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
         if not left.size:
             return
         inputs = batch.inputs.values()
-        alpha, *others = (flattened(array[left], left.shape) if array.size > 1 else array for array in inputs)
+        alpha, *others = (broadcast_vector(array[left], left.shape) if array.size > 1 else array for array in inputs)
         arguments = (*law(alpha, left), *others), problem.kernel_drive(left), batch.times, problem.limits, rows
         found.out[:, left], info = integrate(left.size, *arguments)
         found.status[left], steps[left], found.switches[left], found.onset[left], found.rest[left] = info.T

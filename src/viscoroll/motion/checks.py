@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import broadcast_shape, checked, extent, number, whole
+from ..core.checks import broadcast_shape, check_array, extent, check_number, check_integer
 from ..core.errors import ParameterError
 from ..core.scale import Scale, Units
-from ..core.typed import Floats
+from ..core.array_types import Floats
 
 #: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no longer proportional.
 RTOL_RANGE = (1e-12, 1e-2)
@@ -29,7 +29,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     units: unit of time, or those of a roller.
     Raises ParameterError unless they are finite, >= 0, ascending, and at least one.
     """
-    times = np.array(checked("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
+    times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
     if times.ndim != 1 or times.size == 0:
         raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
     falls = times[1:] < times[:-1]
@@ -75,10 +75,10 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
     low, high = RTOL_RANGE
-    if not low <= number("rtol", rtol) <= high:
+    if not low <= check_number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = 0.0 if rest is None else number("rest", rest, low=0.0, strict=True)
-    return float(rtol), threshold, whole("max_steps", max_steps, 1, MOST_STEPS)
+    threshold = 0.0 if rest is None else check_number("rest", rest, low=0.0, strict=True)
+    return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
@@ -92,7 +92,7 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     if type(V0) is float and type(omega0) is float and -high <= V0 <= high and -high <= omega0 <= high:
         if abs(V0) >= low or abs(omega0) >= low:
             return V0, omega0
-    V, omega = checked("V0", V0), checked("omega0", omega0)
+    V, omega = check_array("V0", V0), check_array("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0

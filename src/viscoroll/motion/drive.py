@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import checked
-from ..core.drive import Feedback, Schedule, over
-from ..core.labels import Labels, unlabelled
+from ..core.checks import check_array
+from ..core.drive import Feedback, Schedule, make_dimensionless
+from ..core.labels import Labels, strip_labels
 from ..core.scale import HasUnits, Scale
-from ..core.typed import Floats
+from ..core.array_types import Floats
 
 #: Rows of the kernel's output that describe the state.
 STATES = ("V", "omega", "x", "angle", "delta", "regime")
@@ -42,7 +42,7 @@ class Drive(NamedTuple):
     def numbers(self) -> dict[str, Floats]:
         """What is given as a number, or as one of each motion, by name."""
         others = Feedback | Schedule
-        return {n: checked(n, x) for n, x in self.given.items() if not (callable(x) or isinstance(x, others))}
+        return {n: check_array(n, x) for n, x in self.given.items() if not (callable(x) or isinstance(x, others))}
 
     @property
     def has_callable(self) -> bool:
@@ -61,7 +61,7 @@ class Drive(NamedTuple):
 
     def over(self, scale: Scale) -> Drive:
         """Return the same without dimension."""
-        return Drive(*map(over, self._fields, self, (scale,) * len(self))) if scale.si and self.acts else self
+        return Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self))) if scale.si and self.acts else self
 
 
 def _is_zero(name: str, value: Any) -> bool:
@@ -73,7 +73,7 @@ def _is_zero(name: str, value: Any) -> bool:
     """
     if isinstance(value, Feedback):
         return not (np.any(value.V) or np.any(value.omega)) and _is_zero(name, value.value)
-    return not (callable(value) or np.any(value.values if isinstance(value, Schedule) else checked(name, value)))
+    return not (callable(value) or np.any(value.values if isinstance(value, Schedule) else check_array(name, value)))
 
 
 class PlainArguments(NamedTuple):
@@ -92,5 +92,5 @@ def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainA
     units: of the roller.
     Raises ParameterError for a unit of another dimension.
     """
-    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
+    plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)

@@ -22,9 +22,9 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from ..core.checks import checked, number
+from ..core.checks import check_array, check_number
 from ..core.errors import ParameterError
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.
@@ -110,7 +110,7 @@ class _Sampled:
     def values(self, t: Floats) -> Floats:
         """Return the values at times (n,); raises ParameterError for what is no finite number or too small."""
         self.taken += t.size
-        values = checked(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
+        values = check_array(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
         if values.shape != t.shape:
             raise ParameterError(f"{self.name}(t)", f"array of shape {values.shape[1:]}", "a number")
         return values
@@ -207,7 +207,7 @@ def fit_callable(
     """
     samples = SAMPLES
     if resolve is not None:
-        spacing = number("resolve", resolve, low=0.0, strict=True)
+        spacing = check_number("resolve", resolve, low=0.0, strict=True)
         if spacing * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise ParameterError("resolve", spacing, allowed)

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import broadcast_shape, checked
-from ..core.drive import Feedback, slope_factor
-from ..core.errors import ParameterError, one_of
-from ..core.typed import Floats
+from ..core.checks import broadcast_shape, check_array
+from ..core.drive import Feedback, slope_tan_cos
+from ..core.errors import ParameterError, exactly_one_error
+from ..core.array_types import Floats
 from .checks import start_speeds
 from .drive import Drive
 from .drive_fit import TERMS
@@ -186,7 +186,7 @@ def prepare_drive(
         raise ParameterError("resolve", resolve, "left out", sentence)
     if not drive.acts:
         return DrivenStart(None, *start_speeds(V0, omega0))
-    tangent = np.asarray(slope_factor(drive.slope)[0])
+    tangent = np.asarray(slope_tan_cos(drive.slope)[0])
     _refuse_both(drive)
     prescribed = next((name for name in ("omega", "V") if getattr(drive, name) is not None), "")
     names = ["force", "torque", "brake", *([prescribed] if prescribed else [])]
@@ -210,7 +210,7 @@ def prepare_drive(
 def _refuse_both(drive: Drive) -> None:
     """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given."""
     if drive.V is not None and drive.omega is not None:
-        raise one_of("V", "omega", both=True)
+        raise exactly_one_error("V", "omega", both=True)
     for name, speed, why in _BESIDE:
         if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
             raise ParameterError(name, value, "left out", f"{name} is given beside {speed}=: leave it out, {why}")
@@ -230,7 +230,7 @@ def _prescribed_start(name: str, given: Any, functions: DriveFunctions, speed: A
     start, scale = functions.speed_at_start(name)
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
-    if given is not None and not (np.abs(checked(f"{name}0", given) - start) <= _START * scale).all():
+    if given is not None and not (np.abs(check_array(f"{name}0", given) - start) <= _START * scale).all():
         raise ParameterError(f"{name}0", given, f"None, or {float(start[0]):.12g} as prescribed")
     if start.size > 1:
         return start
@@ -241,7 +241,7 @@ def _gains(drive: Drive) -> Floats:
     """Return the gains of a drive, with the drag in that of the torque on omega, (4, 1 or m)."""
     pairs = [(x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0) for x in (drive.force, drive.torque)]
     rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
-    rows[3] = rows[3] - checked("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
+    rows[3] = rows[3] - check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
     count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
     return np.array([np.broadcast_to(row, count) for row in rows])
 

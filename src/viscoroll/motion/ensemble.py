@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from ..contact_law.parameters import Roller, scale_of
 from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
-from ..core.blocks import flattened, thread_count
-from ..core.checks import broadcast_shape, number, one_name, yes_or_no
-from ..core.drive import Feedback, Schedule, over
-from ..core.errors import ParameterError, refuse_unknown
-from ..core.typed import Numbers
+from ..core.blocks import broadcast_vector, thread_count
+from ..core.checks import broadcast_shape, check_number, check_choice, check_bool
+from ..core.drive import Feedback, Schedule, make_dimensionless
+from ..core.errors import ParameterError, check_names
+from ..core.array_types import Numbers
 from .batch import Batch, Solution, solve_batch
 from .checks import in_words, output_times
 from .drive import ACTING, ROWS, Drive, strip_units
@@ -113,12 +113,12 @@ def ensemble(
     motions (``tests/test_invariance.py``).
     """
     units = scale_of(roller)
-    times, names = output_times(t, units), refuse_unknown("fields", fields, FIELDS, "a field")
-    one_name("method", method, "auto", "flow", "integrate")
+    times, names = output_times(t, units), check_names("fields", fields, FIELDS, "a field")
+    check_choice("method", method, "auto", "flow", "integrate")
     start, drive, labels = strip_units((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
-    progress = yes_or_no("progress", progress)
+    progress = check_bool("progress", progress)
     if speed is not None:
-        speed = number("speed", speed, unit=units, low=0.0, strict=True)
+        speed = check_number("speed", speed, unit=units, low=0.0, strict=True)
     options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
     problem = make_problem(roller, start, drive, times[-1], options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
@@ -130,7 +130,7 @@ def ensemble(
         thread_count(threads), "motions" if progress else None,
     )  # fmt: skip
     try:
-        solution = solve_batch(batch, method, over("speed", speed, scale))
+        solution = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
     except ParameterError as error:
         raise in_words(error, scale) from error
     columns: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
@@ -156,7 +156,7 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
     count = shape[0] if shape else 1
-    return {name: flattened(array, (count,)) for name, array in arrays.items()}, count
+    return {name: broadcast_vector(array, (count,)) for name, array in arrays.items()}, count
 
 
 def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from .. import __version__
 from ..contact_law.parameters import PARAMETERS
 from ..core.drive import Feedback, Schedule
 from ..core.errors import MotionStatus
-from ..core.results import short
+from ..core.results import format_value
 from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
@@ -99,7 +99,7 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
         if isinstance(given, Feedback):
             value, gains = given.value, {"gain_V": given.V, "gain_omega": given.omega}
         if callable(value):
-            parts = (f", {gain} = {short(x) if np.ndim(x) else f'{x:.15g}'}" for gain, x in gains.items())
+            parts = (f", {gain} = {format_value(x) if np.ndim(x) else f'{x:.15g}'}" for gain, x in gains.items())
             texts[key] = "a function of t" + "".join(parts)
             continue
         about = attributes(name, result.scale.si)

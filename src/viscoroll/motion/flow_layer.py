@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION
 from ..materials.law_build import paired

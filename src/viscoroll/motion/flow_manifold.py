@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import MOMENT, TRACTION

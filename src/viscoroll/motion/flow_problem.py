@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.states import states
 from ..kernels.motion.workspace import PARTIAL_SLIP

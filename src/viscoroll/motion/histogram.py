@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.typed import Floats, Integers
+from ..core.array_types import Floats, Integers
 
 #: Bits of a double below those that number a bin: 52 of the fraction less the eight that are kept.
 _DROPPED = 44

@@ -14,8 +14,8 @@ from ..contact_law.contact import contact
 from ..contact_law.validity.assumptions import Validity
 from ..contact_law.validity.validity import validity
 from ..core.errors import MotionStatus, ParameterError
-from ..core.results import Row, Values
-from ..core.typed import Floats
+from ..core.results import SummaryRow, Values
+from ..core.array_types import Floats
 from .checks import SPEED_RANGE, output_times
 from .drive import ROWS
 from .problem import NO_NOTES, MotionProblem, integrate_one
@@ -169,23 +169,23 @@ class Motion(RollResult):
         rolls, x = self.regime[reached] > 0, self.x[reached]
         return self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Title and rows of the printed report."""
         rows = [self._row_of_times()]
-        rows += [Row(name, _describe_course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
+        rows += [SummaryRow(name, _describe_course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
         for name, given in self.drive.given.items():
             title = f"prescribed {name}" if name in ("V", "omega") else name  # V and omega have rows of their own above
-            rows.append(Row(title, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
+            rows.append(SummaryRow(title, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
         if not np.isnan(self.onset_time):
-            rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
+            rows.append(SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
         if self.switches:
             last = self.switches[-1]
             end = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(self.rest_time) else ""
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
-            rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{end}"))
+            rows.append(SummaryRow("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{end}"))
         if self.reversals.size:
-            rows.append(Row("reversals of V", str(self.reversals.size)))
-        return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
+            rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
+        return "Motion", [*rows, SummaryRow("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
 
     def at(self, t: ArrayLike) -> Motion:
         """The same motion at other times within [0, end], by the dense output of the steps.

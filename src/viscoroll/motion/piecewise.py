@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import checked
-from ..core.drive import Feedback, Schedule, refuse_more_than_t
+from ..core.checks import check_array
+from ..core.drive import Feedback, Schedule, require_time_argument
 from ..core.errors import ParameterError
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from .drive_fit import fit_callable
 
 #: First value of a piece divided by the size of its terms, dimensionless, that counts as rounding: some 50 roundings.
@@ -66,15 +66,15 @@ def check_function(
     if isinstance(given, Feedback):
         given = given.value
     if callable(given):
-        refuse_more_than_t(name, given)
+        require_time_argument(name, given)
         starts, terms, error = fit_callable(name, given, end, rtol, low, resolve)
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         return Piecewise(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
     if isinstance(given, Schedule):
-        checked(f"values of {name}", given.values, low=low)
+        check_array(f"values of {name}", given.values, low=low)
         return given
-    values = checked(name, 0.0 if given is None else given, low=low)
+    values = check_array(name, 0.0 if given is None else given, low=low)
     if values.ndim > 1:
         allowed = "a number, one a motion, or a Schedule(times, values)"
         raise ParameterError(name, f"array of shape {values.shape}", allowed)

@@ -12,12 +12,12 @@ from ..contact_law.contact import contact
 from ..contact_law.parameters import Parameters, Roller, refuse_cover, resolve_model
 from ..contact_law.validity.free_rolling import FreeRolling
 from ..contact_law.validity.steadiness import LARGEST_LOSS
-from ..core.blocks import flattened, run_blocks
-from ..core.checks import checked, yes_or_no
-from ..core.drive import over
+from ..core.blocks import broadcast_vector, run_blocks
+from ..core.checks import check_array, check_bool
+from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
-from ..core.typed import Floats, Integers
+from ..core.array_types import Floats, Integers
 from ..materials.law_table import law_table
 from .checks import controls, in_words, refuse_end, refuse_many
 from .drive import LOSSES, ROWS, STATES, Drive
@@ -107,11 +107,11 @@ def make_problem(
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     try:
-        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end) / scale["t"]
+        limits, last = controls(rtol, make_dimensionless("rest", rest, scale), max_steps), float(end) / scale["t"]
         if last == math.inf:
             refuse_end(float(end), scale["t"])
-        V0, omega0 = over("V0", start[0], scale), over("omega0", start[1], scale)
-        spacing = None if resolve is None else over("resolve", resolve, scale)
+        V0, omega0 = make_dimensionless("V0", start[0], scale), make_dimensionless("omega0", start[1], scale)
+        spacing = None if resolve is None else make_dimensionless("resolve", resolve, scale)
         prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
@@ -133,7 +133,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     unsteady: as given.
     scene: parameters.
     """
-    if not yes_or_no("unsteady", unsteady):
+    if not check_bool("unsteady", unsteady):
         return False
     refuse_cover(scene, "N is not known: leave unsteady=True out")
     if not scene.like_bodies:
@@ -151,7 +151,7 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
     """
     if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
-    time = checked("rested", rested, unit=units, low=0.0)
+    time = check_array("rested", rested, unit=units, low=0.0)
     if time.ndim:
         raise ParameterError("rested", rested, "one time >= 0, or True")
     return float(time)
@@ -239,7 +239,7 @@ def integrate_motions(
     """
     material, kappa, mu, j = parameters
     law, count = law_table(material), starts[0].size
-    arrays = [flattened(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
+    arrays = [broadcast_vector(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
     blocks: dict[int, tuple[Floats, Floats]] = {}
 
     def work(start: int, stop: int) -> None:

@@ -10,15 +10,15 @@ from ..contact_law.validity.assumptions import Validity
 from ..contact_law.validity.free_rolling import FreeRolling
 from ..contact_law.validity.steadiness import Steadiness
 from ..core.errors import MotionStatus
-from ..core.results import Row, Shown, unit_of
+from ..core.results import SummaryRow, Result, unit_of
 from ..core.scale import Scale
 from ..core.symbols import attributes
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from .drive import Drive
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RollResult(Shown):
+class RollResult(Result):
     """The roller, its drive, and the rows over the output times."""
 
     roller: Roller
@@ -75,6 +75,6 @@ class RollResult(Shown):
         """Unit of a quantity for a printed report."""
         return unit_of(attributes(name, self.scale.si))
 
-    def _row_of_times(self) -> Row:
+    def _row_of_times(self) -> SummaryRow:
         """Row of a printed report: number of output times, and the last one."""
-        return Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))
+        return SummaryRow("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))

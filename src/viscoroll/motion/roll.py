@@ -8,8 +8,8 @@ from collections.abc import Callable
 from ..contact_law.parameters import Roller, scale_of
 from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
 from ..core.drive import Feedback, Schedule
-from ..core.labels import BARE
-from ..core.typed import Numbers
+from ..core.labels import UNLABELLED_TYPES
+from ..core.array_types import Numbers
 from .checks import output_times
 from .drive import Drive, strip_units
 from .motion_result import Motion, integrate_motion
@@ -123,7 +123,7 @@ def roll(
     """
     units = scale_of(roller)
     times, drive = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
-    if not BARE.issuperset(map(type, (V0, omega0, *drive))):
+    if not UNLABELLED_TYPES.issuperset(map(type, (V0, omega0, *drive))):
         (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
     options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
     problem = make_problem(roller, (V0, omega0), drive, times[-1], options, single=True)

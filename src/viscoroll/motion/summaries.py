@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import MotionStatus, ParameterError
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from .export import column_attributes, provenance
 from .histogram import Histogram, edges_of
 

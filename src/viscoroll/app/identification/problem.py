@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.errors import ViscorollError
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ...cylinder import Cylinder
 from .records import Record
 from .unknowns import Shift, Unknown, cylinder_of

@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 
-from ...core.drive import Feedback, over
+from ...core.drive import Feedback, make_dimensionless
 from ...core.errors import ParameterError
-from ...core.labels import unlabelled
-from ...core.typed import Integers, Numbers
+from ...core.labels import strip_labels
+from ...core.array_types import Integers, Numbers
 from ...materials.law_table import LawTable
 from ..parameters import Roller, resolve_model, scale_of
 from ..validity.model_warnings import warn_of_contact
@@ -76,10 +76,10 @@ def steady(
     to that over ``grip`` (``tests/test_steady.py``).
     """
     units = scale_of(roller)
-    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V}, units)
+    plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
     roller, scene, scale = resolve_model(roller, "steady", slope=slope)
-    force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
+    force, torque, V = (make_dimensionless(name, plain[name], scale) for name in ("force", "torque", "V"))
     loads = loads_of(scene, force, torque, slope, V)
     law = scene.table
     assert law is not None  # loads_of refuses many

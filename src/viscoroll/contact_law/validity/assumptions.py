@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.results import Row, as_html, as_text
+from ...core.results import SummaryRow, as_html, as_text
 from ...materials.law_modes import by_modes
 from ...materials.measured import Measured
 from ...materials.prony import Prony
@@ -109,10 +109,10 @@ class Validity(NamedTuple):
         """Names of the assumptions that fail for at least one V; empty if none is known to fail."""
         return tuple(name for name, assumption in self._asdict().items() if assumption.word == "no")
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Title and rows of the printed report."""
         items = self._asdict().items()
-        rows = [Row(name, f"{assumption.word:<4} {assumption.sentence}") for name, assumption in items]
+        rows = [SummaryRow(name, f"{assumption.word:<4} {assumption.sentence}") for name, assumption in items]
         return "What the model assumes, and whether it holds", rows
 
     def __repr__(self) -> str:

@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.checks import number
+from ...core.checks import check_number
 from ...core.scale import SI
 from ...materials.law_table import law_table
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.pair import Pair
-from ..contact_table import rolling
+from ..contact_table import pure_rolling_fields
 from ..parameters import Parameters
 from .assumptions import (
     LEAST_KAPPA,
@@ -99,7 +99,7 @@ class BodyData:
         low, high = (rate * self.T_ref for rate in ends)
         if self.scene.cover is not None:
             u = np.exp2(_OCTAVES_OF_SPEED)
-            (lam,) = rolling(law_table(self.scene.cover), u, "lam")
+            (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
             low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
         else:
             low, high = transit_speeds(series, low, high)
@@ -141,7 +141,7 @@ class BodyData:
         Returns lam, dimensionless, in one dimension at least.
         """
         material, unit = self.scene.in_own_time()
-        (lam,) = rolling(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
+        (lam,) = pure_rolling_fields(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
         return lam
 
     def wave_ratio(self, speed: Any, density: float | None) -> WaveRatio:
@@ -173,7 +173,7 @@ class BodyData:
         Returns the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
         """
         if density is not None:
-            density = number("density", density, unit=SI, low=0.0, strict=True)
+            density = check_number("density", density, unit=SI, low=0.0, strict=True)
         fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
         pair, length = self.pair, lam * self.l0
         kind = (

@@ -18,11 +18,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.scale import Scale
-from ...core.typed import Floats, Integers
+from ...core.array_types import Floats, Integers
 from ...materials.bodies import one_series
 from ...materials.law_table import law_table
 from ...materials.prony import Prony
-from ..contact_table import rolling
+from ..contact_table import pure_rolling_fields
 from ..parameters import Parameters, refuse_cover, series_in_own_time
 from .free_rolling_curve import Curve, curve_of
 
@@ -153,7 +153,7 @@ class FreeRolling:
         """Return the lengths of the contacts of the states; ``kappa`` of the scene, broadcasts with u."""
         out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
         for material, part in self._groups():
-            out[:, part] = rolling(law_table(material), u[part], "lam", "epsilon")
+            out[:, part] = pure_rolling_fields(law_table(material), u[part], "lam", "epsilon")
         lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
         return ContactLengths.of(lam, epsilon, kappa)
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...core.typed import Booleans, Floats
+from ...core.array_types import Booleans, Floats
 from ...materials.bodies import one_series
 from ...materials.law_modes import by_modes
 from ...materials.prony import Prony

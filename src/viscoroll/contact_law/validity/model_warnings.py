@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.errors import ModelWarning, outside
+from ...core.errors import ModelWarning, caller_level
 from ...kernels.compile.notice import is_worker
 from ...materials.bodies import Bodies
 from ...materials.cover import Cover
@@ -55,7 +55,7 @@ def _warn(text: str) -> None:
     text: the message.
     """
     if not is_worker():
-        warnings.warn(text, ModelWarning, stacklevel=outside())
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
 
 
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ...core.checks import broadcast_shape, checked
+from ...core.checks import broadcast_shape, check_array
 from ...core.errors import ParameterError
-from ...core.typed import Numbers
+from ...core.array_types import Numbers
 from ..contact_table import contact_states
 from ..parameters import Roller, resolve_model
 from .assumptions import (
@@ -58,7 +58,7 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     """
     _, scene, scale = resolve_model(roller, "validity")
     speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
-    given = {name: checked(name, value, unit=scale) for name, value in speeds.items()}
+    given = {name: check_array(name, value, unit=scale) for name, value in speeds.items()}
     with np.errstate(over="ignore"):
         speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})

@@ -12,7 +12,7 @@ import numpy as np
 from ...contact_law.contact import contact
 from ...contact_law.validity.assumptions import transit_frequency
 from ...contact_law.validity.model_warnings import warn_of_contact, warn_of_unmeasured_starts
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ...motion.ensemble import ensemble
 from ...motion.ensemble_result import Ensemble
 from ..sampling import points

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
 from ...core.errors import ParameterError
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ...cylinder import Cylinder
 from ...materials.law_file import described, law_of
 from ...materials.law_store import content_of
