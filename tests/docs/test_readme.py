@@ -35,7 +35,7 @@ def test_readme_block_runs(capsys):
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
     assert "slides for 0.13 s, then rolls to 27.1 m" in printed
-    assert "V is right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s" in printed
+    assert "the error of V is below 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s" in printed
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -10,7 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from ...contact_law.parameters import Parameters, Rolls
+from ...contact_law.parameters import Parameters, Roller
 from ...core.checks import check_array
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
@@ -24,7 +24,7 @@ from ..config import make_roller
 
 
 @dataclass(frozen=True, eq=False)
-class Rollers(Rolls):
+class Rollers(Roller):
     """Cylinders each of a material of its own, in SI units.
 
     like : their numbers, with one of their materials.
@@ -55,8 +55,8 @@ class Rollers(Rolls):
     def scene(self) -> Parameters:
         return self._scene
 
-    def tilted(self, slope: Any) -> Self:
-        return replace(self, like=self.like.tilted(slope))
+    def on_slope(self, slope: Any) -> Self:
+        return replace(self, like=self.like.on_slope(slope))
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
@@ -66,7 +66,7 @@ class Rollers(Rolls):
         return found
 
 
-def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
+def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
     """What rolls, one or one a motion; raises ParameterError, of a material FileError."""
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
     one = make_roller(path, content, {name: typical for name, (typical, _) in bodies.items()})
