@@ -123,9 +123,10 @@ def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
 
     A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
 
-    Parameters ----------
+    Parameters
+    ----------
     roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; numbers, no
-    arrays.
+        arrays.
 
     Returns
     -------

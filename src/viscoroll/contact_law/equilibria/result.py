@@ -29,16 +29,15 @@ _LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "effic
 class Loss:
     """Power balance, over P R/T_ref (W per m of length for a Cylinder).
 
-    Attributes ----------
+    Attributes
+    ----------
     slip : power lost in slip, (omega - V) Q.
     half_space, cylinder : power lost in rolling, V M_half_space and omega M_cylinder; their sum with ``slip`` is the
-    power of
-        force and torque.
+        power of force and torque.
     coefficient : coefficient of rolling resistance, all losses divided by P |V|: M and the slip loss; at V = 0 the
-    limit V -> 0.
+        limit V -> 0.
     efficiency : output power divided by input power, -force V/(torque omega) of a driving roller, the inverse of a
-    towed
-        one that drives; 0 without output, NaN at rest.
+        towed one that drives; 0 without output, NaN at rest.
     """
 
     slip: Floats
