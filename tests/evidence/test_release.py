@@ -38,8 +38,25 @@ def test_planted_faults_are_told(packages):
         wheel=[name for name in packages.wheel if not name.endswith("viscoroll/scene.py")] + ["viscoroll/x.tmp"],
         sdist=packages.sdist | {"docs/_build/html/index.html": 1, "big.csv": 10**8},
     )
-    assert "CITATION.cff" in problems("metadata", wrong)
+    told = problems("metadata", wrong)
+    assert "CITATION.cff does not name version" in told
+    assert "CITATION.cff has no date-released" in told
     told = problems("contents", wrong)
     for each in ("lacks viscoroll/scene.py", "ships viscoroll/x.tmp", "ships docs/_build/html/index.html", "100.0 MB"):
         assert each in told
     assert "has no licence" in problems("licences", wrong)
+
+
+def test_the_owner_is_told_what_is_left(tmp_path, monkeypatch):
+    """An entry goes when its file has the text; a setting outside of the tree stays."""
+    (tmp_path / "OWNER.toml").write_text((release.ROOT / "OWNER.toml").read_text())
+    for name in ("pyproject.toml", "CITATION.cff", "paper/paper.md", "SECURITY.md", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text((release.ROOT / name).read_text())
+    monkeypatch.setattr(release, "ROOT", tmp_path)
+    before = list(release.left_to_the_owner())
+    assert any("DOI" in entry for entry in before)
+    (tmp_path / "CITATION.cff").write_text("doi: 10.5281/zenodo.1\n")
+    assert [entry for entry in before if entry not in release.left_to_the_owner()] == [
+        entry for entry in before if "DOI" in entry
+    ]
