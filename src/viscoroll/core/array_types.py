@@ -1,4 +1,4 @@
-"""What callers may give, for type checkers."""
+"""Types of arrays, and of the numbers that callers may give, for type checkers."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-#: numbers as results hold them
+#: Array of doubles, as results hold them.
 Floats: TypeAlias = NDArray[np.float64]
+#: Array of 64-bit integers, such as indices.
 Integers: TypeAlias = NDArray[np.int64]
+#: Array of truth values.
 Booleans: TypeAlias = NDArray[np.bool_]
 
 if TYPE_CHECKING:
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
         def __array__(self) -> Reals: ...
 
-    #: one number, or an array as numpy, xarray, pandas or lists hold it; no text
+    #: One number, or an array of numpy, xarray or pandas, or nested lists; no text.
     Numbers: TypeAlias = float | SupportsArray | Sequence[float] | Sequence[SupportsArray] | Sequence[Sequence[float]]
 else:
     Numbers = Any
