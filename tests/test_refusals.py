@@ -17,7 +17,7 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll import fmu
-from viscoroll.app.identification.file import read_measurements
+from viscoroll.app.identification.measurements_toml import read_measurements
 from viscoroll.contact_law.steadiness import Steadiness
 from viscoroll.core import errors
 from viscoroll.core.scale import Scale

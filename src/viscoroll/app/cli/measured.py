@@ -145,7 +145,7 @@ def identify(given: Namespace) -> None:
     example:
       viscoroll identify docs/examples/measured.toml --plot fit.png
     """
-    from ..identification.file import read_measurements
+    from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json
 
     options = {"robust": given.robust, "starts": given.starts, "seed": given.seed}

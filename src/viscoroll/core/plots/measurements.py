@@ -88,7 +88,7 @@ def identification(fit: Any) -> Figure:
     )  # fmt: skip
     for column, (top, bottom) in zip(shown, grid.T, strict=True):
         record, band = fit.records[column.record], getattr(fit.predicted[column.record], column.quantity)
-        *others, variable = record.PLACES
+        *others, variable = record.COORDINATES
         curves = bool(others)  # of several speeds, which one line cannot connect
         order = np.argsort(np.ravel(getattr(record, variable)), kind="stable")
         arrays = getattr(record, variable), fit.sigma[str(column)], *band

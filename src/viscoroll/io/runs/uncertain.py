@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from ...core.scale import si_unit
 from ...core.sections import check_keys, section_error, suggestion
 from ...materials.file import SECTIONS
 from ..config import SCHEMA
-from ..measurements import is_heading, quantity, read_table
+from ..measurements import column_in_unit, named_table
 from .inputs import Distribution, Input, Inputs
 
 #: what the names of inputs of a section begin with
@@ -140,7 +139,7 @@ def _is_number(value: Any) -> bool:
 def read_column(path: Path, column: str, unit: str) -> Floats:
     """One column of numbers; of a CSV in this unit, if the file gives one."""
     if path.suffix == ".csv":
-        values = quantity(read_table(path, partial(is_heading, (column,))), column, unit)
+        values = column_in_unit(named_table(path, (column,)), column, unit)
     elif path.suffix == ".parquet":
         import pandas as pd
 

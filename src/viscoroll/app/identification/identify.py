@@ -1,8 +1,9 @@
-"""From measurements to parameters: :func:`identify`, by searches from several starts."""
+"""Parameters of a cylinder from measurements: :func:`identify`, by searches from several starts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from operator import attrgetter
 
 import numpy as np
 
@@ -12,18 +13,26 @@ from ...core.errors import ParameterError, check_names
 from ...cylinder import Cylinder
 from ...materials.file import SECTIONS
 from .fit import Identification
-from .problem import Found, Problem
+from .problem import Minimum, Problem
 from .records import OF_RECORDS, Record
 from .unknowns import Shift, cylinder_of, unknowns_of
 
-#: minima so far above the best are not told of: they are no alternatives
+#: chi2 above the best below which another minimum is reported: beyond, its likelihood is below 1e-3 of the best
 _ALTERNATIVE = 15.0
-#: tolerance and steps of a search before it is known to be worth more, and the chi2 above the best of one that is not
-_ROUGH, _STEPS, _HOPELESS = 1e-4, 60, 60.0
-#: of a coordinate, how near its start a minimum is trusted to be the only one, and how far from it others are sought
-_NEAR, _LEAP = 0.6, 3.0
-#: what chi2 may rise by between two places of one minimum, and how near they are one place
-_RIDGE, _SAME = 0.5, 1e-2
+#: relative tolerance of a first search, which finds the valley
+_ROUGH = 1e-4
+#: evaluations of a first search
+_STEPS = 60
+#: chi2 above the best of first searches up to which a search goes on to the minimum
+_PROMISING = 60.0
+#: distance of a coordinate from its start up to which a minimum is taken to be the only one: a factor of 1.8
+_NEAR = 0.6
+#: distance of further starts from a minimum, in the coordinate that changes most: a factor of 20
+_LEAP = 3.0
+#: rise of chi2 between two points of one minimum that is still rounding of the searches
+_RIDGE = 0.5
+#: distance of coordinates up to which two points are one
+_SAME = 1e-2
 
 
 def identify(
@@ -72,62 +81,84 @@ def identify(
         if not isinstance(value, kind):
             raise ParameterError(name, f"{value!r:.60}", allowed)
     check_names("shift", shifts, SECTIONS, "a body")
-    count, seed, records = check_integer("starts", starts, 1), check_integer("seed", seed, 0), _called(data)
+    count, seed, records = check_integer("starts", starts, 1), check_integer("seed", seed, 0), _records_by_name(data)
     for record in records.values():
         cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
     problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
-    most = problem.points - any(one.estimated for one in problem.columns)
+    most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
         allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
         raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
     planned = not any(record.measured for record in records.values())
-    return Identification(problem, _minima(problem, 1 if planned else count, seed, check_bool("progress", progress)))
+    return Identification(
+        problem, _find_minima(problem, 1 if planned else count, seed, check_bool("progress", progress))
+    )
 
 
-def _called(data: Iterable[Record]) -> dict[str, Record]:
-    """The records by name; those without one are called by their kind."""
+def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
+    """Return the records by name; those without a name get that of their kind.
+
+    data : records.
+    Raises ParameterError for what is no record, two records of one name, and a mixture of data and plans.
+    """
     found: dict[str, Record] = {}
     for record in data:
         if not isinstance(record, Record):
             raise ParameterError("data", f"{record!r:.60}", "a list of Resistance, Traction and Coastdown")
-        alike = sum(type(one) is type(record) and not one.name for one in found.values())
-        called = record.name or (f"{record.KIND} {alike + 1}" if alike else record.KIND)
-        if called in found:
-            raise ParameterError("name", repr(called), "another for each record")
+        alike = sum(type(other) is type(record) and not other.name for other in found.values())
+        name = record.name or (f"{record.LABEL} {alike + 1}" if alike else record.LABEL)
+        if name in found:
+            raise ParameterError("name", repr(name), "another for each record")
         if not record.sigma:
-            raise ParameterError(f"{called}: sigma", None, "given where there are no values")
-        found[called] = record
+            raise ParameterError(f"{name}: sigma", None, "given where there are no values")
+        found[name] = record
     if len({bool(record.measured) for record in found.values()}) != 1:
         allowed = "some with values, or some without: fit the former first, then plan with its cylinder"
         raise ParameterError("data", f"{len(found)} records", allowed)
     return found
 
 
-def _minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Found]:
-    """All that the starts lead to and that are parted by a ridge, the best first."""
+def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Minimum]:
+    """Return all minima near the best one that a ridge of chi2 separates, the best first.
+
+    problem : the least squares.
+    count : number of searches, the first from the start of the problem.
+    seed : of the other starts.
+    progress : whether a progress bar is drawn.
+    """
     from tqdm import tqdm
 
-    first = problem.settled(problem.least(problem.start))
-    starts = [*_spread(problem, count, seed), *_beyond(problem, first.u)]
+    first = problem.estimate_sigma(problem.minimize(problem.start))
+    starts = [*_latin_hypercube(problem, count, seed), *_starts_across_valley(problem, first.u)]
     others = tqdm(starts, "identify", delay=1.0, leave=False, disable=not progress)
-    tries = [first, *(problem.least(u, None, _ROUGH, _STEPS) for u in others)]
-    good = min(found.chi2 for found in tries) + _HOPELESS
-    near = [problem.least(one.u) for one in tries if one.chi2 < good]
-    kept = [problem.settled(min(near, key=lambda found: found.chi2))]
-    for one in sorted((Found(one.u, problem.cost(one.u)) for one in near), key=lambda one: one.chi2):
-        if one.chi2 - kept[0].chi2 < _ALTERNATIVE and not any(_joined(problem, one, other) for other in kept):
-            kept.append(one)
-    return kept
+    rough = [first, *(problem.minimize(u, None, _ROUGH, _STEPS) for u in others)]
+    limit = min(found.chi2 for found in rough) + _PROMISING
+    exact = [problem.minimize(found.u) for found in rough if found.chi2 < limit]
+    minima = [problem.estimate_sigma(min(exact, key=_chi2))]
+    # of sigma as estimated at the best one
+    for found in sorted((Minimum(found.u, problem.cost(found.u)) for found in exact), key=_chi2):
+        if found.chi2 - minima[0].chi2 < _ALTERNATIVE:
+            if not any(_in_one_valley(problem, found, other) for other in minima):
+                minima.append(found)
+    return minima
 
 
-def _spread(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
-    """A Latin hypercube over the ranges, but one place; what data start, as V0, stays there."""
+_chi2 = attrgetter("chi2")
+
+
+def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
+    """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
+
+    problem : the least squares.
+    count : number of starts, and one more, from which the first search began.
+    seed : of the hypercube.
+    """
     from scipy.stats import qmc
 
-    free = [i for i in problem.live if problem.names[i].split(":")[0] not in OF_RECORDS]
+    free = [i for i in problem.active if problem.names[i].split(":")[0] not in OF_RECORDS]
     if count > 1 and free:
         for point in qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed)).random(count - 1):
             u = problem.start.copy()
@@ -135,22 +166,33 @@ def _spread(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
             yield u
 
 
-def _beyond(problem: Problem, u: Floats) -> list[Floats]:
-    """Places on either side of one far from the start, along what it knows least: ridges of a valley lie across it."""
+def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
+    """Return two starts on either side of a minimum far from the start, along the direction that is determined
+    least.
+
+    problem : the least squares.
+    u : coordinates of the minimum.
+    Ridges of a valley lie across that direction.
+    """
     if np.abs(u - problem.start).max() < _NEAR:
         return []
-    along = np.linalg.svd(problem.weighed(u)[1][:, problem.live])[2][-1]
+    along = np.linalg.svd(problem.weighted(u)[1][:, problem.active])[2][-1]
     far = np.zeros(u.size)
-    far[problem.live] = _LEAP * along / np.abs(along).max()
-    return [np.clip(u + way, problem.low, problem.high) for way in (far, -far)]
+    far[problem.active] = _LEAP * along / np.abs(along).max()
+    return [np.clip(u + step, problem.low, problem.high) for step in (far, -far)]
 
 
-def _joined(problem: Problem, one: Found, other: Found) -> bool:
-    """Whether a way leads from one place to the other without a ridge: along what differs most, all else following."""
-    apart = other.u - one.u
-    which = int(np.argmax(np.abs(apart)))
-    if abs(apart[which]) < _SAME:
+def _in_one_valley(problem: Problem, first: Minimum, second: Minimum) -> bool:
+    """Return whether no ridge lies between two minima.
+
+    problem : the least squares.
+    first, second : the minima.
+    chi2 is minimised at three points between, with the coordinate that differs most fixed and all others free.
+    """
+    difference = second.u - first.u
+    largest = int(np.argmax(np.abs(difference)))
+    if abs(difference[largest]) < _SAME:
         return True
-    powers, top = np.eye(apart.size)[which], max(one.chi2, other.chi2) + _RIDGE
-    ways = (one.u + share * apart for share in (0.5, 0.25, 0.75))
-    return all(problem.least(u, powers, _ROUGH, _STEPS).chi2 < top for u in ways)
+    powers, top = np.eye(difference.size)[largest], max(first.chi2, second.chi2) + _RIDGE
+    between = (first.u + part * difference for part in (0.5, 0.25, 0.75))
+    return all(problem.minimize(u, powers, _ROUGH, _STEPS).chi2 < top for u in between)

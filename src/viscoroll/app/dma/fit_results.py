@@ -1,8 +1,8 @@
-"""What the fits of measured moduli hold: :class:`Fit`, :class:`RelaxationFit`, and what they have in common."""
+"""Results of the fits of measured moduli: :class:`Fit`, :class:`RelaxationFit`, and their base :class:`SeriesFit`."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -20,10 +20,10 @@ from ...materials.importers import poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
-from .curve import Curve, KramersKronig, Relaxation
-from .report import card, of_dynamic, of_relaxation
-from .shift import Shifts
-from .spectrum import FLOOR, Data, Spectrum
+from .curve import UNITS, Curve, KramersKronig, Relaxation
+from .fit_report import card, of_dynamic, of_relaxation
+from .master_curve import Shifts
+from .spectrum import FLOOR, Data, spectrum_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,20 +43,23 @@ class Misfit(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SeriesFit(Result):
-    """A Prony series fitted to measured moduli: what :class:`Fit` and :class:`RelaxationFit` have in common.
+    """A Prony series fitted to measured moduli: the base of :class:`Fit` and :class:`RelaxationFit`.
 
     E : long-time modulus, in the unit of the data; of tension or of shear, as ``mode`` says.
-    T_ref : the longest time, s; those of ``prony`` are counted in it.
-    prony : the series, of either modulus, since Poisson's ratio is taken constant in time.
-    mode : "tension" (E', E'', E(t)) or "shear" (G', G'', G(t)): which modulus the data, E and :meth:`modulus` are.
-    target, reached : the misfit that was asked for, and whether it is reached.
+    T_ref : the longest time, s; times of ``prony`` are in units of it.
+    prony : the series, the same for both moduli, since Poisson's ratio is taken constant in time.
+    mode : "tension" (E', E'', E(t)) or "shear" (G', G'', G(t)): the modulus of the data, of E and of
+    :meth:`modulus`.
+    target : the misfit that was requested.
+    reached : whether it is reached.
     outside : for each mode of ``prony`` whether its time lies outside the data.
-    band : first and last angular frequency of the data, rad/s; of relaxation 1 over the times.
+    band : first and last angular frequency of the data, rad/s; of relaxation the reciprocal times.
     points : number of points that were measured; above 1000 the means of 500 logarithmic bins were fitted, and they
         are the data and the misfit here.
     grid : shortest and longest time that the fit was allowed, s.
-    temperature : of the fit, degrees Celsius, where it is known.
+    temperature : of the fit, degrees Celsius, None where it is not known.
     source : of the data, in words.
+    misfit : root mean square of the relative errors, of each modulus.
     """
 
     E: float
@@ -72,15 +75,17 @@ class SeriesFit(Result):
     temperature: float | None = None
     source: str = ""
 
+    misfit: Any = None
+
     @property
     def data(self) -> Data:
-        """What was fitted."""
+        """The data that were fitted."""
         raise NotImplementedError
 
     @property
     def largest_misfit(self) -> float:
-        """The misfit, of storage and loss the larger one."""
-        raise NotImplementedError
+        """The misfit; of storage and loss the larger one."""
+        return float(np.max(self.misfit))
 
     @property
     def alpha(self) -> float:
@@ -89,24 +94,26 @@ class SeriesFit(Result):
 
     @property
     def plateau(self) -> bool:
-        """Whether E is what the data ask for, not the least that is allowed (1 % of the lowest modulus)."""
+        """Whether the data determine E, which is then above the least that is allowed (1 % of the lowest modulus)."""
         return self.E > 1.001 * FLOOR * float(self.data.values[0].min())
 
     @cached_property
     def wider(self) -> tuple[Any, ...]:
-        """What grids of times one and two decades wider on either side would change, no time left out.
+        """Fits on grids of times one and two decades wider on either side, no time left out.
 
-        For each: ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose contacts are passed
-        in times that the data hold, ``M`` beside ``M_fit`` at the same load (see :class:`.wider.Wider`).
-        Computed when first asked for.
+        For each ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose transit times lie within
+        the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.WiderGrid`).  Computed at the
+        first access.
         """
-        from .wider import wider
+        from .spectrum_sensitivity import with_wider_grid
 
-        return tuple(wider(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2))
+        return tuple(
+            with_wider_grid(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2)
+        )
 
     @property
     def measured(self) -> Measured:
-        """The frequencies of the data, the larger misfit and the source: what a material keeps of them."""
+        """The frequencies of the data, the larger misfit and the source, which a material keeps."""
         source = self.source or f"{self.points} points"
         return Measured(*self.band, self.largest_misfit, source)
 
@@ -130,23 +137,24 @@ class SeriesFit(Result):
         E, measured = self.E, self.measured
         if self.mode == "shear":
             factor = 2.0 * (1.0 + poisson(nu))
-            E, source = E * factor, f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G"
-            measured = Measured(measured.low, measured.high, measured.misfit, source)
+            E *= factor
+            measured = replace(measured, source=f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G")
         return Material(
             E, nu, self.prony, self.T_ref, name=name, density=density, thickness=thickness, measured=measured,
             temperature=self.temperature,
         )  # fmt: skip
 
     def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
-        """Whether a contact with this material sees frequencies that the data hold, and the fit is near them.
+        """Return whether the transit frequency of a contact with this material lies within the data, and the fit is
+        near them.
 
-        A contact is passed in lam l0/V, which must lie within the times of the data; shifted to another temperature
-        (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer that is passed in
-        less: modes faster than the passage act there as far as they go.
+        The transit frequency |V|/(lam l0) must lie within the frequencies of the data; shifted to another
+        temperature (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer
+        with a shorter transit time: modes faster than the transit act there as far as they go.
 
-        Parameters
-        ----------
-        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any temperature.
+        Parameters ----------
+        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any
+        temperature.
         V : speed of the axis, m/s, any sign.
 
         Returns
@@ -168,32 +176,45 @@ class SeriesFit(Result):
         seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return measurement(seen, {"the material": self.measured})
 
-    def _over_modes(self, place: str, unit: str, columns: dict[str, Floats]) -> xr.Dataset:
-        """Columns over the place of the data, the series over ``mode``, and the constants as attributes."""
+    def _moduli(self, x: ArrayLike) -> Floats:
+        """Return the moduli of the fit, in the unit of the data.
+
+        x : angular frequencies, rad/s, or times, s, of any shape.
+        Returns a row for storage and one for loss, or one for relaxation, each of the shape of x.
+        """
+        given = np.asarray(x, np.float64)
+        data = self.data._replace(**{self.data._fields[0]: given.ravel()})
+        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *given.shape)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Data and fit over omega or t, the series over ``mode``, and the constants as attributes."""
         import xarray as xr
 
-        data: dict[str, Any] = {
-            name: (place, values, {"units": "unit of the data"}) for name, values in columns.items()
-        }
+        x, *names = self.data._fields
+        of_data = zip((*names, *(f"{name}_fit" for name in names)), (*self.data[1:], *self._moduli(self.data[0])))
+        data: dict[str, Any] = {name: (x, values, {"units": "unit of the data"}) for name, values in of_data}
         data |= {"E": ("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
         data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
         about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series", "modulus": self.mode}
-        return xr.Dataset(data, {place: (place, self.data[0], {"units": unit})}, about)
+        misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]
+        about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
+        return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
 
-    _summary = card
+    _card = card
 
     def _rows(self) -> list[SummaryRow]:
-        """The lines of the report on misfit and data."""
+        """Return the lines of the report on misfit and data."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Fit(SeriesFit):
-    """A Prony series fitted to a master curve, and what the data say and do not say about it.
+    """A Prony series fitted to a master curve, with its misfit and the consistency of the data.
 
     E, T_ref, prony, mode, ... : as of :class:`SeriesFit`; of shear E, storage and loss are G, G' and G''.
     misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
-    kramers_kronig : measured over allowed loss modulus: ``.omega``, ``.ratio``, ``.median``.
+    kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
+        ``.ratio``, ``.median``.
     shifts : shift factors of curves at several temperatures, else None.
     omega, storage, loss : the data, sorted and shifted; rad/s and the unit given.
     """
@@ -207,37 +228,29 @@ class Fit(SeriesFit):
 
     @property
     def data(self) -> Curve:
+        """The data that were fitted."""
         return Curve(self.omega, self.storage, self.loss)
 
-    @property
-    def largest_misfit(self) -> float:
-        return max(self.misfit)
-
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
-        """Storage and loss modulus of the fit at angular frequencies in rad/s, in the unit of the data.
+        """Return storage and loss modulus of the fit in the unit of the data, of the shape of ``omega``.
 
-        E' and E'', or G' and G'' where ``mode`` is "shear".
+        omega : angular frequencies, rad/s.
+        They are E' and E'', or G' and G'' where ``mode`` is "shear".
         """
-        own, given = Spectrum(self.E, self.prony.E * self.E, self.prony.tau * self.T_ref), np.asarray(omega, np.float64)
-        storage, loss = own.modulus(Curve(given.ravel(), *2 * (np.empty(0),)))
-        return storage.reshape(given.shape), loss.reshape(given.shape)
-
-    def to_xarray(self) -> xr.Dataset:
-        """Data and fit over omega, the series over ``mode``, and the constants as attributes."""
-        of_fit = zip(("storage_fit", "loss_fit"), self.modulus(self.omega), strict=True)
-        found = self._over_modes("omega", "rad s-1", {"storage": self.storage, "loss": self.loss, **dict(of_fit)})
-        return found.assign_attrs({f"misfit_{name}": value for name, value in self.misfit._asdict().items()})
+        storage, loss = self._moduli(omega)
+        return storage, loss
 
     _rows, _figure = of_dynamic, moduli_fit
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RelaxationFit(SeriesFit):
-    """A Prony series fitted to a relaxation modulus: what :func:`fit_relaxation` returns.
+    """A Prony series fitted to a relaxation modulus: the result of :func:`fit_relaxation`.
 
     E, T_ref, prony, mode, ... : as of :class:`SeriesFit`.
     misfit : root mean square of the relative errors.
-    t, relaxation : the data, sorted; s and the unit given.
+    t : times of the data, ascending, s.
+    relaxation : relaxation modulus of the data, in the unit given.
     """
 
     misfit: float
@@ -246,22 +259,14 @@ class RelaxationFit(SeriesFit):
 
     @property
     def data(self) -> Relaxation:
+        """The data that were fitted."""
         return Relaxation(self.t, self.relaxation)
 
-    @property
-    def largest_misfit(self) -> float:
-        return self.misfit
-
     def modulus(self, t: ArrayLike) -> Floats:
-        """Relaxation modulus of the fit at times in s, in the unit of the data: E(t), or G(t) of
-        shear.
-        """
-        own, given = Spectrum(self.E, self.prony.E * self.E, self.prony.tau * self.T_ref), np.asarray(t, np.float64)
-        return own.modulus(Relaxation(given.ravel(), np.empty(0)))[0].reshape(given.shape)
+        """Return the relaxation modulus of the fit, E(t) or of shear G(t), in the unit of the data.
 
-    def to_xarray(self) -> xr.Dataset:
-        """Data and fit over t, the series over ``mode``, and the constants as attributes."""
-        columns = {"relaxation": self.relaxation, "relaxation_fit": self.modulus(self.t)}
-        return self._over_modes("t", "s", columns).assign_attrs(misfit=self.misfit)
+        t : times, s, of any shape, which the result has too.
+        """
+        return self._moduli(t)[0]
 
     _rows, _figure = of_relaxation, relaxation_fit

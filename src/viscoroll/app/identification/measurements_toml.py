@@ -1,10 +1,11 @@
-"""A TOML file of measurements: a cylinder, [unknown], [prior] and [[data]] -> what :func:`identify` takes."""
+"""A TOML file of measurements, a cylinder, [unknown], [prior] and [[data]], as arguments of
+:func:`.identify.identify`.
+"""
 
 from __future__ import annotations
 
 import dataclasses
 import warnings
-from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,23 +16,27 @@ from ...core.errors import FileError, ModelWarning, ParameterError, caller_level
 from ...core.sections import as_struct, check_keys, read_toml, section_error
 from ...cylinder import Cylinder
 from ...io.config import read_roller
-from ...io.measurements import find, is_heading, missing, quantity, read_table
+from ...io.measurements import column_in_unit, find_column, missing_column, named_table
 from ...materials.file import shifts_of
 from .records import Coastdown, Record, Resistance, Traction
 
+#: section of the file -> its type
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}
+#: kind of [[data]] -> record
 _KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}
-#: keys of [[data]] beside those that its kind of record has
+#: keys of [[data]] that all kinds of record have
 _SECTION: list[Any] = [
     ("kind", str), ("file", str), ("decimal", str, ""), ("encoding", str, ""),
     *((name, dict[str, str], msgspec.field(default_factory=dict)) for name in ("columns", "units")),
 ]  # fmt: skip
-#: in place of a start speed, what Python gives None for
+#: word for an initial speed that is unknown, None in Python
 _UNKNOWN = "unknown"
 
 
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
-    """Arguments of :func:`identify` that a file gives: cylinder, unknown, data, prior, shift.
+    """Read the arguments of :func:`.identify.identify` from a file: cylinder, unknown, data, prior, shift.
+
+    path : of the TOML file.
 
     Raises
     ------
@@ -53,11 +58,17 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def _record(path: Path, given: Any) -> Record:
+    """Return the record of one [[data]].
+
+    path : of the TOML file, from whose folder files of data are found.
+    given : the section.
+    Raises FileError for unknown keys, wrong types, and values that make no record.
+    """
     named = given.get("kind") if isinstance(given, dict) else None
     kind = next((kind for name, kind in _KINDS.items() if name == named), None)
     if kind is None:
         raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
-    columns = (*kind.PLACES, *kind.KINDS)
+    columns = (*kind.COORDINATES, *kind.QUANTITIES)
     own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
     section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
@@ -71,42 +82,43 @@ def _record(path: Path, given: Any) -> Record:
 
 
 def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
-    """Places and quantities of a file of data, in SI units, by the names given to its columns, or their own.
+    """Read coordinates and quantities from a file of data, in SI units.
+
+    path : of the file.
+    kind : of the record, whose names the columns have where the section names none.
+    section : the [[data]], with ``columns``, ``units``, ``decimal`` and ``encoding``.
+    Returns name -> values.
 
     Raises
     ------
     FileError
         A file that cannot be read; a column that is missing, or of a unit of another dimension; columns that are not
-        understood where nothing measured is.
+        understood where none is a quantity.
 
     Warns
     -----
     ModelWarning
-        Columns that are left aside.
+        Columns that are left out.
     """
-    among = (*kind.PLACES, *kind.KINDS)
-    called = {name: section.columns.get(name, name) for name in among}
-    table = read_table(
-        path, partial(is_heading, called.values()), decimal=section.decimal or None, encoding=section.encoding or None
-    )
-    where = {}
-    for name in among:
-        if (column := find(table, called[name])) is not None:
-            where[name] = column
-        elif name in kind.PLACES or name in section.columns:
-            raise missing(table, called[name])
-    others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in where.values()]
-    if others and not set(where) & set(kind.KINDS):
-        problem = f"has no column {' or '.join(kind.KINDS)}, but {', '.join(others)}: name it in columns = {{...}}"
+    headings = {name: section.columns.get(name, name) for name in (*kind.COORDINATES, *kind.QUANTITIES)}
+    table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
+    columns = {name: find_column(table, heading) for name, heading in headings.items()}
+    present = [name for name, column in columns.items() if column is not None]
+    for name in (*kind.COORDINATES, *section.columns):
+        if name not in present:
+            raise missing_column(table, headings[name])
+    others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
+    if others and not set(present) & set(kind.QUANTITIES):
+        problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
         raise FileError(path, f"{problem}; a plan has no other columns")
     if others:
         text = f"{path.name}: columns that are left aside: {', '.join(others)}"
         warnings.warn(text, ModelWarning, stacklevel=caller_level())
     found = {}
-    for name in where:
+    for name in present:
         unit = kind.unit(name)
         try:
-            found[name] = quantity(table, called[name], unit, section.units.get(name, ""))
+            found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
             per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
             raise ParameterError(name, f"in {error.value}", f"in a unit of {unit}{per}") from error

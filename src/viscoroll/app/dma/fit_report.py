@@ -1,4 +1,4 @@
-"""A fit in words."""
+"""The lines that ``print`` shows of a fit."""
 
 from __future__ import annotations
 
@@ -8,16 +8,18 @@ from typing import Any
 import numpy as np
 
 from ...core.results import SummaryRow
-from .shift import loose_pairs
+from .master_curve import undetermined_shifts
 
-#: medians of the Kramers-Kronig ratio outside of which storage and loss are said not to go together
-_SOUND = (0.8, 1.25)
+#: range of the median of the Kramers-Kronig ratio of data in which storage and loss go together
+_CONSISTENT = (0.8, 1.25)
 #: Poisson's ratio of the factor that the report gives of shear: the default of material()
 _NU = 0.49
 
 
 def card(fit: Any) -> tuple[str, list[SummaryRow]]:
-    """What ``print(fit)`` shows, of a :class:`viscoroll.app.dma.SeriesFit`."""
+    """Return the title and the lines that ``print(fit)`` shows of a
+    :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
     span = f"t = {1.0 / high:.3g} to {1.0 / low:.3g} s" if of_time else f"omega = {low:.3g} to {high:.3g} rad/s"
@@ -25,6 +27,7 @@ def card(fit: Any) -> tuple[str, list[SummaryRow]]:
 
 
 def _rows(fit: Any) -> Iterator[SummaryRow]:
+    """Yield the lines of a ``fit``, a :class:`viscoroll.app.dma.fit_results.SeriesFit`."""
     prony, symbol = fit.prony, symbol_of(fit)
     floor = "" if fit.plateau else "; the least that is allowed: the data do not determine it"
     yield SummaryRow(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
@@ -52,17 +55,17 @@ def _rows(fit: Any) -> Iterator[SummaryRow]:
 
 
 def symbol_of(fit: Any) -> str:
-    """E, or G where the data are of shear."""
+    """Return E, or G where the data are of shear."""
     return "G" if fit.mode == "shear" else "E"
 
 
 def of_dynamic(fit: Any) -> list[SummaryRow]:
-    """The lines on misfit, Kramers-Kronig and shifts, of a :class:`viscoroll.Fit`."""
+    """Return the lines on misfit, Kramers-Kronig and shifts of a ``fit``, a :class:`viscoroll.Fit`."""
     symbol = symbol_of(fit)
     misfit = f"{fit.misfit.storage:.2%} in {symbol}', {fit.misfit.loss:.2%} in {symbol}'' (rms, relative)"
     rows = [
-        SummaryRow("misfit", misfit + _asked(fit)),
-        SummaryRow(f"{symbol}''", _together(fit.kramers_kronig.median, symbol)),
+        SummaryRow("misfit", misfit + _target(fit)),
+        SummaryRow(f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)),
     ]
     if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
         return rows
@@ -75,35 +78,41 @@ def of_dynamic(fit: Any) -> list[SummaryRow]:
         most = np.nanmax(shifts.mismatch)
         rows.append(SummaryRow("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"))
     open_ones = (
-        f"the overlap does not fix the shift {pair}: the curves are flat there" for pair in loose_pairs(shifts)
+        f"the overlap does not fix the shift {pair}: the curves are flat there" for pair in undetermined_shifts(shifts)
     )
     return rows + [SummaryRow("", text) for text in open_ones]
 
 
 def of_relaxation(fit: Any) -> list[SummaryRow]:
-    """The lines on the misfit, of a :class:`viscoroll.RelaxationFit`."""
+    """Return the lines on the misfit of a ``fit``, a :class:`viscoroll.RelaxationFit`."""
     symbol = symbol_of(fit)
-    misfit = f"{fit.misfit:.2%} in {symbol}(t) (rms, relative){_asked(fit)}"
+    misfit = f"{fit.misfit:.2%} in {symbol}(t) (rms, relative){_target(fit)}"
     return [
         SummaryRow("misfit", misfit),
         SummaryRow("", f"{symbol}'' follows from the slope of {symbol}(t), with ten times this error or more"),
     ]
 
 
-def _asked(fit: Any) -> str:
+def _target(fit: Any) -> str:
+    """Return the words on the misfit that was requested."""
     return f"; {fit.target:.2%} was asked for{'' if fit.reached else ' and not reached'}"
 
 
-def _together(median: float, symbol: str) -> str:
-    """One sentence on storage and loss."""
+def _kramers_kronig(median: float, symbol: str) -> str:
+    """Return a sentence on whether storage and loss modulus go together.
+
+    median : of the Kramers-Kronig ratio.
+    symbol : E or G.
+    """
     if np.isnan(median):
         return f"cannot be held against {symbol}': too few different frequencies (Kramers-Kronig)"
     text = f"is {median:.2f} times what the slope of {symbol}' allows (Kramers-Kronig, median)"
-    sound = _SOUND[0] <= median <= _SOUND[1]
+    sound = _CONSISTENT[0] <= median <= _CONSISTENT[1]
     return text + ("" if sound else ": storage and loss do not go together, or the spectrum is of few narrow modes")
 
 
 def _outside(fit: Any) -> str:
+    """Return a sentence on the modes of a ``fit`` whose times lie outside the data."""
     range_of = "the data's range of times" if fit.data._fields[0] == "t" else "the data's range of 1/omega"
     if not (count := int(fit.outside.sum())):
         return f"no mode lies outside {range_of}"
