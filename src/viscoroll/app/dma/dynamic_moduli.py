@@ -100,7 +100,7 @@ class DynamicModuli(Result):
         axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, Pa")
         return figure
 
-    def _card(self) -> tuple[str, list[SummaryRow]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """What was understood, in three lines: the points, the columns they are from, the notes."""
         words = [f"{self.omega.size} points", f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s"]
         words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")

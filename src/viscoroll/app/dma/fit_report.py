@@ -16,7 +16,7 @@ _CONSISTENT = (0.8, 1.25)
 _NU = 0.49
 
 
-def card(fit: Any) -> tuple[str, list[SummaryRow]]:
+def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
     """Return the title and the lines that ``print(fit)`` shows of a
     :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """

@@ -21,7 +21,7 @@ from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 from .curve import UNITS, Curve, KramersKronig, Relaxation
-from .fit_report import card, of_dynamic, of_relaxation
+from .fit_report import summarize_fit, of_dynamic, of_relaxation
 from .master_curve import Shifts
 from .spectrum import FLOOR, Data, spectrum_of
 
@@ -200,7 +200,7 @@ class SeriesFit(Result):
         about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
         return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
 
-    _card = card
+    _summary = summarize_fit
 
     def _rows(self) -> list[SummaryRow]:
         """Return the lines of the report on misfit and data."""

@@ -226,7 +226,7 @@ class Identification(Result):
         given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
         return np.array([one.to_u(check_number(one.name, value, **one.bounds(one.name))) for one, value in given])
 
-    def _card(self) -> tuple[str, list[SummaryRow]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
         rows = [SummaryRow(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
         return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} of {self.dof}")]
