@@ -22,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 
 HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
 PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in sorted((ROOT / folder).rglob("*.md")))]
-LOADING = ROOT / "docs/loading/README.md"
+FMUS = ROOT / "docs/loading/fmus.md"
 
 
 def blocks(path: Path, language: str) -> list[str]:
@@ -46,7 +46,7 @@ def test_variables_of_fmus_are_listed(model):
         for v in MODELS[model].variables
     ]
     head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
-    assert head + "\n".join(rows) + "\n\n" in LOADING.read_text()
+    assert head + "\n".join(rows) + "\n\n" in FMUS.read_text()
 
 
 def test_readme_grid(tmp_path, monkeypatch, capsys):
