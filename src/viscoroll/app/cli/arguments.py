@@ -50,7 +50,7 @@ def option(*names: str, **about: Any) -> Option:
 
 
 def numbers(text: str) -> Any:
-    """A number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these with commas between; one stays a scalar."""
+    """A number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, separated by commas; one stays a scalar."""
     import numpy as np
 
     parts = [_part(part) for part in text.split(",")]
@@ -67,7 +67,7 @@ def _part(text: str) -> Any:
     except vr.ParameterError as error:
         raise ArgumentTypeError(f"{text!r}: {error}") from None
     except (ValueError, TypeError):
-        allowed = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these with commas between"
+        allowed = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, separated by commas"
         raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
 
 
@@ -86,7 +86,7 @@ def body_of(text: str) -> Any:
     if text.lower().endswith(".toml"):
         return read_roller(text)
     if os.path.exists(text):
-        raise vr.FileError(text, "is no scene file: its name must end in .toml")
+        raise vr.FileError(text, "is not a scene file: its name must end in .toml")
     return preset(text)
 
 
@@ -110,11 +110,11 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
 
 
 FILE = option("file", metavar="FILE")
-SCENE = option("scene", metavar="SCENE", help="FILE.toml with [scene], [cylinder] (SI) or preset; or a preset")
+SCENE = option("scene", metavar="SCENE", help="a TOML file with [scene], [cylinder] (SI units) or preset, or the name of a preset")
 #: of a table of numbers
 TABLE = (
-    output(".txt", ".csv", ".nc", required=False, more="; without it: standard output")._replace(exclusive=True),
+    output(".txt", ".csv", ".nc", required=False, more="; without this option the result goes to standard output")._replace(exclusive=True),
     option(
-        "--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"
+        "--format", choices=("text", "csv", "json"), default="text", help="format of standard output (default: text)"
     )._replace(exclusive=True),
 )

@@ -23,9 +23,9 @@ _EXTRAS = {"runs": "zarr", "cluster": "distributed"}
 
 @command("doctor")
 def doctor(given: Namespace) -> int:
-    """Versions, cache, threads, what is compiled and what is missing.
+    """Report versions, cache, threads and missing packages.
 
-    What a report of a problem should hold; exit code 1 if something that is needed is missing.
+    Add this report to a report of a problem.  The exit code is 1 if a required package is missing.
 
     example:
       viscoroll doctor
@@ -49,12 +49,12 @@ def _lines() -> Iterator[tuple[str, str]]:
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
     for extra, name in _EXTRAS.items():
         found = _version(name)
-        yield f"[{extra}]", f"{name} {found}" if found else f"no {name}: pip install 'viscoroll[{extra}]'"
+        yield f"[{extra}]", f"{name} {found}" if found else f"{name} is not installed: pip install 'viscoroll[{extra}]'"
     given = os.environ.get("VISCOROLL_THREADS")
     yield "threads", f"{thread_count(None)} ({'VISCOROLL_THREADS' if given else 'the cores available'})"
     folder = cache_root() / f"kernels-{sources_digest()}"
     kept = [path.stat().st_size for path in folder.glob("*") if path.is_file()]
-    state = f"{len(kept)} compiled functions, {sum(kept) / 1e6:.1f} MB" if kept else "nothing yet: viscoroll warmup"
+    state = f"{len(kept)} compiled functions, {sum(kept) / 1e6:.1f} MB" if kept else "no compiled functions; `viscoroll warmup` compiles them"
     yield "cache", f"{folder}: {state}{_trouble_of(folder)}"
     yield "check", _check()
 

@@ -15,12 +15,12 @@ from .arguments import FIGURES, command, option, output
 
 @command(
     "material show",
-    option("file", metavar="FILE", help="TOML with [material], [base] or both, or the netCDF of a material"),
+    option("file", metavar="FILE", help="TOML file with [material], [base] or both, or netCDF file of a material"),
 )
 def show(given: Namespace) -> None:
-    """Moduli, and the modes in relaxation and in creep.
+    """Print moduli and modes, in relaxation and creep form, of the materials of a file.
 
-    Of each material of the file, at the temperature that it states.
+    The values are those at the temperature stated in the file.
 
     example:
       viscoroll material show docs/examples/rubber.toml
@@ -36,39 +36,39 @@ def show(given: Namespace) -> None:
         if series.E.size:
             columns = {"E_i": series.E, "tau_i [s]": series.tau * T, "J_i": series.J, "T_i [s]": series.T * T}
             mean = f"T_mean = {series.T_mean * T:.6g} s"
-            print(f"M = V T_mean/R at low speeds V in m/s of like bodies, {mean}\n")
+            print(f"Low speeds, identical materials: M/P = V T_mean with V in m/s, {mean}\n")
             print(pd.DataFrame(columns).to_string(index=False, float_format="{:.10g}".format), end="\n\n")
 
 
 @command(
     "material fit",
-    option("data", metavar="DATA", help="a text file of columns"),
-    option("--units", metavar="F,M", help="of frequency and moduli where the file gives none: Hz,MPa"),
+    option("data", metavar="DATA", help="text file with columns"),
+    option("--units", metavar="F,M", help="units of frequency and moduli, if the file states none: for example Hz,MPa"),
     option(
-        "--column", metavar="NAME=HEADING", action="append", help="which column is which, as storage=Module 1; again"
+        "--column", metavar="NAME=HEADING", action="append", help="heading of the column of a quantity, for example storage=Module 1; may be repeated"
     ),
-    option("--decimal", choices=(".", ","), help="default: the one that the numbers have"),
-    option("--encoding", help="of the file; default: by its first bytes"),
-    option("--mode", choices=("tension", "shear"), help="of columns that do not say it (default tension)"),
-    option("--temperature", type=float, metavar="T", help="of all points, degrees Celsius; default: as in the file"),
-    option("--reference", type=float, metavar="T", help="at which the times shall be, of several temperatures"),
-    option("--wlf", metavar="C1,C2,T0", help="the shift between temperatures; default: by their overlap"),
-    option("--on", choices=("both", "storage"), default="both", help="moduli by whose overlap it is (default both)"),
-    option("--modes", type=int, help="largest number of modes; default: as few as the misfit needs"),
-    option("--misfit", type=float, default=0.01, help="rms of the relative errors asked for (default 0.01)"),
-    option("--nu", type=float, default=0.49, help="Poisson's ratio, constant in time (default 0.49)"),
-    option("--name", default="", help="of the material"),
-    option("--force", action="store_true", help="write the file though the fit missed the misfit, and mark it"),
+    option("--decimal", choices=(".", ","), help="decimal mark (default: as found in the numbers)"),
+    option("--encoding", help="text encoding of the file (default: by its first bytes)"),
+    option("--mode", choices=("tension", "shear"), help="type of the moduli, if the headings do not state it (default: tension)"),
+    option("--temperature", type=float, metavar="T", help="temperature of all points, degrees Celsius (default: as in the file)"),
+    option("--reference", type=float, metavar="T", help="reference temperature of the master curve, degrees Celsius"),
+    option("--wlf", metavar="C1,C2,T0", help="WLF parameters of the shift factors (default: shifts by the overlap of the curves)"),
+    option("--on", choices=("both", "storage"), default="both", help="moduli whose overlap determines the shift (default: both)"),
+    option("--modes", type=int, help="largest number of modes (default: as few as --misfit needs)"),
+    option("--misfit", type=float, default=0.01, help="target rms of the relative errors (default: 0.01)"),
+    option("--nu", type=float, default=0.49, help="Poisson's ratio, constant in time (default: 0.49)"),
+    option("--name", default="", help="name of the material"),
+    option("--force", action="store_true", help="write the file even if the fit misses --misfit; the file then states it"),
     output(".toml", ".nc", required=False),
 )
 def fit(given: Namespace) -> int:
-    """A material from the master curve of a DMA.
+    """Fit a material to DMA data.
 
-    Fits a Prony series to columns of frequency, storage and loss modulus, with units in their heading; prints what
-    the data say of it and what they do not, and with -o writes it as a section [material] of a TOML file, or as netCDF.
+    The command fits a Prony series to columns of frequency, storage and loss modulus with units in their headings,
+    and prints the result with its uncertainties.  With -o it writes a section [material] of a TOML file, or netCDF.
 
-    A fit that misses --misfit, or is off by more than 5 %, ends with exit code 1 and writes no file, unless --force:
-    the source of the data in the file then says so.
+    If the misfit exceeds --misfit or 5 %, the exit code is 1 and no file is written.  --force writes it all the same:
+    the file then states the misfit beside the source of the data.
 
     example:
       viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
@@ -91,7 +91,7 @@ def fit(given: Namespace) -> int:
     elif found.largest_misfit > MISFIT_LIMIT:
         missed = f"the misfit of {found.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}"
     if missed:
-        unless = f"; {given.output} is not written: ask for another --misfit, or --force it" if given.output else ""
+        unless = f"; {given.output} is not written: raise --misfit, or write it with --force" if given.output else ""
         print(f"viscoroll: {missed}{'' if given.force else unless}", file=sys.stderr)
         if not given.force:
             return 1
@@ -110,7 +110,7 @@ def _columns(given: list[str] | None) -> dict[str, str]:
     pairs = [text.partition("=") for text in given or ()]
     for name, sign, heading in pairs:
         if not (sign and heading):
-            raise vr.ParameterError("--column", repr(name), "NAME=HEADING, as storage=Module 1")
+            raise vr.ParameterError("--column", repr(name), "NAME=HEADING, for example storage=Module 1")
     return {name.strip(): heading.strip() for name, _, heading in pairs}
 
 
@@ -125,19 +125,19 @@ def _wlf(text: str) -> vr.WLF:
 
 @command(
     "identify",
-    option("file", metavar="DATA.toml", help="what is known, what is not, and where the data are"),
-    option("--starts", type=int, default=8, help="searches from all over the ranges (default 8)"),
-    option("--seed", type=int, default=0, help="of their starts (default 0)"),
-    option("--robust", action="store_true", help="let outliers count less"),
+    option("file", metavar="DATA.toml", help="TOML file with given parameters, unknown parameters and data files"),
+    option("--starts", type=int, default=8, help="number of searches from random starts in the ranges (default: 8)"),
+    option("--seed", type=int, default=0, help="seed of the random starts (default: 0)"),
+    option("--robust", action="store_true", help="reduce the influence of outliers"),
     output(*FIGURES, name="--plot", required=False, more=": data, fit and residuals"),
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),
 )  # fmt: skip
 def identify(given: Namespace) -> None:
-    """Friction, modulus, times, strengths and bearing from measurements.
+    """Identify friction, modulus, relaxation times, strengths and bearing from measurements.
 
-    Fits what is unknown of a cylinder to measured rolling resistance, traction and motions, and says what the data do
-    not tell.  The file has [cylinder], perhaps [material] and [base], and
-      [unknown]  NAME = [LOW, HIGH], with the start of the cylinder between
+    The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and
+    reports which parameters the data do not determine.  The file has [cylinder], perhaps [material], [base], and
+      [unknown]  NAME = [LOW, HIGH]: bounds; [cylinder] has the initial guess
       [prior]    NAME = [VALUE, SD]
       [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
                  Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m

@@ -19,16 +19,16 @@ _BEYOND = (1.0 / 30.0, 30.0)
     "plot", option("what", metavar="WHAT", help="FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"), output(*FIGURES)
 )
 def plot(given: Namespace) -> None:
-    """A result file, a scene, a material, or the results of a run.
+    """Draw a result file, a scene, a material, or the results of a run.
 
-    The result in a netCDF file of this program, the contact law over speed of a scene file, moduli and relaxation of
-    the [material] of a file that has none, or the summaries of a store.
+    For a netCDF file the command draws its result, for a scene file the contact law over speed, for a file with only
+    a [material] moduli and relaxation, and for a results store the summaries.
     """
     from ...core.plots.style import save
 
     kinds = {".zarr": lambda path: vr.runs.open_run(path).plot(), ".nc": _of_file, ".toml": _of_toml}
     if (draw := kinds.get(Path(given.what).suffix.lower())) is None:
-        sentence = f"{given.what!r} is no file to plot: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
+        sentence = f"{given.what!r} is not a file that can be plotted: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
         raise vr.ParameterError("plot", given.what, "a file to plot", sentence)
     save(draw(given.what), given.output)
 
@@ -43,8 +43,8 @@ def _of_file(path: str) -> Any:
             return vr.Material.from_netcdf(path).plot() if "schema" in data.attrs else draw(data)
     except OSError as error:
         if not Path(path).is_file():
-            raise vr.FileError(path, "there is no such file") from error
-        problem = "is damaged, or no netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+            raise vr.FileError(path, "the file does not exist") from error
+        problem = "is damaged or is not a netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
         raise vr.FileError(path, problem) from error
 
 

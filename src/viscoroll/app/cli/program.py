@@ -24,8 +24,8 @@ from .arguments import COMMANDS
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
 #: first words of several commands
 _GROUPS = {
-    "material": "show and fit a material of several relaxation times",
-    "tables": "the law of a material as a file, grids for other programs",
+    "material": "show a material, or fit one to measurements",
+    "tables": "write the contact law to a file, or to a grid for other programs",
 }
 
 

@@ -19,18 +19,18 @@ _POINTS, _LINES = 101, 3
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
     return (
         SCENE,
-        option("--V", type=kind, required=True, help="velocity of the axis, any sign"),
-        option("--delta", type=kind, help="creep ratio (omega R - V)/V"),
-        option("--omega", type=kind, help="angular velocity, in place of delta"),
+        option("--V", type=kind, required=True, help="velocity of the axis, of either sign"),
+        option("--delta", type=kind, help="creepage (omega R - V)/V"),
+        option("--omega", type=kind, help="angular velocity; give it or --delta"),
     )
 
 
 @command("contact", *_speeds(numbers), *TABLE)
 def contact(given: Namespace) -> None:
-    """State of the contact: lam, epsilon, delta_star, beta, Q, M.
+    """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
 
-    For every pair of V and delta (or omega), each a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of
-    these with commas between.
+    The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT,
+    LOW:HIGH:COUNT:log, or several of these, separated by commas.
 
     example:
       viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5
@@ -44,9 +44,9 @@ def contact(given: Namespace) -> None:
 
 @command("stress", *_speeds(float), *TABLE)
 def stress(given: Namespace) -> None:
-    """Pressure and shear stress along the contact.
+    """Compute pressure and shear stress along the contact.
 
-    At 101 places across it, at one V and delta (or omega).
+    The stresses are given at 101 points of the contact, for one V and one delta (or omega).
 
     example:
       viscoroll stress paper-section-5 --V 0.5 --delta -0.01
@@ -63,16 +63,16 @@ def stress(given: Namespace) -> None:
 
 @command(
     "roll", SCENE,
-    option("--V0", type=float, required=True, help="start velocity of the axis"),
-    option("--omega0", type=float, required=True, help="start angular velocity"),
-    option("--t", type=numbers, required=True, help="output times: numbers, as of `viscoroll contact`"),
+    option("--V0", type=float, required=True, help="initial velocity of the axis"),
+    option("--omega0", type=float, required=True, help="initial angular velocity"),
+    option("--t", type=numbers, required=True, help="output times, written as the numbers of `viscoroll contact`"),
     *TABLE,
 )  # fmt: skip
 def roll(given: Namespace) -> None:
-    """One motion from given start speeds.
+    """Integrate one free motion from given initial speeds.
 
-    Free motion of the cylinder from (V0, omega0), Eq. (22), through all regimes of slip.
-    Driven, braked, unsteady motions: vr.roll in Python, or a run file (viscoroll ensemble).
+    The motion obeys Eq. (22), and may change between full slip and partial slip.
+    For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
 
     example:
       viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7
@@ -87,17 +87,17 @@ def roll(given: Namespace) -> None:
 
 @command(
     "steady", SCENE,
-    option("--force", type=numbers, help="along V (default 0)"),
-    option("--torque", type=numbers, help="along omega (default 0)"),
-    option("--slope", type=numbers, help="rad, positive downhill along +V; the load is P cos(slope)"),
-    option("--V", type=numbers, help="the speed, in place of --force or --torque, which is found"),
+    option("--force", type=numbers, help="force on the axis along V (default 0)"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega (default 0)"),
+    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill; the normal load is P cos(slope)"),
+    option("--V", type=numbers, help="prescribed speed; then give --force or --torque, and the other one is computed"),
     *TABLE,
 )  # fmt: skip
 def steady(given: Namespace) -> None:
-    """Steady rolling under force, torque or slope.
+    """Find the steady speeds under force, torque or slope.
 
-    Every equilibrium of rolling under each load, a row each; where there is none, why.
-    Options are numbers, as of `viscoroll contact`, all of one length or single.
+    Each equilibrium of each load is a row.  If a load has no equilibrium, the reason is printed.
+    Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
 
     example:
       viscoroll steady paper-section-5-rounded --slope 0:0.1:6
@@ -108,7 +108,7 @@ def steady(given: Namespace) -> None:
     found = body_of(given.scene).steady(**{name: np.atleast_1d(x) for name, x in loads.items() if x is not None})
     lines = [f"load {n}: {reason}" for n, reason in enumerate(found.reason) if reason]
     if len(lines) > _LINES:
-        lines[_LINES:] = [f"{len(lines) - _LINES} more loads have none"]
+        lines[_LINES:] = [f"{len(lines) - _LINES} more loads have no steady speed"]
     if given.output is not None or given.format != "text":  # a table for programs has no heading that says it
         for line in lines:
             warnings.warn(line, vr.ModelWarning, stacklevel=2)
@@ -117,13 +117,13 @@ def steady(given: Namespace) -> None:
 
 @command(
     "validity", SCENE,
-    option("--V", type=float, required=True, help="velocity of the axis, any sign"),
-    option("--omega", type=float, help="angular velocity; without it the creep is not known"),
+    option("--V", type=float, required=True, help="velocity of the axis, of either sign"),
+    option("--omega", type=float, help="angular velocity; without it the assumptions on creepage are not checked"),
 )  # fmt: skip
 def validity(given: Namespace) -> None:
-    """Which assumptions of the model a speed strains.
+    """Check the assumptions of the model at one speed.
 
-    A line for each assumption of the model: whether it holds (yes, no, ?: not known) and why.
+    Each line has the name of an assumption, whether it holds (yes, no, or ? if data are missing), and the reason.
 
     example:
       viscoroll validity rubber-roller --V 5 --omega 4.9

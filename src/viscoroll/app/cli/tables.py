@@ -17,7 +17,7 @@ def _low_high(text: str) -> tuple[float, ...]:
     try:
         return tuple(map(float, text.split(":")))
     except ValueError:
-        raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, as 1:4096") from None
+        raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, for example 1:4096") from None
 
 
 def _size(path: Path) -> None:
@@ -27,15 +27,16 @@ def _size(path: Path) -> None:
 @command(
     "tables law",
     option("file", metavar="MATERIAL", nargs="?",
-           help="TOML with [material], perhaps [base], or with [scene] or [cylinder]; or the netCDF of a material"),
-    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="in place of MATERIAL: from alpha to alpha, as 1:4096"),
+           help="TOML file with [material] (and [base]), [scene] or [cylinder], or netCDF file of a material"),
+    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; give it instead of MATERIAL"),
     output(*_LAW),
 )  # fmt: skip
 def law(given: Namespace) -> None:
-    """The law of a material or pair, or of every alpha, as a file, exact.
+    """Write the contact law of a material, of a pair, or of a range of alpha to a file.
 
-    For vr.load_law, run files and every program that reads netCDF (.nc; .cdf without HDF5), as table and evaluator in
-    one header of C99 or C++ (.h), or as .json.  Without a material, of every alpha of one relaxation time.
+    .nc is read by vr.load_law, by run files and by every netCDF reader; .cdf is the same without HDF5; .h is a header
+    of C99 or C++ with table and evaluator; .json is read by JavaScript.  --alpha writes the law of one relaxation
+    time for every alpha of the range.
 
     example:
       viscoroll tables law docs/examples/rubber.toml -o rubber.h
@@ -49,17 +50,17 @@ def law(given: Namespace) -> None:
 
 @command(
     "tables build", SCENE,
-    option("--V", type=numbers, required=True, help="speeds of the axis, > 0"),
-    option("--delta", type=numbers, required=True, help="creep ratios"),
-    option("--alpha", type=numbers, help="a third axis, of a scene"),
-    option("--method", default="table", help="table (default) or direct: root solves of the printed equations"),
+    option("--V", type=numbers, required=True, help="velocities of the axis, > 0"),
+    option("--delta", type=numbers, required=True, help="values of the creepage"),
+    option("--alpha", type=numbers, help="values of a third axis, only for a scene"),
+    option("--method", default="table", help="table (default): law of the scene; direct: numerical roots of the equations of the paper"),
     output(*_GRID),
 )  # fmt: skip
 def build(given: Namespace) -> None:
-    """A grid over V, delta and perhaps alpha, for programs that look up tables.
+    """Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
-    Of the contact of a scene, or of a cylinder in SI units: .nc, .cdf (without HDF5), .csv, .txt (for Modelica) or
-    .mat (MATLAB).  Axes are numbers, as of `viscoroll contact`.
+    The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
+    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.
 
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
@@ -71,7 +72,7 @@ def build(given: Namespace) -> None:
 
 @command("tables info", FILE)
 def info(given: Namespace) -> None:
-    """What a table file holds: functions or grid, stated errors, material and provenance.
+    """Print the contents of a table file: functions or grid, stated errors, material and provenance.
 
     example:
       viscoroll tables info data/tables/rubber.nc
@@ -79,11 +80,11 @@ def info(given: Namespace) -> None:
     print(vr.tables.info(given.file))
 
 
-@command("tables validate", FILE, option("-n", type=int, default=10_000, help="random speeds (default 10000)"))
+@command("tables validate", FILE, option("-n", type=int, default=10_000, help="number of random speeds (default 10000)"))
 def validate(given: Namespace) -> int:
-    """The file of a law against the formulas of its relaxation modes, at random speeds; a grid against the law.
+    """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
-    Exit code 1 where an error exceeds that which the file states.
+    The exit code is 1 if an error exceeds the error stated in the file.
 
     example:
       viscoroll tables validate data/tables/rubber.nc
@@ -97,10 +98,10 @@ def validate(given: Namespace) -> int:
 
 @command("export", FILE, output(*dict.fromkeys(_LAW + _GRID)))
 def export(given: Namespace) -> None:
-    """The results of a run or a table in a file for other programs.
+    """Convert the results of a run, or a table, to another file format.
 
-    Of STORE.zarr the summaries, and all motions that it keeps, as .nc; of a law .nc, .cdf, .h or .json; of a grid .nc,
-    .cdf, .csv, .txt or .mat.
+    A results store (STORE.zarr) becomes .nc with summaries and stored motions.  A law becomes .nc, .cdf, .h or .json.
+    A grid becomes .nc, .cdf, .csv, .txt or .mat.
 
     example:
       viscoroll export data/tables/rubber.nc -o rubber.h
@@ -118,18 +119,19 @@ def export(given: Namespace) -> None:
 @command(
     "fmu",
     option("file", metavar="MATERIAL_OR_LAW",
-           help="TOML with [material], perhaps [base] and a [cylinder], whose numbers are those at the start; the file "
-           "of `viscoroll tables law`; or the netCDF of a material"),
+           help="TOML file with [material] (and [base]), and perhaps [cylinder] with the default parameters; or a law file "
+           "of `viscoroll tables law`; or the netCDF file of a material"),
     option("--model", default="Roller", help="Roller (default) or ContactElement"),
     option("--fmi", type=int, default=2, help="version of the standard: 2 (default) or 3"),
     output(".fmu"),
 )  # fmt: skip
 def fmu(given: Namespace) -> None:
-    """A cylinder as an FMU, for Modelica tools and others.
+    """Build an FMU of a cylinder, for Modelica tools and others.
 
-    By the law of a material or pair, with its sources, compiled for this machine by cc.
-    Roller: drive force and torque -> v, omega, x; co-simulation and model exchange.
-    ContactElement: v, omega, load -> force, torque, moments; model exchange.  Both have exact slopes.
+    The FMU contains the law of a material or pair and its C sources, and is compiled for this machine by cc.
+    Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
+    ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
+    Both provide exact directional derivatives.
 
     example:
       viscoroll fmu docs/examples/rubber.toml -o roller.fmu

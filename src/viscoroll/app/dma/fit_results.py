@@ -152,9 +152,10 @@ class SeriesFit(Result):
         temperature (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer
         with a shorter transit time: modes faster than the transit act there as far as they go.
 
-        Parameters ----------
-        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any
-        temperature.
+        Parameters
+        ----------
+        cylinder : one cylinder, or a series of cylinders, whose material or base is ``material()`` of this fit, at any
+            temperature.
         V : speed of the axis, m/s, any sign.
 
         Returns
@@ -211,7 +212,10 @@ class SeriesFit(Result):
 class Fit(SeriesFit):
     """A Prony series fitted to a master curve, with its misfit and the consistency of the data.
 
-    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`; of shear E, storage and loss are G, G' and G''.
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of :class:`viscoroll.app.dma.fit_results.SeriesFit`; in shear E, storage and loss are G, G' and G''.
     misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
     kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
         ``.ratio``, ``.median``.
@@ -247,7 +251,10 @@ class Fit(SeriesFit):
 class RelaxationFit(SeriesFit):
     """A Prony series fitted to a relaxation modulus: the result of :func:`fit_relaxation`.
 
-    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`.
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     misfit : root mean square of the relative errors.
     t : times of the data, ascending, s.
     relaxation : relaxation modulus of the data, in the unit given.
