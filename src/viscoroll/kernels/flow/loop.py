@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..motion.records import DONE, FULL, PARTIAL, REST, RESTED
+from ..motion.workspace import AT_REST, CAME_TO_REST, COMPLETED, FULL_SLIP, PARTIAL_SLIP
 from ..rows.states import element
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .lookup import (
@@ -51,7 +51,7 @@ def _write_output(out, column, state):
 def _write_rest(at, x, angle, loss, out):
     """Write outputs at rest, at distance x and angle with this slip loss, from column ``at`` of ``out`` on."""
     for column in range(at, out.shape[1]):
-        _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, REST, loss))
+        _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
 
 
 @kernel(inline=True)
@@ -116,7 +116,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
             angle = (x - tau * (w + mu * tau)) * per_j
         delta = (omega - V) / V if V != 0.0 else np.inf
         _write_output(
-            out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x))
+            out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL_SLIP, mu * (angle - x))
         )
         at += 1
     return at
@@ -150,7 +150,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
                 loss = total_loss - remaining_slip_loss(now, flow.table)
         x, angle = stick.x + frame * x, stick.angle + frame * angle
         _write_output(
-            out, at, Output(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL, stick.loss + loss)
+            out, at, Output(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL_SLIP, stick.loss + loss)
         )
         at += 1
     return at
@@ -174,7 +174,7 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
             return NOT_COVERED, np.nan
     at = _write_partial_slip(at, tau_out, min(rest_time, end), stick, asymptote, request.level, flow, out)
     if end <= rest_time:
-        return DONE, np.nan
+        return COMPLETED, np.nan
     x, angle = manifold_path(asymptote.slow_log, asymptote.slow_log - request.rest_slow_log, flow.slow_rate, flow.table)
     loss = (
         asymptote.loss
@@ -183,7 +183,7 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     )
     x, angle = stick.x + stick.frame * (x + asymptote.x), stick.angle + stick.frame * (angle + asymptote.angle)
     _write_rest(at, x, angle, stick.loss + loss, out)
-    return RESTED, rest_time
+    return CAME_TO_REST, rest_time
 
 
 @kernel(inline=True)
@@ -198,19 +198,19 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
         _write_rest(0, 0.0, 0.0, 0.0, out)
-        return RESTED, np.nan, 0.0
+        return CAME_TO_REST, np.nan, 0.0
     if not kappa * abs(V0) < HIGHEST:
         return NOT_COVERED, np.nan, np.nan
     frame = 1.0 if omega0 >= V0 else -1.0
     V, omega = frame * V0, frame * omega0
-    at, first = 0, FULL
+    at, first = 0, FULL_SLIP
     T, X, limit = full_slip_integrals(V, level, flow)
     starts_in_full_slip = omega - V >= limit
     if starts_in_full_slip:
         slide, stick, covered = _start_in_full_slip(frame, V, omega, (T, X), level, flow)
     else:
         stick, asymptote, covered = _start_in_partial_slip(V0, omega0, limit / abs(V), level, flow)
-        first = PARTIAL
+        first = PARTIAL_SLIP
     if not covered or stick.v < 2.0 * kappa * request.rest:
         return NOT_COVERED, np.nan, np.nan
     while at < tau_out.size and tau_out[at] == 0.0:
@@ -220,7 +220,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     if starts_in_full_slip:
         at = _write_full_slip(at, tau_out, stick.tau, slide, level, flow, out)
         if tau_out[tau_out.size - 1] < stick.tau:
-            return DONE, np.nan, np.nan
+            return COMPLETED, np.nan, np.nan
         onset = stick.tau
         asymptote = read_asymptote(stick.family, stick.v, level, flow)
     status, rest_time = _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out)
