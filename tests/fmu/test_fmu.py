@@ -365,7 +365,8 @@ def test_what_is_out_of_range_is_refused_in_words(built, version):
         element.get("force")
 
 
-def test_program(tmp_path):
+@pytest.mark.filterwarnings("always::viscoroll.ModelWarning")  # printed by the program
+def test_program(tmp_path, capsys):
     """The same bytes for the same cylinder, so that they can be kept."""
     law, roller = tmp_path / "law.nc", tmp_path / "roller.fmu"
     vr.tables.save(vr.tables.law(CYLINDERS["unlike"].pair), law)
@@ -376,6 +377,11 @@ def test_program(tmp_path):
     starts = {v.name: v.start for v in about.modelVariables}
     assert float(starts["E_prime"]) == CYLINDERS["unlike"].E_prime
     assert float(starts["T_ref"]) == RUBBER.T_ref
+    scene = tmp_path / "scene.toml"
+    scene.write_text("[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n")
+    capsys.readouterr()
+    assert main(["fmu", str(scene), "-o", str(roller)]) == 0
+    assert "of a dimensionless scene it takes the law, not kappa" in capsys.readouterr().err
     toml = "docs/examples/rubber.toml"
     assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement"]) == 0
     assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"

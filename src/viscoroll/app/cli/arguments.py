@@ -24,12 +24,10 @@ class Option(NamedTuple):
     ----------
     names : positional name, or names of the option.
     settings : keywords of ``ArgumentParser.add_argument``.
-    exclusive : whether a command line may have one of the exclusive options only.
     """
 
     names: tuple[str, ...]
     settings: dict[str, Any]
-    exclusive: bool = False
 
 
 class Command(NamedTuple):
@@ -38,21 +36,21 @@ class Command(NamedTuple):
     Attributes
     ----------
     run : function that runs it; its docstring is the help, with an example at its end.
-    options : its arguments.
+    options : its arguments; of a list of arguments a command line may have one only.
     """
 
     run: CommandFunction
-    options: tuple[Option, ...]
+    options: tuple[Option | list[Option], ...]
 
 
 #: Words of a command -> the command, in the order of ``--help``.
 COMMANDS: dict[str, Command] = {}
 
 
-def command(words: str, *options: Option) -> Callable[[CommandFunction], CommandFunction]:
+def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
     """Return a decorator that adds a function to :data:`COMMANDS`.
 
-    words: of the command, as "tables law".  options: its arguments.
+    words: of the command, as "tables law".  options: as of :class:`Command`.
     """
 
     def add(run: CommandFunction) -> CommandFunction:
@@ -135,10 +133,8 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
 FILE = option("file", metavar="FILE")
 #: A scene or cylinder.
 SCENE = option("scene", metavar="SCENE", help="FILE.toml with [scene], [cylinder] (SI units) or preset; or a preset")
-#: Output of a table of numbers.
-TABLE = (
-    output(".txt", ".csv", ".nc", required=False, more="; default: standard output")._replace(exclusive=True),
-    option(
-        "--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"
-    )._replace(exclusive=True),
-)
+#: Output of a table of numbers: to a file, or to standard output in a format.
+TABLE = [
+    output(".txt", ".csv", ".nc", required=False, more="; default: standard output"),
+    option("--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"),
+]

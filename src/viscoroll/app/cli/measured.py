@@ -78,16 +78,14 @@ def fit(arguments: Namespace) -> int:
     from ...contact_law.assumptions import MISFIT_LIMIT
     from ...materials.file import as_toml
 
+    columns, units = _columns(arguments.column), arguments.units and tuple(arguments.units.split(","))
     record = vr.read_dma(
-        arguments.data, columns=_columns(arguments.column), decimal=arguments.decimal, encoding=arguments.encoding,
-        units=arguments.units and tuple(arguments.units.split(",")),
-    )  # fmt: skip
+        arguments.data, columns=columns, decimal=arguments.decimal, encoding=arguments.encoding, units=units
+    )
     if arguments.mode is not None:
         record = replace(record, mode=arguments.mode)
-    result = vr.fit_prony(
-        record, modes=arguments.modes, misfit=arguments.misfit, temperature=arguments.temperature,
-        reference=arguments.reference, shift=arguments.wlf and _wlf(arguments.wlf), on=arguments.on,
-    )  # fmt: skip
+    options = {name: getattr(arguments, name) for name in ("modes", "misfit", "temperature", "reference", "on")}
+    result = vr.fit_prony(record, **options, shift=arguments.wlf and _wlf(arguments.wlf))
     print(result)
     material, path, fault = result.material(arguments.nu, name=arguments.name), arguments.output, ""
     if not result.reached:

@@ -95,10 +95,11 @@ def parser() -> Parser:
         text, _, example = (inspect.getdoc(run) or "").partition("\n\nexample:")
         summary, epilog = text.partition(".\n")[0].rstrip("."), f"example:{example}" if example else None
         subparser = groups[group].add_parser(name, help=summary, description=text, epilog=epilog)
-        has_exclusive = any(option.exclusive for option in options)
-        exclusive_group = subparser.add_mutually_exclusive_group() if has_exclusive else subparser
-        for names, settings, exclusive in options:
-            (exclusive_group if exclusive else subparser).add_argument(*names, **settings)
+        for option in options:
+            alternatives = option if isinstance(option, list) else [option]
+            target = subparser.add_mutually_exclusive_group() if alternatives is option else subparser
+            for names, settings in alternatives:
+                target.add_argument(*names, **settings)
         subparser.set_defaults(run=run)
     return program
 

@@ -62,7 +62,7 @@ def verify(arguments: Namespace) -> int:
     "sensitivity", _RUN,
     option("-n", type=int, default=4096, help="base points, rounded up to a power of two (default: 4096); a base point "
            "takes a motion for every uncertain input and two more"),
-    *TABLE,
+    TABLE,
 )  # fmt: skip
 def sensitivity(arguments: Namespace) -> None:
     """Sobol indices of the uncertain inputs of a run file.

@@ -30,7 +30,7 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
     )
 
 
-@command("contact", *_speeds(numbers), *TABLE)
+@command("contact", *_speeds(numbers), TABLE)
 def contact(arguments: Namespace) -> None:
     """State of the contact: lam, epsilon, delta_star, beta, Q, M.
 
@@ -47,7 +47,7 @@ def contact(arguments: Namespace) -> None:
     show(arguments, read_roller(arguments.scene).contact(V, delta=arguments.delta, omega=arguments.omega))
 
 
-@command("stress", *_speeds(float), *TABLE)
+@command("stress", *_speeds(float), TABLE)
 def stress(arguments: Namespace) -> None:
     """Pressure and shear stress along the contact.
 
@@ -71,7 +71,7 @@ def stress(arguments: Namespace) -> None:
     option("--V0", type=float, required=True, help="velocity of the axis at the start"),
     option("--omega0", type=float, required=True, help="angular velocity at the start"),
     option("--t", type=numbers, required=True, help="output times: numbers, as of `viscoroll contact`"),
-    *TABLE,
+    TABLE,
 )  # fmt: skip
 def roll(arguments: Namespace) -> None:
     """One motion from given start speeds.
@@ -96,7 +96,7 @@ def roll(arguments: Namespace) -> None:
     option("--torque", type=numbers, help="along omega (default: 0)"),
     option("--slope", type=numbers, help="rad, positive downhill along +V; the load is P cos(slope)"),
     option("--V", type=numbers, help="speed, in place of --force or --torque, which is then computed"),
-    *TABLE,
+    TABLE,
 )  # fmt: skip
 def steady(arguments: Namespace) -> None:
     """Steady rolling under force, torque or slope.

@@ -15,6 +15,7 @@ from ...core.checks import checked
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
+from ...core.typed import Floats
 from ...cylinder import Cylinder, contact_length, scene_of
 from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
@@ -120,9 +121,8 @@ def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Sol
     first = _first(section)
     typical = materials_of(path, {name: first})[name]
     series = series_of(path, name, section) or typical.prony
-    if np.ndim(section.get("temperature")):
-        shift = shifts_of(path, {name: first})[name]
-        series = series.slower([shift(temperature) for temperature in section["temperature"]])
+    if (factors := _time_factors(path, name, section)) is not None:
+        series = series.slower(factors)
     E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical, typical
@@ -140,17 +140,25 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
     Returns the record of a measurement -> (lowest, highest frequency), rad/s, numbers or (n,); bodies without a record
     are left out.
     """
-    bands = {}
+    bands: dict[Measured, Any] = {}
     for name in SECTIONS:
         section = content.get(name)
         if section is None or (record := _body(path, name, section)[0].measured) is None:
             continue
-        factor: Any = 1.0
-        if isinstance(section, dict) and np.ndim(section.get("temperature", 0.0)):  # the record is at the first of them
-            shift = shifts_of(path, {name: _first(section)})[name]
-            factor = np.array([shift(temperature) for temperature in section["temperature"]])
-        bands[record] = record.low / factor, record.high / factor
+        factors = None if isinstance(section, Material) else _time_factors(path, name, section)
+        bands[record] = tuple(end if factors is None else end / factors for end in (record.low, record.high))
     return bands
+
+
+def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
+    """Return the factors of the relaxation times at the temperature of each motion, (n,), over those at the first.
+
+    path, name, section: as of :func:`_body`.  None if the temperature is certain.
+    """
+    if not np.ndim(section.get("temperature", 0.0)):
+        return None
+    shift = shifts_of(path, {name: _first(section)})[name]
+    return np.array([shift(temperature) for temperature in section["temperature"]])
 
 
 def _first(part: Any) -> Any:

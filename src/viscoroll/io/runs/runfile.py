@@ -277,14 +277,11 @@ def _check_inputs(run: Run) -> None:
     Checked are the medians, the ends of each input beside the medians of the others, and combinations of ends.
     """
     inputs, medians = run.inputs, run.inputs.medians
-    try:
-        _check_motions(run, medians)
-    except ParameterError as error:
-        raise located(run.path, inputs.content, error) from error
+    _check_motions(run, medians)
     for number in inputs_in(inputs.content):
         ends = inputs.ends(number.name)
         try:
-            _check_motions(run, medians | {number.name: ends})
+            _begin_motions(run, medians | {number.name: ends})
         except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
                 raise located(run.path, inputs.content, error) from error
@@ -293,16 +290,23 @@ def _check_inputs(run: Run) -> None:
             raise fault(run.path, number.section, number.key, f"{reaches}: {problem}") from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
-        try:
-            _check_motions(run, values)
-        except ParameterError as error:
-            sentence = f"{error} in every draw: truncate so that it is"
-            refusal = ParameterError(error.name, error.value, error.allowed, sentence)
-            raise located(run.path, inputs.content, refusal) from error
+        _check_motions(run, values, " in every draw: truncate so that it is")
 
 
-def _check_motions(run: Run, values: dict[str, Any]) -> None:
-    """Raise ParameterError for motions that would be refused; nothing is rolled.
+def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
+    """Raise FileError, with its line, for motions that would be refused.
+
+    values: input -> number or (n,).  advice: last words of the message.
+    """
+    try:
+        _begin_motions(run, values)
+    except ParameterError as error:
+        refusal = ParameterError(error.name, error.value, error.allowed, f"{error}{advice}")
+        raise located(run.path, run.inputs.content, refusal) from error
+
+
+def _begin_motions(run: Run, values: dict[str, Any]) -> None:
+    """Raise ParameterError, of a material FileError, for motions that would be refused; nothing is rolled.
 
     values: input -> number or (n,).
     """

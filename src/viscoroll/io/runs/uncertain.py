@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -42,18 +42,20 @@ def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
     return Inputs(content | sections, reader.random, reader.joint)
 
 
+@dataclass
 class _Reader:
     """Collects the uncertain numbers of a run file, and replaces each by an :class:`Input`.
 
-    path: of the run file.  si: whether it is in SI units.
+    path, si: of the run file, and whether it is in SI units.
+    random, joint: as of :class:`Inputs`.
+    files: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows.
     """
 
-    def __init__(self, path: Path, si: bool) -> None:
-        self.path, self.si = path, si
-        self.random: dict[str, Distribution] = {}
-        self.joint: dict[str, dict[str, Floats]] = {}
-        #: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows
-        self.files: dict[Path, str] = {}
+    path: Path
+    si: bool
+    random: dict[str, Distribution] = field(default_factory=dict)
+    joint: dict[str, dict[str, Floats]] = field(default_factory=dict)
+    files: dict[Path, str] = field(default_factory=dict)
 
     def section(self, name: str, section: Any) -> Any:
         """Return a section with inputs in place of its uncertain numbers.
