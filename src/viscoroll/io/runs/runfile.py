@@ -245,9 +245,10 @@ def read_run(path: str | PathLike[str]) -> Run:
     certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
     inputs = correlated(path, replace(inputs, content=inputs.content | certain))
     settings = msgspec.convert(content["run"], RunSection)
-    with _faults_in_run(path):
+    with _faults_in_run(path, "t"):
         t = settings.t
         times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
+    with _faults_in_run(path):
         refuse_unknown("fields", settings.fields, FIELDS, "a field")
         refuse_unknown("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
@@ -263,12 +264,15 @@ def read_run(path: str | PathLike[str]) -> Run:
 
 
 @contextmanager
-def _faults_in_run(path: Path) -> Iterator[None]:
-    """Raise a ParameterError within as FileError of the section [run]; a context manager.  path: of the run file."""
+def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
+    """Raise a ParameterError within as FileError of the section [run]; a context manager.
+
+    path: of the run file.  key: that is at fault; default: the name of the parameter.
+    """
     try:
         yield
     except ParameterError as error:
-        raise fault(path, "run", error.name, str(error)) from error
+        raise fault(path, "run", key or error.name, str(error)) from error
 
 
 def _check_inputs(run: Run) -> None:
