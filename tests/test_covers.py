@@ -2,6 +2,7 @@
 
 import ctypes
 import dataclasses
+import json
 import shutil
 import subprocess
 
@@ -365,3 +366,12 @@ def test_a_thickness_in_SI_units():
         assert close(
             *(each.V[-1] * unit for each, unit in zip(tilted, (1.0, roller.scale["V"]), strict=True)), rel=1e-9
         )
+
+
+def test_a_law_as_JSON(tmp_path):
+    """Numbers with the same bits; a cover has no attribute for two bodies."""
+    law = vr.tables.law(COVERS[0])
+    vr.tables.export(law, tmp_path / "cover.json")
+    content = json.loads((tmp_path / "cover.json").read_text())
+    for name in ("lam", "limit", "free"):
+        assert np.array_equal(content[name], law[name].values)

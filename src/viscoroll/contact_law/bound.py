@@ -9,9 +9,9 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from ..core.checks import checked, yes_or_no
+from ..core.array_types import Floats, Numbers
+from ..core.checks import check_array, check_bool
 from ..core.errors import ParameterError
-from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from ..materials.law_grid import LawGrid
 from .contact import contact
@@ -32,7 +32,8 @@ class Law:
     """
 
     def __init__(self, roller: Rolls) -> None:
-        from ..kernels.rows.jitted import Jitted
+        from ..kernels.rows.c_function import pack_scenes
+        from ..kernels.rows.jitted_law import Jitted
 
         _, scene, scale = framed(roller, "law")
         if scene.each is not None:
@@ -43,13 +44,14 @@ class Law:
         table = scene.table
         assert table is not None
         self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
-        self._take(Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale))
+        scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
+        self._take(Jitted(scenes, table))
 
     def _take(self, jitted: Any) -> None:
         """Keep what is called, and the room for what it finds."""
-        from ..kernels.rows.jitted import Room
+        from ..kernels.rows.jitted_law import ResultBuffer
 
-        self._jitted, self._room = jitted, Room
+        self._jitted, self._room = jitted, ResultBuffer
         self._function, self._plain, self._sloped = jitted.function, jitted.plain, jitted.address
 
     @overload
@@ -84,7 +86,7 @@ class Law:
             NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
         """
         if slopes is not False:
-            slopes = yes_or_no("slopes", slopes)
+            slopes = check_bool("slopes", slopes)
         if type(V) in _NUMBERS and type(omega) in _NUMBERS:
             out = self._room()
             try:
@@ -92,7 +94,7 @@ class Law:
             except ctypes.ArgumentError:  # an integer beyond the doubles
                 status = 1
             if status:
-                self._refuse(checked("V", V), checked("omega", omega))
+                self._refuse(check_array("V", V), check_array("omega", omega))
             return _loads_and_slopes(out) if slopes else _loads(out[:4])
         return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
 
@@ -148,15 +150,15 @@ class _LawOfGrid(Law):
     """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
 
     def __init__(self, grid: LawGrid) -> None:
-        from ..kernels.splines.law import JittedGrid
+        from ..kernels.splines.law import jitted_grid
 
         self.roller: Any = grid
         (low, high), slowest = grid.delta, grid.V[0]
-        self._take(JittedGrid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+        self._take(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         each = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
-        return kind(*each(checked("V", V), checked("omega", omega))[: len(kind._fields)])
+        return kind(*each(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
         self.roller.refuse_outside(V, omega)

@@ -12,7 +12,7 @@ from .. import __version__
 from ..contact_law.parameters import PARAMETERS
 from ..core.drive import Feedback, Schedule
 from ..core.errors import MotionStatus
-from ..core.results import short
+from ..core.results import format_value
 from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
@@ -82,7 +82,9 @@ def _drive(result: Rolled) -> tuple[dict[str, Any], dict[str, Any]]:
         given = whole.value if feeds_back else whole
         gains = {"gain_V": whole.V, "gain_omega": whole.omega} if feeds_back else {}
         if callable(given):
-            told = (f", {what} = {short(gain) if np.ndim(gain) else f'{gain:.15g}'}" for what, gain in gains.items())
+            told = (
+                f", {what} = {format_value(gain) if np.ndim(gain) else f'{gain:.15g}'}" for what, gain in gains.items()
+            )
             texts[key] = "a function of t" + "".join(told)
             continue
         about = attributes(name, result.scale.si)
@@ -157,5 +159,5 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     more["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     found = _dataset(result, "Ensemble of motions", ("motion", "t"), more, about)
-    own = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
+    own = result.labels.axis_coords("motion") if result.labels and result.labels.shape == (len(result),) else {}
     return found.assign_coords({name: values for name, values in own.items() if name not in found})

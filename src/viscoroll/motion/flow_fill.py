@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
 from ..kernels.motion.workspace import PARTIAL_SLIP
-from ..kernels.numerics.nodes import gauss
+from ..kernels.numerics.interpolation import gauss
 from ..materials.law_build import paired
 from ..materials.law_table import law_table
 from .flow_rows import NODES, Nodes, Rows, octaves

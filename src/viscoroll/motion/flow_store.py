@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core.files import seal, seal_holds
-from ..core.typed import Floats
-from ..kernels.compile.folder import cache_root, read_own, write_own
+from ..core.array_types import Floats
+from ..core.files import seal, seal_matches
+from ..kernels.compile.folder import cache_root, read_private, write_private
 from ..materials.prony import Prony
 
 #: maps kept; the one that was used longest ago goes first
@@ -92,7 +92,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     ``parameters``.
     """
     try:
-        content = read_own(path)
+        content = read_private(path)
     except OSError:
         return None
     try:
@@ -109,7 +109,7 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
     """The map in the bytes ``content`` of a file; raises ValueError if it is damaged or of other ``parameters``."""
     from ..kernels.flow.layout import SIZE
 
-    if not seal_holds(content):
+    if not seal_matches(content):
         raise ValueError("its bytes differ from the SHA-256 at their end")
     with np.load(io.BytesIO(content)) as data:
         if not np.array_equal(data["parameters"], _numbers(parameters)):
@@ -127,7 +127,7 @@ def save(new_map: FlowMap, path: Path) -> None:
     try:
         content, numbers = io.BytesIO(), _numbers(new_map.parameters)
         np.savez(content, **(vars(new_map) | {"parameters": numbers}))
-        write_own(path, seal(content.getvalue()))
+        write_private(path, seal(content.getvalue()))
         oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
         for file in oldest[:-KEPT]:
             file.unlink()

@@ -91,16 +91,16 @@ def _numbers_of_member(text: str) -> Any:
         raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
 
 
-def read_roller(text: str) -> Any:
+def roller_of_argument(text: str) -> Any:
     """Return the scene or the cylinder of a TOML file, or the preset of that name.
 
     Raises ParameterError for an unknown preset; FileError for a file that cannot be read, or whose name does not end
     in .toml.
     """
-    from ...io.config import preset, read_body
+    from ...io.config import preset, read_roller
 
     if text.lower().endswith(".toml"):
-        return read_body(text)
+        return read_roller(text)
     if os.path.exists(text):
         raise vr.FileError(text, "is no scene file: its name must end in .toml")
     return preset(text)

@@ -81,10 +81,10 @@ def _version(name: str) -> str | None:
 
 def _fault_of_cache(folder: Path) -> str:
     """Return why the cache of compiled functions in ``folder`` is not used or cannot be written; "" if it can."""
-    from ...kernels.compile.folder import refuse_shared
+    from ...kernels.compile.folder import refuse_writable_by_others
 
     try:
-        refuse_shared(folder)
+        refuse_writable_by_others(folder)
     except PermissionError as error:
         return f"; it is NOT USED: {error.strerror}"
     existing = next((path for path in (folder, *folder.parents) if path.exists()), folder)

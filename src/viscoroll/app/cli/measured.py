@@ -32,7 +32,7 @@ def show(arguments: Namespace) -> None:
     from ...materials.file import read_materials
 
     for section, material in read_materials(arguments.file).items():
-        print(f"[{section}] {as_text(*material._card())}\n")
+        print(f"[{section}] {as_text(*material._summary())}\n")
         series, T = material.prony, material.T_ref
         if series.E.size:
             columns = {"E_i": series.E, "tau_i [s]": series.tau * T, "J_i": series.J, "T_i [s]": series.T * T}
@@ -146,7 +146,7 @@ def identify(arguments: Namespace) -> None:
     example:
       viscoroll identify docs/examples/measured.toml --plot fit.png
     """
-    from ..identification.file import read_measurements
+    from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json
 
     options = {name: getattr(arguments, name) for name in ("robust", "starts", "seed")}

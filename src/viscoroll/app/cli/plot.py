@@ -57,13 +57,13 @@ def _figure_of_toml(path: str) -> Any:
     """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material."""
     import numpy as np
 
-    from ...core.sections import read
-    from ...io.config import SCENES, read_body
+    from ...core.sections import read_toml
+    from ...io.config import SCENES, read_roller
     from ...materials.file import read_materials
 
-    if not read(path).keys() & set(SCENES):
+    if not read_toml(path).keys() & set(SCENES):
         return read_materials(path)["material"].plot()
-    roller = read_body(path)
+    roller = read_roller(path)
     extrema = roller.resistance_extrema().V
     low, high = (extrema[0], extrema[-1]) if extrema.size else (roller.scale["V"],) * 2
     return roller.contact(np.geomspace(low / _MARGIN, high * _MARGIN, _SPEEDS), delta=0.0).plot()

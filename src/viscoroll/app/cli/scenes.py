@@ -9,7 +9,7 @@ from typing import Any
 
 import viscoroll as vr
 
-from .arguments import SCENE, TABLE, Option, command, numbers, option, read_roller
+from .arguments import SCENE, TABLE, Option, command, numbers, option, roller_of_argument
 from .output import show
 
 #: Positions along the contact in the output of ``stress``.
@@ -44,7 +44,7 @@ def contact(arguments: Namespace) -> None:
 
     V, creep = arguments.V, arguments.omega if arguments.delta is None else arguments.delta
     V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
-    show(arguments, read_roller(arguments.scene).contact(V, delta=arguments.delta, omega=arguments.omega))
+    show(arguments, roller_of_argument(arguments.scene).contact(V, delta=arguments.delta, omega=arguments.omega))
 
 
 @command("stress", *_speeds(float), TABLE)
@@ -58,7 +58,10 @@ def stress(arguments: Namespace) -> None:
     """
     import numpy as np
 
-    roller, speeds = read_roller(arguments.scene), {name: getattr(arguments, name) for name in ("V", "delta", "omega")}
+    roller, speeds = (
+        roller_of_argument(arguments.scene),
+        {name: getattr(arguments, name) for name in ("V", "delta", "omega")},
+    )
     state = roller.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
     ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POSITIONS)
@@ -84,7 +87,7 @@ def roll(arguments: Namespace) -> None:
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
-        motion = read_roller(arguments.scene).roll(arguments.V0, arguments.omega0, arguments.t)
+        motion = roller_of_argument(arguments.scene).roll(arguments.V0, arguments.omega0, arguments.t)
     show(arguments, motion, str(motion))
     if arguments.output is not None:
         print(motion)
@@ -111,7 +114,7 @@ def steady(arguments: Namespace) -> None:
 
     loads = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
     loads = {name: np.atleast_1d(load) for name, load in loads.items() if load is not None}
-    equilibria = read_roller(arguments.scene).steady(**loads)
+    equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
         lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have none"]
@@ -134,4 +137,4 @@ def validity(arguments: Namespace) -> None:
     example:
       viscoroll validity rubber-roller --V 5 --omega 4.9
     """
-    print(read_roller(arguments.scene).validity(arguments.V, omega=arguments.omega))
+    print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

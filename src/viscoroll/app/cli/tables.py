@@ -8,7 +8,7 @@ from pathlib import Path
 
 import viscoroll as vr
 
-from .arguments import FILE, SCENE, command, numbers, option, output, read_roller
+from .arguments import FILE, SCENE, command, numbers, option, output, roller_of_argument
 
 #: Suffixes of the formats of a law.
 _LAW = (".nc", ".cdf", ".h", ".json")
@@ -45,9 +45,9 @@ def law(arguments: Namespace) -> None:
     example:
       viscoroll tables law docs/examples/rubber.toml -o rubber.h
     """
-    from ...io.config import read_bodies
+    from ...io.config import read_law_source
 
-    material = None if arguments.file is None else read_bodies(arguments.file)
+    material = None if arguments.file is None else read_law_source(arguments.file)
     vr.tables.export(vr.tables.law(material, alpha=arguments.alpha), arguments.output)
     _print_size(arguments.output)
 
@@ -70,7 +70,7 @@ def build(arguments: Namespace) -> None:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
     """
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
-    vr.tables.export(vr.tables.build(read_roller(arguments.scene), **axes), arguments.output)
+    vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
     _print_size(arguments.output)
 
 
@@ -140,16 +140,16 @@ def fmu(arguments: Namespace) -> None:
     example:
       viscoroll fmu docs/examples/rubber.toml -o roller.fmu
     """
-    from ...core.sections import read
-    from ...io.config import SCENES, read_bodies, read_body
+    from ...core.sections import read_toml
+    from ...io.config import SCENES, read_law_source, read_roller
     from ...materials.law_store import is_law
 
     path = arguments.file
-    content = {} if Path(path).suffix == ".nc" else read(path)
+    content = {} if Path(path).suffix == ".nc" else read_toml(path)
     if not content and is_law(path):
         source = vr.load_law(path)
     else:
-        source = read_body(path) if "cylinder" in content else read_bodies(path)
+        source = read_roller(path) if "cylinder" in content else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
         text = "an FMU is in SI units: of a dimensionless scene it takes the law, not kappa, mu, gamma and j; set R, "

@@ -27,7 +27,7 @@ def warm_up(arguments: Namespace) -> None:
     from ...kernels.compile import notice
     from ...kernels.compile.folder import cache_root
 
-    notice.told = True  # the bar takes the place of the notice
+    notice.announced = True  # the bar takes the place of the notice
     start = time.perf_counter()
     calls = dict(_calls())
     with tqdm(total=len(calls), leave=False) as bar:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ... import __version__
-from ...core.scale import powers
+from ...core.scale import dimension_powers
 from .variables import MODELS, UNITS, Model, Variable
 
 #: Capabilities of both models by version of the standard: attributes of ModelExchange and of CoSimulation.
@@ -42,7 +42,7 @@ def model_description(version: int, name: str, starts: dict[str, float], token: 
     units = SubElement(root, "UnitDefinitions")
     for unit, base in UNITS.items():
         element = SubElement(units, "Unit", name=unit)
-        SubElement(element, "BaseUnit", {base_unit: str(power) for base_unit, power in powers(base).items()})
+        SubElement(element, "BaseUnit", {base_unit: str(power) for base_unit, power in dimension_powers(base).items()})
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", tolerance=_TOLERANCE, stepSize="0.01")
     variables = SubElement(root, "ModelVariables")
     references = {variable.name: str(n) for n, variable in enumerate(model.variables, start=1)}

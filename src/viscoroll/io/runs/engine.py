@@ -16,10 +16,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
-from ...core.blocks import heed, thread_count
-from ...core.checks import yes_or_no
+from ...core.blocks import cancel_with, thread_count
+from ...core.checks import check_bool
 from ...core.errors import FileError, Interrupted, ParameterError, ViscorollError
-from ...core.extras import imported
+from ...core.extras import import_extra
 from .evaluate import warn_of_materials
 from .runfile import Run
 from .store import Store, locked
@@ -91,9 +91,9 @@ def run_ensemble(
     of kills (``tests/runs/test_run_store.py``); a motion is as accurate as :func:`viscoroll.ensemble` makes it.
     """
     if progress != "lines":
-        progress = yes_or_no("progress", progress)
+        progress = check_bool("progress", progress)
     store = Store(Path(path).absolute(), run)
-    imported("zarr", "zarr", "runs")
+    import_extra("zarr", "zarr", "runs")
     store.refuse_other()
     with _executor(store, cluster, threads) as (pool, workers, shared):  # an unknown cluster is refused first
         warn_of_materials(run)
@@ -150,7 +150,7 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
     if cluster is None:
         interrupted = threading.Event()
         workers = thread_count(threads)
-        pool = ThreadPoolExecutor(workers, initializer=heed, initargs=(interrupted,))
+        pool = ThreadPoolExecutor(workers, initializer=cancel_with, initargs=(interrupted,))
         try:
             yield pool, workers, store
         except BaseException:
@@ -161,7 +161,7 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
         return
     if cluster != "local" and not _ADDRESS.fullmatch(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
-    distributed = imported("distributed", "distributed", "cluster")
+    distributed = import_extra("distributed", "distributed", "cluster")
     try:
         with ExitStack() as stack:
             for name in ("distributed", "distributed.client"):

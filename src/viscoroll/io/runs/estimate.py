@@ -97,7 +97,7 @@ def _time_of_laws(run: Run) -> float:
     run: with covers of one thickness over l0, which have one law, or of many, which have some for each octave.
     One law is computed, and its time multiplied.
     """
-    from ...kernels.rows.cover_axis import NODES
+    from ...kernels.rows.thickness_axis import NODES
 
     cover = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene().cover
     if cover is None:

@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 
 from ...core.errors import FileError
-from ...core.files import seal, seal_holds, write_bytes
+from ...core.files import seal, seal_matches, write_bytes
 from ...motion.summaries import Summary
 
 #: Folder of the records in a store.
@@ -53,7 +53,7 @@ def read_record(path: Path) -> Record | None:
     """Return the record in a file, or None if it is missing or damaged in any way."""
     try:
         stored = path.read_bytes()
-        if not seal_holds(stored):
+        if not seal_matches(stored):
             return None
         content = zlib.decompressobj().decompress(stored)  # the seal behind it is left over
         return msgspec.msgpack.decode(content, type=Record, dec_hook=_decode_array)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core.errors import FileError, MotionStatus
-from ...core.extras import imported
-from ...core.results import Row, Shown, column, unit_of
+from ...core.extras import import_extra
+from ...core.results import Result, SummaryRow, column_name, unit_of
 from .store import MOTIONS, problems
 from .verify import start_of
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _MOMENTS = ("mean", "std", "min", "max")
 
 
-class RunResults(Shown):
+class RunResults(Result):
     """Results of a run in a folder, as :func:`open_run` returns them.
 
     Attributes
@@ -79,35 +79,35 @@ class RunResults(Shown):
         import pandas as pd
 
         data, tables = self.summaries, []
-        time = column("t", unit_of(data["t"].attrs))
+        time = column_name("t", unit_of(data["t"].attrs))
         for name in self.names:
             columns: dict[Any, Any] = {moment: np.atleast_1d(data[f"{name}_{moment}"].values) for moment in _MOMENTS}
             quantiles = zip(data["quantile"].values, data[f"{name}_quantiles"].values, strict=True)
             columns |= {float(level): np.atleast_1d(values) for level, values in quantiles}
             mean = data[f"{name}_mean"]
             t = data["t"].values if mean.ndim else [np.nan]
-            rows = [[column(name, unit_of(mean.attrs))], t]
+            rows = [[column_name(name, unit_of(mean.attrs))], t]
             tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product(rows, names=["quantity", time])))
         return pd.concat(tables)
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return the title and the rows that print this result."""
         data = self.summaries
         t, about = data["t"], data.attrs
         rows = [
-            Row("path", str(self.path)),
-            Row("drawn by", f"{about['design']}, seed {about['seed']}"),
-            Row("t", f"{t.size} times to {float(t[-1]):.6g}", unit_of(t.attrs)),
+            SummaryRow("path", str(self.path)),
+            SummaryRow("drawn by", f"{about['design']}, seed {about['seed']}"),
+            SummaryRow("t", f"{t.size} times to {float(t[-1]):.6g}", unit_of(t.attrs)),
         ]
         for name in self.names:
             mean, std = (data[f"{name}_{moment}"] for moment in ("mean", "std"))
             at = "at the end: " if mean.ndim else ""
             last = f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}"
-            rows.append(Row(name, last, unit_of(mean.attrs)))
+            rows.append(SummaryRow(name, last, unit_of(mean.attrs)))
         ended = zip(data["status"].values, data["ended"].values, strict=True)
-        rows += [Row("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
+        rows += [SummaryRow("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
         kept = "every motion" if self._motions_folder.is_dir() else "summaries"
-        return f"Results of a run of {len(self)} motions", [*rows, Row("kept", kept)]
+        return f"Results of a run of {len(self)} motions", [*rows, SummaryRow("kept", kept)]
 
 
 def open_run(path: str | PathLike[str]) -> RunResults:
@@ -136,7 +136,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     """
     import xarray as xr
 
-    imported("zarr", "zarr", "runs")
+    import_extra("zarr", "zarr", "runs")
     root = Path(path)
     start = start_of(root)
     if faults := problems(root, "end", start.run, start.motions):

@@ -31,15 +31,15 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from ...core.errors import FileError, ParameterError, refuse_unknown
-from ...core.sections import fault, read
-from ...core.typed import Floats
+from ...core.array_types import Floats
+from ...core.errors import FileError, ParameterError, check_names
+from ...core.sections import read_toml, section_error
 from ...materials.file import as_toml, materials_of
 from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
 from ...motion.checks import output_times
 from ...motion.driven import Drive
 from ...motion.summaries import QUANTITIES
-from ..config import check_sections, located
+from ..config import check_sections, locate_error
 from ..sampling import Design
 from ..tables import spread
 from .inputs import Inputs, inputs_in
@@ -232,14 +232,14 @@ def read_run(path: str | PathLike[str]) -> Run:
     >>> from viscoroll.io.runs import read_run
     >>> read_run("docs/examples/ensemble.toml").blocks  # doctest: +SKIP
     """
-    path, content = Path(path), read(path)
+    path, content = Path(path), read_toml(path)
     inputs = inputs_of(path, content)
     medians = inputs.filled(inputs.medians)
     sections = {"start": StartSection, "drive": DriveSection, "run": RunSection, "correlation": None}
     check_sections(path, medians, sections)
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
-            raise fault(path, "", name, f"section [{name}] is missing: it needs {needed}")
+            raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
     materials = materials_of(path, medians)
     # a material without uncertain numbers is read once
     certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
@@ -249,16 +249,16 @@ def read_run(path: str | PathLike[str]) -> Run:
         t = settings.t
         times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
     with _faults_in_run(path):
-        refuse_unknown("fields", settings.fields, FIELDS, "a field")
-        refuse_unknown("summaries", settings.summaries, QUANTITIES, "a summary")
+        check_names("fields", settings.fields, FIELDS, "a field")
+        check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
     digest = _digest(settings, times, content, [as_toml(material) for material in certain.values()], inputs)
     run = Run(path, text, settings, inputs, times, digest)
     if not settings.summaries:
-        raise fault(path, "run", "summaries", "summaries = []: must name at least one quantity")
+        raise section_error(path, "run", "summaries", "summaries = []: must name at least one quantity")
     if settings.method == "flow" and not run.mappable:
         problem = "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, and where scenes differ"
-        raise fault(path, "run", "method", problem)
+        raise section_error(path, "run", "method", problem)
     _check_inputs(run)
     return run
 
@@ -272,7 +272,7 @@ def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
     try:
         yield
     except ParameterError as error:
-        raise fault(path, "run", key or error.name, str(error)) from error
+        raise section_error(path, "run", key or error.name, str(error)) from error
 
 
 def _check_inputs(run: Run) -> None:
@@ -288,10 +288,10 @@ def _check_inputs(run: Run) -> None:
             _begin_motions(run, medians | {number.name: ends})
         except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
-                raise located(run.path, inputs.content, error) from error
+                raise locate_error(run.path, inputs.content, error) from error
             reaches = f"{number.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
             problem = f"{getattr(error, 'problem', str(error)).rpartition('] ')[2]}; add truncate = [low, high]"
-            raise fault(run.path, number.section, number.key, f"{reaches}: {problem}") from error
+            raise section_error(run.path, number.section, number.key, f"{reaches}: {problem}") from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
         _check_motions(run, values, " in every draw: truncate so that it is")
@@ -306,7 +306,7 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
         _begin_motions(run, values)
     except ParameterError as error:
         refusal = ParameterError(error.name, error.value, error.allowed, f"{error}{advice}")
-        raise located(run.path, run.inputs.content, refusal) from error
+        raise locate_error(run.path, run.inputs.content, refusal) from error
 
 
 def _begin_motions(run: Run, values: dict[str, Any]) -> None:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import FileError
-from ...core.extras import imported
+from ...core.extras import import_extra
 from ...core.scale import si_unit
-from ...core.sections import fault, hint, refuse_unknown
-from ...core.typed import Floats
+from ...core.sections import check_keys, section_error, suggestion
 from ...materials.file import SECTIONS
 from ..config import SCHEMA
-from ..measurements import is_heading, quantity, read_table
+from ..measurements import column_in_unit, named_table
 from .inputs import Distribution, Input, Inputs
 
 #: Section -> first letters of the names of its inputs; those of the other sections have none.
@@ -79,8 +78,8 @@ class _Reader:
             return value
         if not value.keys() & _KEYS_OF_INPUT:
             for name in value:
-                if near := hint(name, _KEYS_OF_INPUT):
-                    raise fault(self.path, section, key, f"{key}: unknown key {name!r}{near}")
+                if near := suggestion(name, _KEYS_OF_INPUT):
+                    raise section_error(self.path, section, key, f"{key}: unknown key {name!r}{near}")
             within = f"{section}.{key}"
             return {name: self.part(member, within, name, (*words, name)) for name, member in value.items()}
         name = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
@@ -93,7 +92,7 @@ class _Reader:
 
     def fault(self, number: Input, problem: str) -> FileError:
         """Return the error of an uncertain number, with its line.  problem: what is wrong."""
-        return fault(self.path, number.section, number.key, f"{number.name}: {problem}")
+        return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
 
     @np.errstate(all="ignore")  # scipy may overflow for parameters that are refused here
     def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
@@ -115,13 +114,13 @@ class _Reader:
         name = table["distribution"]
         law = getattr(stats, name, None) if isinstance(name, str) else None
         if not isinstance(law, stats.rv_continuous):
-            near = hint(
+            near = suggestion(
                 str(name), [key for key, value in vars(stats).items() if isinstance(value, stats.rv_continuous)]
             )
             raise self.fault(number, f"distribution {name!r:.40} is no continuous one of scipy.stats{near}")
         shapes = law.shapes.split(", ") if law.shapes else []
         keys = ("distribution", *shapes, "loc", "scale", "truncate")
-        refuse_unknown(self.path, f"{number.section}.{number.key}", table, keys)
+        check_keys(self.path, f"{number.section}.{number.key}", table, keys)
         parameters = {key: value for key, value in table.items() if key not in ("distribution", "truncate")}
         for key, value in parameters.items():
             if not _is_number(value) or not math.isfinite(value):
@@ -135,7 +134,7 @@ class _Reader:
 
     def add_column(self, number: Input, table: dict[str, Any]) -> None:
         """Read the column of a CSV, netCDF or Parquet file that the ``table`` of an uncertain number names."""
-        refuse_unknown(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
+        check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
             raise self.fault(number, "must name a distribution, or a file and a column")
@@ -164,11 +163,11 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     Raises ValueError, OSError, KeyError or FileError.
     """
     if path.suffix == ".csv":
-        values = quantity(read_table(path, partial(is_heading, (column,))), column, unit)
+        values = column_in_unit(named_table(path, (column,)), column, unit)
     elif path.suffix == ".parquet":
         import pandas as pd
 
-        imported("pyarrow", "pyarrow", "parquet")
+        import_extra("pyarrow", "pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
     elif path.suffix == ".nc":
         import xarray as xr
@@ -189,29 +188,33 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
     """
     section, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(section, dict):
-        raise fault(path, "", "correlation", "correlation: must be a section [correlation] with lines like V0.mu = 0.5")
+        raise section_error(
+            path, "", "correlation", "correlation: must be a section [correlation] with lines like V0.mu = 0.5"
+        )
     pairs: dict[tuple[str, str], Any] = {}
     for a, row in section.items():
         if not isinstance(row, dict):
-            raise fault(path, "correlation", a, f"{a} = {row!r:.40}: must be a line like V0.mu = 0.5")
+            raise section_error(path, "correlation", a, f"{a} = {row!r:.40}: must be a line like V0.mu = 0.5")
         pairs |= {(a, b): value for b, value in row.items()}
     names = tuple(name for name in random if any(name in pair for pair in pairs))
     matrix = np.eye(len(names))
     for (a, b), value in pairs.items():
         problem = ""
         if unknown := [name for name in (a, b) if name not in random]:
-            names_allowed = f"must be one of {', '.join(random)}{hint(unknown[0], random)}"
+            names_allowed = f"must be one of {', '.join(random)}{suggestion(unknown[0], random)}"
             problem = f"{unknown[0]!r} has no distribution: {names_allowed}"
         elif a == b or not _is_number(value) or not -1.0 < value < 1.0:
             problem = f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)"
         elif pairs.get((b, a), value) != value:
             problem = f"{a}.{b} = {value!r}: must be that of {b}.{a} = {pairs[b, a]!r:.40}"
         if problem:
-            raise fault(path, "correlation", a, problem)
+            raise section_error(path, "correlation", a, problem)
         n, m = names.index(a), names.index(b)
         matrix[n, m] = matrix[m, n] = value
     try:
         mixing: Any = np.linalg.cholesky(matrix) if names else None
     except np.linalg.LinAlgError:
-        raise fault(path, "", "correlation", "[correlation] no joint distribution has these correlations") from None
+        raise section_error(
+            path, "", "correlation", "[correlation] no joint distribution has these correlations"
+        ) from None
     return replace(inputs, correlated=names, mixing=mixing)

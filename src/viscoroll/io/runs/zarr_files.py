@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...core.extras import imported
+from ...core.extras import import_extra
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
     motions: dataset over (motion, t), of one block.  count: motions of the run.  block: motions of a full block.
     number: of the block, whose chunks are returned; None: return the metadata and the arrays that all motions share.
     """
-    zarr = imported("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=motions.attrs)
@@ -48,7 +48,7 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
 
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
     """Return all files of a small dataset: path -> content."""
-    zarr = imported("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     dataset.to_zarr(zarr.storage.MemoryStore(files), zarr_format=2, consolidated=False)

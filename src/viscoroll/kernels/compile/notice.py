@@ -1,21 +1,19 @@
-"""A line for whoever waits while kernels are compiled."""
-
-from __future__ import annotations
+"""One line on standard error for the user who waits while kernels are compiled."""
 
 import multiprocessing
 import os
 import sys
 
-#: whether it has been said
-told = False
+#: Whether this process has printed the line.
+announced = False
 
 
-def tell() -> None:
-    """Say, once a process, that compiling begins: the first kernel does not know how many follow."""
-    global told
-    if told or is_quiet():
+def announce_compiling() -> None:
+    """Print, once a process, that compiling begins; the first kernel does not know how many follow."""
+    global announced
+    if announced or is_quiet():
         return
-    told = True
+    announced = True
     print(
         "viscoroll: compiling kernels, up to half a minute for each new kind of call, once for this machine; "
         "`viscoroll warmup` does it ahead",
@@ -25,12 +23,12 @@ def tell() -> None:
 
 
 def is_quiet() -> bool:
-    """Whether nobody waits who could read it."""
+    """Return whether nobody waits who could read the line."""
     return os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker()
 
 
 def is_worker() -> bool:
-    """Whether this process computes for another one, which has said it."""
+    """Return whether this process computes for another one, which prints the line itself."""
     if multiprocessing.parent_process() is not None:
         return True
     distributed = sys.modules.get("distributed")

@@ -1,12 +1,10 @@
 """Look up many motions of one scene in its flow map."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..motion.workspace import AT_REST, CAME_TO_REST, COMPLETED, FULL_SLIP, PARTIAL_SLIP
-from ..rows.states import element
+from ..rows.contact_states import element
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .lookup import (
     HIGHEST,
@@ -33,13 +31,28 @@ from .records import FullSlipStart, Output, Request, StickOnset
 NOT_COVERED = -1
 #: largest ratio of initial speed to speed at onset: V at onset is a difference whose error is 2e-14 of the initial one
 _MAX_SPEED_RATIO = 4096.0
-#: rows of the array of outputs
-_V, _OMEGA, _X, _ANGLE, _DELTA, _REGIME, SLIP_LOSS, ROLLING_LOSS = range(8)
+# Rows of the array of outputs.
+#: speed of the axis
+_V = 0
+#: angular velocity
+_OMEGA = 1
+#: distance
+_X = 2
+#: angle
+_ANGLE = 3
+#: creepage
+_DELTA = 4
+#: regime
+_REGIME = 5
+#: energy lost by slip
+SLIP_LOSS = 6
+#: energy lost by rolling resistance
+ROLLING_LOSS = 7
 #: number of these rows
 ROWS = 8
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_output(out, column, state):
     """Write one output state into a column of ``out`` (ROWS, times)."""
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
@@ -47,14 +60,14 @@ def _write_output(out, column, state):
     out[SLIP_LOSS, column] = state.loss
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_rest(at, x, angle, loss, out):
     """Write outputs at rest, at distance x and angle with this slip loss, from column ``at`` of ``out`` on."""
     for column in range(at, out.shape[1]):
         _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
 
 
-@kernel(inline=True)
+@inline_kernel
 def _start_in_full_slip(frame, V, omega, start, level, flow):
     """Locate the onset of partial slip of a motion that starts in full slip.
 
@@ -97,7 +110,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     return StickOnset(frame, family, v, stick.tau, -frame * x, -frame * angle, -loss), asymptote, True
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     """Write the outputs before the onset of partial slip, and return the next column.
 
@@ -122,7 +135,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     return at
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     """Write the outputs in partial slip up to a time, and return the next column.
 
@@ -156,7 +169,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     return at
 
 
-@kernel(inline=True)
+@inline_kernel
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     """Write all outputs from the onset of partial slip to the end, or to rest.
 
@@ -186,7 +199,7 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     return CAME_TO_REST, rest_time
 
 
-@kernel(inline=True)
+@inline_kernel
 def look_up_motion(V0, omega0, tau_out, request, flow, out):
     """Look up one motion.
 

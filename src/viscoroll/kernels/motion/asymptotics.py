@@ -16,8 +16,8 @@ import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.jit import kernel
-from ..rows.cover import of_cover
-from ..rows.law import creep_at_rest
+from ..rows.cover import is_cover
+from ..rows.evaluate import limits_at_rest
 from .collocation import NODE_FRACTIONS, N
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
 from .output import accept_step, write_column, write_quadrature
@@ -188,7 +188,7 @@ def coast_to_end(state, regime, step_state, work):
     """
     scene, direction = work.scene, regime.direction
     half_space, cylinder, force, torque = low_speed_limits(work)
-    L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
     omega_over_V = 1.0 + delta_0
     inertia = 1.0 + scene.j * omega_over_V + added_inertia(0.0, scene)[0]
     # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments
@@ -201,7 +201,7 @@ def coast_to_end(state, regime, step_state, work):
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
     force_work, torque_work = force / rate, torque / rate
     energies = 0.0, 0.0, force_work, torque_work, 0.0, 0.0, 1.0 + scene.j + force_work + torque_work
-    if of_cover(by_value(scene.law).free):
+    if is_cover(by_value(scene.law).cover_rows):
         rolling = (half_space + cylinder * omega_over_V) / rate
         slipping = delta_0 * torque_difference / (inertia * rate)
         energies = 0.0, 0.0, force_work, torque_work * omega_over_V, 0.0, slipping, rolling

@@ -9,7 +9,7 @@ import numpy as np
 from ..compile.by_reference import data_pointer
 from ..compile.jit import kernel
 from ..numerics.arrays import copy, fill
-from ..rows.record import hold
+from ..rows.record import select_material
 from .collocation import ROW_LENGTH
 from .drive import n_coefficients
 from .driver import integrate_motion
@@ -90,7 +90,7 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
         for array in (nodes, p_matrix, d_matrix):
             fill(0.0, array)
         fill(1.0, nodes[ROW_ONES : ROW_ONES + ROW_LENGTH])
-        hold(motions.law, i)
+        select_material(motions.law, i)
         kappa, mu = _value_of_motion(motions.kappa, i), _value_of_motion(motions.mu, i)
         gamma, j = _value_of_motion(motions.gamma, i), _value_of_motion(motions.j, i)
         for k in range(t.size):

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..compile.intrinsics import fma
 from ..compile.jit import kernel
-from ..numerics.four import LANES, fused, load, spread, store
-from ..numerics.nodes import Interpolation, radau
+from ..numerics.interpolation import Interpolation, radau
+from ..numerics.simd4 import LANES, broadcast, fma4, load, store
 
 #: number of collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
 N = 7
@@ -64,11 +64,11 @@ def multiply_matrix(matrix, row, offset, values, target, result):
 
     matrix: by columns; row: index in ``values`` at which the row begins.
     """
-    low = high = spread(0.0)
+    low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
-        x = spread(values[row + k] - offset)
-        low = fused(load(matrix, ROW_LENGTH * k), x, low)
-        high = fused(load(matrix, ROW_LENGTH * k + LANES), x, high)
+        x = broadcast(values[row + k] - offset)
+        low = fma4(load(matrix, ROW_LENGTH * k), x, low)
+        high = fma4(load(matrix, ROW_LENGTH * k + LANES), x, high)
     store(result, target, low)
     store(result, target + LANES, high)
 
@@ -82,12 +82,12 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     """
     low, high = load(nodes, weights), load(nodes, weights + LANES)
     for k in range(1, ROW_LENGTH):
-        column, subtracted = ROW_LENGTH * k, spread(-nodes[diagonal + k])
-        store(matrix, column, fused(subtracted, load(_IDENTITY, column), load(DIFFERENTIATION, column) * low))
+        column, subtracted = ROW_LENGTH * k, broadcast(-nodes[diagonal + k])
+        store(matrix, column, fma4(subtracted, load(_IDENTITY, column), load(DIFFERENTIATION, column) * low))
         store(
             matrix,
             column + LANES,
-            fused(subtracted, load(_IDENTITY, column + LANES), load(DIFFERENTIATION, column + LANES) * high),
+            fma4(subtracted, load(_IDENTITY, column + LANES), load(DIFFERENTIATION, column + LANES) * high),
         )
 
 
@@ -99,16 +99,16 @@ def invert_matrix(matrix):
     """
     for i in range(1, ROW_LENGTH):
         column = ROW_LENGTH * i
-        pivot = spread(1.0 / matrix[column + i])
+        pivot = broadcast(1.0 / matrix[column + i])
         off_low, off_high = load(_OFF_DIAGONAL, column), load(_OFF_DIAGONAL, column + LANES)
-        low = fused(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
-        high = fused(load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot)
+        low = fma4(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
+        high = fma4(load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot)
         for k in range(1, ROW_LENGTH):
             if k != i:
-                factor = spread(-matrix[ROW_LENGTH * k + i])
-                store(matrix, ROW_LENGTH * k, fused(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
+                factor = broadcast(-matrix[ROW_LENGTH * k + i])
+                store(matrix, ROW_LENGTH * k, fma4(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
                 store(
-                    matrix, ROW_LENGTH * k + LANES, fused(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high)
+                    matrix, ROW_LENGTH * k + LANES, fma4(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high)
                 )
         store(matrix, column, low)
         store(matrix, column + LANES, high)

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.jit import kernel
-from ..rows.law import creep_at_rest
+from ..rows.evaluate import limits_at_rest
 from .drive import evaluate_load, has_brake, is_constant, segment_end
 from .rhs import added_inertia
 from .workspace import REGIME_AT_REST, Load, Regime
@@ -55,7 +55,7 @@ def _residual_of_d(d, load, scene):
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (load.torque - Q) + load.prescribed_omega_rate
-    L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
     inverse_k = 2.0 * scene.kappa / scene.mu / L
     d_total = d + delta_0 * inverse_k
     slope = -(load.inverse_inertia + load.inverse_mass) * Q_d * inverse_k - V_rate - d_total * load.inverse_mass * Q_d
@@ -65,7 +65,7 @@ def _residual_of_d(d, load, scene):
 @kernel(inline=True)
 def _d_at_zero_omega(scene):
     """Return the d at which omega stays 0 as V grows from 0; above -1 only where mu > 2 kappa."""
-    L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
     return -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
 
 
@@ -132,7 +132,7 @@ def _local_maximum_of_residual(load, scene):
     float
         d there; -inf where the cubic decreases for all d.
     """
-    L, delta_0 = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
     first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
     second = -stiffness - 2.0 * scene.mu * load.inverse_mass
@@ -228,7 +228,7 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     stick_zone_slip: |omega - V|/V that full slip must exceed in the limit V -> 0, divided by L; work: Workspace.
     """
     scene = work.scene
-    L, free_creep = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, free_creep = limits_at_rest(scene.kappa, by_value(scene.law))
     load = evaluate_load(tau, segment, Regime(True, 1.0, 1.0, 0.0, False), work)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu

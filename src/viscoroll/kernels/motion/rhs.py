@@ -2,7 +2,7 @@
 
 In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a direction with V >= 0.  On rows
 of the law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w = (1 - |d|) L, s = sign d and
-H(v) the function :func:`..rows.law.press`,
+H(v) the function :func:`..rows.evaluate.press`,
 
     omega = V (1 + k L d)      Q = s mu [1 - w^2 H(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
 
@@ -33,9 +33,17 @@ import numpy as np
 from ..compile.by_reference import by_value
 from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
-from ..rows.added import added_mass
+from ..rows.added_mass import added_mass
 from ..rows.cover import free_kinematics
-from ..rows.law import bodies, creep_at_rest, place, press, press_secants, shift, speed
+from ..rows.evaluate import (
+    H_over_F2,
+    H_over_F2_secants,
+    body_moments,
+    free_creep_and_slopes,
+    length_and_moment,
+    limits_at_rest,
+    locate_row,
+)
 from .drive import applied_forces, current_load, load_at_node, required_forces
 from .workspace import ROW_OMEGA_OR_D, ROW_V, State
 
@@ -81,12 +89,12 @@ def evaluate_moments(u, scene):
     Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV).
     """
     law = by_value(scene.law)
-    index = place(u, law)
-    law_at_u = speed(index, u, law)
-    m, slope = law_at_u.scale * law_at_u.m, law_at_u.rise
+    index = locate_row(u, law)
+    law_at_u = length_and_moment(index, u, law)
+    m, slope = law_at_u.scale * law_at_u.m, law_at_u.d_um
     if not scene.moments_differ:
         return law_at_u.L, law_at_u.dL, law_at_u.ddL, 0.5 * m, 0.5 * m, 0.5 * slope, 0.5 * slope
-    half_space, cylinder, half_space_slope, cylinder_slope = bodies(index, u, law)
+    half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
     scale = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or less in the fast limit
     return law_at_u.L, law_at_u.dL, law_at_u.ddL, scale * half_space, scale * cylinder, half_space_slope, cylinder_slope
 
@@ -100,7 +108,7 @@ def low_speed_limits(work):
     """
     _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
     gains = work.drive.gains
-    delta_0 = creep_at_rest(work.scene.kappa, by_value(work.scene.law))[1]
+    delta_0 = limits_at_rest(work.scene.kappa, by_value(work.scene.law))[1]
     omega_over_V = 1.0 + delta_0
     force, torque = gains.force_V + gains.force_omega * omega_over_V, gains.torque_V + gains.torque_omega * omega_over_V
     return half_space, cylinder, force, torque
@@ -110,7 +118,7 @@ def low_speed_limits(work):
 def critical_creepage(V, scene):
     """Return the critical creepage delta_star at the speed V; scene: Scene."""
     u, law = scene.kappa * abs(V), by_value(scene.law)
-    return 0.5 * scene.mu / scene.kappa * speed(place(u, law), u, law).L
+    return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
 
 
 @kernel(inline=True)
@@ -120,14 +128,16 @@ def creepage(V, d, scene):
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)
     delta = critical_creepage(V, scene) * d
-    return delta if law.free is None else delta + 0.5 / scene.kappa * shift(u, law)[0]
+    return delta if law.cover_rows is None else delta + 0.5 / scene.kappa * free_creep_and_slopes(u, law)[0]
 
 
 @kernel(inline=True)
 def excess_slip(slip, V, scene):
     """Return the slip omega - V, given as ``slip``, less that of free rolling at V."""
     law = by_value(scene.law)
-    return slip if law.free is None else slip - V * (0.5 / scene.kappa * shift(scene.kappa * abs(V), law)[0])
+    if law.cover_rows is None:
+        return slip
+    return slip - V * (0.5 / scene.kappa * free_creep_and_slopes(scene.kappa * abs(V), law)[0])
 
 
 @kernel(inline=True)
@@ -190,17 +200,17 @@ def partial_slip_rates(V, d, load, regime, scene):
     Q, Q_V, Q_d = sign * mu, 0.0, 0.0
     if w > 0.0:
         v = 2.0 * u / w
-        index = place(v, law)
-        value, slope = press(index, v, law)
+        index = locate_row(v, law)
+        value, slope = H_over_F2(index, v, law)
         A = value - 0.5 * v * slope
         Q *= 1.0 - w * w * value
         if unlikely(abs(d) < _SMALL_D):  # Q by a secant of H, without cancellation
             D = abs(d) * L
-            value, _, secant, _ = press_secants(index, place(2.0 * u / L, law), v, D / w, law)
+            value, _, secant, _ = H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)
         Q_V, Q_d = -2.0 * sign * mu * w * (A * stick * dL + slope) * du_dV, 2.0 * mu * w * L * A
     dVdelta_star = L + u * dL
-    cover = free_kinematics(place(u, law), u, scene.kappa, k, dVdelta_star, law.free)
+    cover = free_kinematics(locate_row(u, law), u, scene.kappa, k, dVdelta_star, law.cover_rows)
     d_total = d + cover.aside
     omega, omega_V, omega_d = V * (1.0 + k * L * d + cover.creep), 1.0 + k * d_total * dVdelta_star, k * V * L
     force, _, torque = applied_forces(V, omega, load, regime)

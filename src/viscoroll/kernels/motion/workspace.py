@@ -56,7 +56,7 @@ ZERO_SPEED = 1e-200
 class Scene(NamedTuple):
     """Parameters of Eq. (22) of one motion.
 
-    law : rows of the law (:mod:`..rows.law`)
+    law : rows of the law (:mod:`..rows.evaluate`)
     moments_differ : whether half-space and cylinder take unequal parts of M
     kappa, mu, j : slenderness, coefficient of friction, moment of inertia, dimensionless
     gamma : tau = gamma t; also the factor of the added mass N

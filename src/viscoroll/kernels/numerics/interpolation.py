@@ -1,0 +1,165 @@
+"""Nodes, weights and matrices of polynomial interpolation and quadrature, computed in 40 digits and rounded once.
+
+No library of linear algebra takes part: its last digits differ from machine to machine, and so would all that is
+computed with them.  numpy's polynomials work on arrays of :class:`decimal.Decimal` as they do on floats.
+
+The polynomial through values at nodes is the sum of the values times Lagrange's polynomials, each of which is 1 at one
+node and 0 at the others.  Its coefficients, values, slopes and integrals therefore are matrices times the values.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from decimal import Context, Decimal, localcontext
+from functools import wraps
+
+import numpy as np
+from numpy.polynomial.chebyshev import cheb2poly
+from numpy.polynomial.legendre import leg2poly
+from numpy.polynomial.polynomial import polyder, polyfromroots, polyint, polyval
+from numpy.typing import NDArray
+
+#: Digits of the Decimals: half of them would do, were nothing lost to cancellation.
+_DIGITS = 40
+#: Digits in the search for zeros, where polynomials of degree 36 lose fourteen to cancellation.
+_DIGITS_OF_SEARCH = 60
+#: Digits behind the point that zeros keep: the last ones would tell how this machine computes a cosine.
+_DIGITS_OF_ZEROS = 36
+#: Newton steps from a start good to two digits: each doubles the digits.
+_NEWTON_STEPS = 5
+_Floats = NDArray[np.float64]
+
+
+def in_40_digits(function: Callable) -> Callable:
+    """Make ``function`` compute with Decimals of 40 digits, whatever the decimal context of its caller."""
+
+    @wraps(function)
+    def precise(*arguments):
+        with localcontext(Context(prec=_DIGITS)):
+            return function(*arguments)
+
+    return precise
+
+
+class Interpolation:
+    """Matrices that take values at nodes to what the polynomial through them is.
+
+    Parameters
+    ----------
+    nodes : distinct numbers, dimensionless, (n,).
+
+    Attributes
+    ----------
+    exact : the nodes as Decimals, (n,).
+    nodes : the nodes as doubles, (n,).
+    """
+
+    @in_40_digits
+    def __init__(self, nodes: Sequence[Decimal]) -> None:
+        """Compute Lagrange's polynomials of ``nodes``."""
+        self.exact = tuple(nodes)
+        self.nodes = to_doubles(nodes)
+        lagrange = []
+        for i, node in enumerate(nodes):
+            others = [*nodes[:i], *nodes[i + 1 :]]
+            lagrange.append(polyfromroots(others) / math.prod(node - other for other in others))
+        # [power, node]
+        self._basis = np.array(lagrange).T
+
+    def powers(self) -> _Floats:
+        """Return the matrix to the coefficients of the powers of x, the constant first, [power, node]."""
+        return to_doubles(self._basis)
+
+    @in_40_digits
+    def values(self, points: Iterable[Decimal]) -> _Floats:
+        """Return the matrix to the values at ``points``, [point, node]."""
+        return _values(self._basis, points)
+
+    @in_40_digits
+    def slopes(self, points: Iterable[Decimal]) -> _Floats:
+        """Return the matrix to the slopes at ``points``, [point, node]."""
+        return _values(polyder(self._basis), points)
+
+    @in_40_digits
+    def integrals(self, points: Iterable[Decimal]) -> _Floats:
+        """Return the matrix to the integrals from -1 to each of ``points``, [point, node]."""
+        return _values(polyint(self._basis, lbnd=-1), points)
+
+    @in_40_digits
+    def coefficients(self, values: Sequence[Decimal]) -> _Floats:
+        """Return the coefficients of the powers of x for ``values`` at the nodes, the constant first, (n,)."""
+        return to_doubles(self._basis @ np.array(values))
+
+
+@in_40_digits
+def radau(n: int, side: int) -> list[Decimal]:
+    """Return the n nodes of Radau's rule on [-1, 1], upward: the end ``side`` (-1 or 1), and n - 1 nodes inside."""
+    inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
+    return sorted([Decimal(side), *(-side * x for x in inner)])
+
+
+@in_40_digits
+def gauss(n: int) -> tuple[_Floats, _Floats]:
+    """Return (nodes, weights) of the n-point rule of Gauss and Legendre on [0, 1], each (n,)."""
+    legendre = leg2poly(_unit_series(n, 1))
+    nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))
+    weights = 1 / ((1 - nodes * nodes) * polyval(nodes, polyder(legendre)) ** 2)
+    return to_doubles((1 + nodes) / 2), to_doubles(weights)
+
+
+@in_40_digits
+def chebyshev(n: int) -> list[Decimal]:
+    """Return the n zeros of Chebyshev's T_n on [-1, 1], upward."""
+    return _zeros(cheb2poly(_unit_series(n, 1)), [(k - 0.5) / n for k in range(1, n + 1)])
+
+
+@in_40_digits
+def to_chebyshev(n: int) -> _Floats:
+    """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1), [term, node]."""
+    x = np.array(chebyshev(n))
+    terms = [1 + 0 * x, x]
+    for _ in range(n - 2):
+        terms.append(2 * x * terms[-1] - terms[-2])
+    terms[0] /= 2
+    return to_doubles(2 * np.array(terms) / n)
+
+
+def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
+    """Return the matrix [m, k] of the coefficients of t^k in T_m(scale t - shift), m < n, computed in doubles."""
+    matrix = np.zeros((n, n))
+    matrix[0, 0], matrix[1, :2] = 1.0, [-shift, scale]
+    for m in range(2, n):
+        matrix[m] = (0.0 - 2.0 * shift) * matrix[m - 1] - matrix[m - 2]
+        matrix[m, 1:] += 2.0 * scale * matrix[m - 1, :-1]
+    return matrix
+
+
+def to_doubles(values) -> _Floats:
+    """Return Decimals as the nearest doubles, of the same shape, in C order: einsum's sums depend on the order."""
+    return np.array(values, dtype=np.float64, order="C")
+
+
+def _unit_series(degree: int, *last: int) -> list[Decimal]:
+    """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with ``degree`` zeros.
+
+    degree : how many polynomials are left out.  last : coefficients of the next ones.
+    """
+    return [Decimal(c) for c in (*[0] * degree, *last)]
+
+
+def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
+    """Return zeros of a polynomial, upward, by Newton's iteration.
+
+    polynomial : coefficients of the powers of x, the constant first, Decimals.
+    half_turns : for each zero an angle whose cosine is near it, divided by pi.
+    """
+    x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
+    slope = polyder(polynomial)
+    with localcontext(Context(prec=_DIGITS_OF_SEARCH)):
+        for _ in range(_NEWTON_STEPS):
+            x = x - polyval(x, polynomial) / polyval(x, slope)
+    return sorted(round(zero, _DIGITS_OF_ZEROS) + 0 for zero in x)
+
+
+def _values(polynomials: NDArray, points: Iterable[Decimal]) -> _Floats:
+    """Return values [point, polynomial] of polynomials whose coefficients are [power, polynomial]."""
+    return to_doubles(polyval(np.array([*points]), polynomials).T)

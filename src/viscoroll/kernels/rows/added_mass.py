@@ -1,0 +1,63 @@
+"""N of M = M(V) + N V', and the added mass gamma N of a law that has it; 0 of a law of steady rolling."""
+
+import numpy as np
+
+from ..compile.intrinsics import unlikely
+from ..compile.jit import inline_kernel, kernel
+from .contact_states import element
+from .evaluate import locate_octave
+from .record import ALPHA, E0, ROW_COUNT
+from .simd_polynomial import TERMS, evaluate_pair
+
+#: Added mass gamma N at V = 0, in units of the mass, below which V = 0 is not reached.
+_HEAVY = -4.0
+
+
+@inline_kernel
+def _evaluate_N(u, law):
+    """Return (row, N, its integral over u from where t = 0 in the row, slope of N over u).
+
+    u : kappa |V|.  law : a :class:`Law` with rows of N.  row : its number, or the number of rows behind the last.
+    """
+    row, t, dt_dx = locate_octave(u, law.marks[E0])
+    count = law.marks[ROW_COUNT]
+    alpha = law.rows[ALPHA]
+    if row < count:
+        N, integral, slope, _, _, _ = evaluate_pair(law.N_rows, row * 2 * TERMS, t)
+        return row, N, integral, slope * dt_dx
+    integral = -(alpha - 1.0) / (16.0 * alpha * u)
+    return count, -integral / u, integral, 2.0 * integral / (u * u)
+
+
+@kernel
+def _evaluate_added_mass(law, V, kappa, gamma):
+    """Return (gamma N, its slope over V, its integral over V) of a law that has N.
+
+    law : a :class:`Law` with rows of N.  V : speed of the axis.  kappa : slenderness R/l0.
+    gamma : mass parameter, dimensionless.  The integral begins at V = 0 or, where V = 0 is out of reach, at
+    infinity.
+    """
+    count = law.marks[ROW_COUNT]
+    row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
+    # the integral starts at V = 0 if that is reached, where no digits may cancel; else at infinity
+    start = count * 2 * TERMS + (count + 1 if gamma * law.N_rows[0] > _HEAVY else 0)
+    integral += law.N_rows[start + row]
+    if V < 0.0:  # continued from V = 0
+        integral = 2.0 * law.N_rows[start] - integral
+    return gamma * N, gamma * np.copysign(kappa, V) * slope, gamma * integral / kappa
+
+
+@inline_kernel
+def added_mass(law, V, kappa, gamma):
+    """Return (gamma N, its slope over V, its integral over V), zeros of a law of steady rolling.
+
+    law : a :class:`Law`.  V : speed.  kappa : slenderness R/l0.  gamma : mass parameter, dimensionless.
+    """
+    return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
+
+
+@kernel
+def unsteady_loop(law, kappa, V, out):
+    """Write N of states into ``out``; ``kappa`` and ``V`` have one value or one for each state; ``law`` has N."""
+    for n in range(out.size):
+        _, out[n], _, _ = _evaluate_N(element(kappa, n) * abs(element(V, n)), law)

@@ -1,0 +1,86 @@
+"""Records of contact states: what the law is given, and which quantities are written where."""
+
+from collections import namedtuple
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compile.jit import inline_kernel
+
+#: The row of the output that each quantity is written to; -1 for a quantity that is not requested.  The names are those
+#: of the fields of ``contact``.
+Fields = namedtuple(
+    "Fields",
+    "lam zeta epsilon delta_star delta full_slip beta grip Q M dQ_dV dQ_ddelta dQ_domega dM_dV "
+    "M_half_space M_cylinder dM_half_space_dV dM_cylinder_dV delta_0",
+    defaults=[-1] * 19,
+)
+
+
+class State(NamedTuple):
+    """One state of the contact, dimensionless; or arrays of states, each of length 1 or with one value for each.
+
+    kappa : R/l0, slenderness.  mu : coefficient of friction.  V : speed of the axis.
+    creep : creepage delta, or angular velocity omega.  creep_is_omega : whether ``creep`` is omega; one for all.
+    """
+
+    kappa: Any
+    mu: Any
+    V: Any
+    creep: Any
+    creep_is_omega: bool
+
+
+class Request(NamedTuple):
+    """States, and the quantities of them that are requested.
+
+    states : a :class:`State` of arrays.
+    order : numbers of the states in the order of evaluation; empty: in their own order.
+    to : :class:`Fields`.  out : (quantities, states), written.  first : column of ``out`` for state 0.
+    """
+
+    states: Any
+    order: Any
+    to: Any
+    out: Any
+    first: int
+
+
+@inline_kernel
+def element(values, n):
+    """Return element ``n`` of an array that has one value for all or one each."""
+    return values[np.uint64(n * (values.size > 1))]
+
+
+@inline_kernel
+def read_state(states, n):
+    """Return the :class:`State` with number ``n`` of ``states``, a :class:`State` of arrays."""
+    return State(
+        element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
+        states.creep_is_omega,
+    )  # fmt: skip
+
+
+@inline_kernel
+def write_field(row, value, n, request):
+    """Write a quantity of a state, if it is requested.
+
+    row : row of the output, a field of :class:`Fields`.  value : the quantity.  n : number of the state.
+    request : the :class:`Request`.
+    """
+    if row >= 0:
+        request.out[np.uint64(row), np.uint64(n + request.first)] = value
+
+
+@inline_kernel
+def slip_and_creepage(state):
+    """Return (slip, delta) of ``state``, a :class:`State`.
+
+    slip : a number with the sign of omega - V.  delta : the creepage (omega - V)/V; V = 0 counts as V -> 0+.
+    """
+    V = state.V
+    creep = state.creep
+    if not state.creep_is_omega:
+        return -creep if V < 0.0 else creep, creep
+    slip = creep - V
+    return slip, slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)

@@ -1,0 +1,152 @@
+"""The law of one scene for jitted code: a value that is called, the address of the user data of a C function.
+
+All such laws have one numba type, so that a user's function that is given a law is compiled once for all of them.
+"""
+
+import ctypes
+import inspect
+from functools import cached_property
+from typing import Any, NoReturn
+
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.core.imputils import lower_constant
+from numba.core.typing import signature
+from numba.extending import NativeValue, lower_builtin, models, register_model, unbox
+from numpy.typing import NDArray
+
+from .c_function import RESULTS
+from .loads import LoadsAndSlopes
+
+#: Array of the results of the C function.
+ResultBuffer = ctypes.c_double * RESULTS
+#: Types of the C function for ctypes: its status, then its arguments.
+_C_TYPES = ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p
+#: LLVM's 64-bit integer, which holds an address.
+_WORD = ir.IntType(64)
+#: LLVM's double.
+_DOUBLE = ir.DoubleType()
+#: LLVM's pointer to doubles.
+_POINTER = _DOUBLE.as_pointer()
+#: LLVM's type of the C function.
+_FUNCTION = ir.FunctionType(ir.IntType(32), [_DOUBLE, _DOUBLE, _POINTER, _POINTER])
+#: Signature of a law in jitted code.
+_SIGNATURE = inspect.signature(lambda V, omega: None)
+#: Laws that are constants of somebody's machine code, which nothing else keeps alive.
+_constants: list[Any] = []
+
+
+class LawType(types.Callable):
+    """numba's type of a law: (V, omega) -> :class:`LoadsAndSlopes`."""
+
+    def __init__(self):
+        super().__init__("viscoroll.law")
+
+    def get_call_type(self, context, args, kws):
+        """Return the signature of a call with two real numbers, or None for other arguments.
+
+        context : of numba.  args, kws : types of the positional and of the named arguments.
+        """
+        try:
+            kinds = _SIGNATURE.bind(*args, **kws).args
+        except TypeError:
+            return None
+        if not all(isinstance(types.unliteral(kind), types.Integer | types.Float) for kind in kinds):
+            return None
+        returned = types.NamedUniTuple(types.float64, RESULTS, LoadsAndSlopes)
+        return signature(returned, types.float64, types.float64, recvr=self).replace(pysig=_SIGNATURE)
+
+    def get_call_signatures(self):
+        """Return the signatures that numba names in its messages, and that they have no parameters."""
+        return [signature(types.float64, types.float64, types.float64)], False
+
+    def get_impl_key(self, _):
+        """Return the key under which numba finds :func:`_lower_call`."""
+        return LawType
+
+
+class Jitted:
+    """A law for jitted code: ``law.jitted(V, omega)``, NaN where the law is not defined.
+
+    Parameters
+    ----------
+    scenes : two records of user data, without slopes and with, whose first field is the address of the C function.
+    owner : what the addresses in ``scenes`` point to, which is kept.
+
+    Attributes
+    ----------
+    plain, address : addresses of the user data without slopes and with.
+    function : the C function for calls from Python, with the GIL: to release it takes longer than the law.
+    function_address : its address.
+    """
+
+    _numba_type_ = LawType()
+
+    def __init__(self, scenes: NDArray[Any], owner):
+        self._scenes = scenes
+        self._owner = owner
+        self.plain, self.address = (int(scenes[n:].ctypes.data) for n in (0, 1))
+        self.function_address = int(scenes["function"][0])
+        self.function = ctypes.PYFUNCTYPE(*_C_TYPES[:3], ctypes.c_void_p, ctypes.c_void_p)(self.function_address)
+
+    def __call__(self, V: float, omega: float) -> LoadsAndSlopes:
+        out = ResultBuffer()
+        self.function(V, omega, out, self.address)
+        return LoadsAndSlopes(*out)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("law.jitted is machine code of this process: pickle the law, or its scene, and bind it there")
+
+    @cached_property
+    def ctypes(self) -> tuple[Any, ctypes.c_void_p]:
+        """The C function and its user data, for ctypes; each keeps this law alive."""
+        function = ctypes.CFUNCTYPE(*_C_TYPES)(self.function_address)
+        scene = ctypes.c_void_p(self.address)
+        function.law = scene.law = self  # type: ignore[attr-defined]
+        return function, scene
+
+
+@register_model(LawType)
+class _LawModel(models.PrimitiveModel):
+    """A law is represented by the address of its user data."""
+
+    def __init__(self, manager, kind):
+        super().__init__(manager, kind, _WORD)
+
+
+@unbox(LawType)
+def _unbox(kind, law, c):
+    """Return the address of the user data of a law that Python passes to jitted code.
+
+    kind, c : numba's type of the law and its context of unboxing.  law : the Python object.
+    """
+    address = c.pyapi.object_getattr_string(law, "address")
+    value = c.pyapi.long_as_ulonglong(address)
+    c.pyapi.decref(address)
+    return NativeValue(value, is_error=c.pyapi.c_api_error())
+
+
+@lower_constant(LawType)
+def _lower_constant(context, builder, kind, law):
+    """Return instructions for the address of a law that is a constant of the code.
+
+    context, builder, kind : of numba.  law : the :class:`Jitted`, which is kept alive.
+    numba does not put code with such an address into its cache: the next process has other addresses.
+    """
+    _constants.append(law)
+    return builder.ptrtoint(context.add_dynamic_addr(builder, law.address, info="law"), _WORD)
+
+
+@lower_builtin(LawType, LawType, types.float64, types.float64)
+def _lower_call(context, builder, signature, arguments):
+    """Return instructions that call the C function of a law, whose address begins the user data.
+
+    context, builder, signature : of numba.  arguments : values of the law, V and omega.
+    """
+    law, V, omega = arguments
+    scene = builder.inttoptr(law, _POINTER)
+    function = builder.load(builder.bitcast(scene, _FUNCTION.as_pointer().as_pointer()))
+    out = cgutils.alloca_once(builder, _DOUBLE, size=_WORD(RESULTS))
+    builder.call(function, [V, omega, out, scene])
+    numbers = [builder.load(builder.gep(out, [_WORD(n)])) for n in range(RESULTS)]
+    return context.make_tuple(builder, signature.return_type, numbers)

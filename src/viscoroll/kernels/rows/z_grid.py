@@ -1,0 +1,392 @@
+"""Rows for one series or pair after another, from a grid of z that all rows of a material share.
+
+At the nodes z = 2^(n/10) the formulas of the modes (:mod:`series`) give lam and eta/F = z/(z + g), and with them a
+point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v through the 36
+points around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that octave.  The polynomial of
+the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is
+needed.  A row depends on its material alone, not on the rows that were made before.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compile.intrinsics import floats_at, integers_at, record_at, record_type
+from ..compile.jit import inline_kernel, kernel
+from ..numerics.interpolation import chebyshev, to_doubles
+from ..numerics.simd4 import LANES, pack, unpack
+from .newton_interpolation import (
+    ARGUMENTS,
+    FUNCTION_STRIDE,
+    NODE_VALUES,
+    NODES,
+    POINT_COUNT,
+    SCRATCH_SIZE,
+    VALUES,
+    divided_differences,
+    evaluate_at_nodes,
+    to_powers,
+)  # fmt: skip
+from .record import (
+    E0,
+    H_OVER_F2,
+    MAKER_MARKS,
+    MAKER_NUMBERS,
+    PART_SIZE,
+    PARTS_PER_ROW,
+    ROW_COUNT,
+    ROW_SIZE,
+    VERSION,
+    select_index,
+)  # fmt: skip
+from .series import (
+    G_OVER_Z,
+    H_OVER_Z,
+    M_CYLINDER,
+    M_HALF_SPACE,
+    evaluate_functions,
+    evaluate_ratios,
+    split_workspace,
+    unpack_series,
+)  # fmt: skip
+from .simd_polynomial import TERMS
+
+#: Nodes of an octave of z: 6 of them leave an error of 3e-12 in lam, 10 that of rounding (against 40 digits).
+NODES_PER_OCTAVE = 10
+#: Octaves behind the shortest time where the fast limit begins: from there on it is good to rounding.
+FAST_LIMIT_OCTAVES = 34
+
+# Functions at a node, in the order of the parts of a row.
+#: L over u.
+_L = 0
+#: u m, with m = M/V.
+_M = 1
+#: u lam.
+_LAM = 2
+#: epsilon over u.
+_EPSILON = 3
+#: u m of the half-space.
+_HALF_SPACE = 4
+#: u m of the cylinder.
+_CYLINDER = 5
+#: H/F^2 over v.
+_H_OVER_F2 = 6
+#: eta/F over v.
+_ETA_OVER_F = 7
+#: The variable u itself.
+_U = 8
+#: The variable v itself.
+_V = 9
+#: ln lam, by which u is located: ln u = ln lam - ln(2 z).
+_LN_LAM = 10
+#: ln(eta/F), by which v is located: ln v = ln(eta/F) - ln z.
+_LN_ETA_OVER_F = 11
+#: Numbers of a node.
+_FUNCTIONS = 12
+
+#: Difference of ln z between nodes.
+_STEP = math.log(2.0) / NODES_PER_OCTAVE
+#: Nodes in [1, 2).
+_FRACTIONS = np.exp2(np.arange(NODES_PER_OCTAVE) / NODES_PER_OCTAVE)
+#: Nodes of the slow row in its t, which is in [0, 1].
+_SLOW_NODES = 0.5 + 0.5 * NODES
+#: ln of the nodes of a row, as fractions of the end of its octave.
+_LN_NODES = np.log(0.25 * (NODES + 3.0))
+#: Inverse of the nodes of a row, as fractions of the end of its octave.
+_INVERSE_NODES = 4.0 / (NODES + 3.0)
+#: Numbers 0 to 35 from the middle outwards, the order of the points in Newton's polynomial.
+_OUTWARDS = np.array([POINT_COUNT // 2 + (n + 1) // 2 * (-1) ** n for n in range(POINT_COUNT)])
+
+
+def _leja_order(points: np.ndarray) -> np.ndarray:
+    """Return points in an order in which divided differences stay small: each is farthest from those before it."""
+    order = [points.argmax()]
+    while len(order) < points.size:
+        order.append(np.prod(np.abs(4.0 * (points[:, None] - points[order])), axis=1).argmax())
+    return np.asarray(points[order])
+
+
+#: Points of the slow row as fractions of the end of 1/z, in their order in Newton's polynomial.
+_SLOW_POINTS = _leja_order(0.5 + 0.5 * to_doubles(chebyshev(POINT_COUNT)))
+
+#: What these kernels read.  Addresses: rows and marks of the law; the index of the material of each state; the numbers
+#: of the materials; scratch for the grid (``numbers``); the versions of its blocks of four nodes; the workspace of the
+#: modes.  state_count: length of the indices, 1 or one for each state.  material_size: numbers of a material.
+#: node_count: nodes of the grid.  workspace_size: numbers of the workspace.  unlike: whether the bodies differ.
+SOURCE = record_type(
+    "rows marks material_index state_count materials material_size "
+    "numbers node_count node_versions workspace workspace_size unlike"
+)
+#: Number of a material, and of the head of rows: sum J_j T_j of the half-space; behind it that of the cylinder.
+_T_HALF_SPACE = MAKER_NUMBERS
+#: Number of a material: exponent e0 of its first row; behind it the number of rows, and the number of modes.
+FIRST_EXPONENT = MAKER_NUMBERS + 2
+#: Number of a material where its modes begin (:func:`.series.unpack_series`).
+SERIES_START = FIRST_EXPONENT + 3
+#: Mark that is the number of modes of the selected material.
+_MODES = MAKER_MARKS
+#: Mark that is the address of its numbers.
+_MATERIAL = MAKER_MARKS + 1
+
+
+class Grid(NamedTuple):
+    """The grid of the selected material, and the rows that are made from it.
+
+    rows : of the law, written.  scratch : of :mod:`newton_interpolation`.
+    functions : (node_count, 12), values at the nodes; the last 36 nodes are the points of the slow row.
+    node_versions : version for which each block of four nodes was made.
+    series, workspace, modes, unlike : arguments of :func:`.series.unpack_series` and :func:`.series.split_workspace`.
+    e0 : exponent of the first row.  version : that of the selected material.
+    lowest : n of node 0, where z = 2^(n/10).
+    """
+
+    rows: Any
+    scratch: Any
+    functions: Any
+    node_count: int
+    node_versions: Any
+    series: Any
+    workspace: Any
+    modes: int
+    unlike: bool
+    e0: int
+    version: int
+    lowest: int
+
+
+def grid_size(count: int, alpha: float) -> int:
+    """Return the number of nodes, a multiple of four, from which ``count`` rows of a law with ``alpha`` can be made."""
+    nodes = NODES_PER_OCTAVE * (count + math.ceil(0.5 * math.log2(alpha)) + 4) + 3 * POINT_COUNT + LANES
+    return nodes + -nodes % LANES
+
+
+def work_size(nodes: int) -> int:
+    """Return the number of doubles of the scratch of a grid of ``nodes`` nodes."""
+    return SCRATCH_SIZE + _FUNCTIONS * nodes
+
+
+@kernel(allocates=True)
+def select_series(n, source):
+    """Select the material of state ``n``: write the heads of rows and marks; ``source``: pointer to a SOURCE record."""
+    source = record_at(source)
+    marks = integers_at(source.marks, PARTS_PER_ROW)
+    index = select_index(n, source.material_index, source.state_count, marks)
+    if index >= 0:
+        marks[_MATERIAL] = source.materials + 8 * source.material_size * index
+        rows = floats_at(source.rows, ROW_SIZE)
+        numbers = floats_at(marks[_MATERIAL], SERIES_START)
+        for k in range(FIRST_EXPONENT):
+            rows[k] = numbers[k]
+        marks[E0] = numbers[FIRST_EXPONENT]
+        marks[ROW_COUNT] = numbers[FIRST_EXPONENT + 1]
+        marks[_MODES] = numbers[FIRST_EXPONENT + 2]
+
+
+@kernel(allocates=True)
+def make_part(start, source):
+    """Make a part of a row of the selected material.
+
+    start : position in the rows.  source : pointer to a SOURCE record.
+    """
+    source = record_at(source)
+    marks = integers_at(source.marks, start // PART_SIZE + 1)
+    nodes = source.node_count
+    modes = marks[_MODES]
+    lowest = NODES_PER_OCTAVE * (2 - marks[E0]) + 2 * POINT_COUNT + LANES - nodes
+    numbers = floats_at(source.numbers, SCRATCH_SIZE + _FUNCTIONS * nodes)
+    series = floats_at(marks[_MATERIAL] + 8 * SERIES_START, source.material_size - SERIES_START)
+    # blocks begin at multiples of four: the next below
+    grid = Grid(
+        floats_at(source.rows, start + 2 * PART_SIZE), numbers, numbers[SCRATCH_SIZE:].reshape(nodes, _FUNCTIONS),
+        nodes, integers_at(source.node_versions, nodes // LANES), series,
+        floats_at(source.workspace, source.workspace_size), modes, source.unlike != 0 and modes > 0,
+        marks[E0], marks[VERSION], lowest - lowest % LANES,
+    )  # fmt: skip
+    _make_functions(start % ROW_SIZE, start // ROW_SIZE - 1, grid)
+    marks[start // PART_SIZE] = marks[VERSION]
+
+
+@kernel
+def _make_functions(part, row, grid):
+    """Make one function of v, or a pair of functions of u, for one row: write the coefficients of the powers of t.
+
+    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.  row : number of the row.  grid : the :class:`Grid`, whose
+        ``rows`` are written.
+    """
+    over_v = part >= H_OVER_F2
+    slow = row == 0
+    scratch = grid.scratch
+    first = part // PART_SIZE
+    count = 1 if over_v else 2
+    if slow:
+        _collect_slow_points(first, count, over_v, grid)
+    else:
+        _collect_points(row, first, count, over_v, grid)
+    divided_differences(count, scratch)
+    for which in range(count):
+        function = first + which
+        limit = 0.0
+        evaluate_at_nodes(_SLOW_NODES if slow else _LN_NODES, which, scratch)
+        if slow:
+            limit = _slow_limit(function, grid)
+        elif _is_times_u(function):
+            scale = math.ldexp(1.0, int(-grid.e0 - row))
+            for k in range(TERMS):
+                scratch[NODE_VALUES + k] *= _INVERSE_NODES[k] * scale
+        to_powers(slow, limit, scratch)
+        shift = 1 if slow and function == _EPSILON else 0  # the polynomial is that of epsilon/t
+        to = (row + 1) * ROW_SIZE + part + 2 * which
+        grid.rows[to] = 0.0
+        for k in range(shift, TERMS):
+            grid.rows[to + (k // 2) * (2 * count) + k % 2] = scratch[NODE_VALUES + k - shift]
+
+
+@inline_kernel
+def _is_times_u(function):
+    """Return whether a function is stored at the nodes as its product with u."""
+    return function == _M or function == _LAM or function == _HALF_SPACE or function == _CYLINDER
+
+
+@inline_kernel
+def _slow_limit(function, grid):
+    """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t.
+
+    function : _L to _ETA_OVER_F.  grid : the :class:`Grid`.
+    """
+    half_space = grid.rows[_T_HALF_SPACE]
+    cylinder = grid.rows[_T_HALF_SPACE + 1]
+    if function == _EPSILON:
+        return math.ldexp(half_space + cylinder, int(grid.e0))
+    if function == _M:
+        return half_space + cylinder
+    return half_space if function == _HALF_SPACE else cylinder if function == _CYLINDER else 1.0
+
+
+# --- points ---
+
+
+@inline_kernel
+def _z_of_node(node, grid):
+    """Return z of a node: a power of 2^(1/10), or a point of the slow row.
+
+    node : its number.  grid : the :class:`Grid`.
+    """
+    slow = node - (grid.node_count - POINT_COUNT)
+    n = node + grid.lowest
+    if slow < 0:
+        return math.ldexp(_FRACTIONS[n % NODES_PER_OCTAVE], int(n // NODES_PER_OCTAVE))
+    end = math.ldexp(1.0, int(grid.e0))
+    T_mean = grid.rows[_T_HALF_SPACE] + grid.rows[_T_HALF_SPACE + 1]
+    return 0.5 / (end * (1.0 + 2.5 * T_mean * end) * _SLOW_POINTS[slow])
+
+
+@kernel
+def _fill_block(first, grid):
+    """Compute the functions at four nodes.
+
+    first : number of the first node, a multiple of four.  grid : the :class:`Grid`, written.
+    """
+    places = pack(
+        _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
+    )
+    z = unpack(places)
+    series = unpack_series(grid.series, grid.modes, grid.unlike)
+    work = split_workspace(grid.workspace, grid.modes)
+    evaluate_ratios(places, series, work)
+    evaluate_functions(False, places, series, work)
+    for c in range(LANES):
+        shift = work.functions[G_OVER_Z + c]
+        half_space = work.functions[M_HALF_SPACE + c]
+        cylinder = work.functions[M_CYLINDER + c]
+        inverse_z = 1.0 / z[c]
+        inverse_lam = np.sqrt(1.0 + 2.0 * work.functions[H_OVER_Z + c])
+        eta_over_F = 1.0 / (1.0 + shift)
+        lam = 1.0 / inverse_lam
+        root_of_H_over_F2 = eta_over_F * inverse_lam
+        u = 0.5 * lam * inverse_z
+        node = grid.functions[first + c]
+        node[_L] = lam * (1.0 + shift)
+        node[_M] = u * (half_space + cylinder)
+        node[_LAM] = u * lam
+        node[_EPSILON] = shift
+        node[_HALF_SPACE] = u * half_space
+        node[_CYLINDER] = u * cylinder
+        node[_H_OVER_F2] = root_of_H_over_F2 * root_of_H_over_F2
+        node[_ETA_OVER_F] = eta_over_F
+        node[_U] = u
+        node[_V] = eta_over_F * inverse_z
+        node[_LN_LAM] = np.log(lam)
+        node[_LN_ETA_OVER_F] = np.log(eta_over_F)
+
+
+@inline_kernel
+def _ensure_nodes(first, stop, grid):
+    """Make nodes of the grid that belong to another material still.
+
+    first, stop : numbers of the first node and of the one behind the last.  grid : the :class:`Grid`, written.
+    """
+    for block in range(first // LANES, (stop - 1) // LANES + 1):
+        if grid.node_versions[block] != grid.version:
+            grid.node_versions[block] = grid.version
+            _fill_block(LANES * block, grid)
+
+
+@inline_kernel
+def _ln_from_end(node, row, over_v, grid):
+    """Return ln u, or ln v, at a node of the grid minus ln of the end of an octave of u or v.
+
+    node : number of the node.  row : number of the row that spans the octave.  over_v : True for v, False for u.
+    grid : the :class:`Grid`, in which the node is made if it is missing.
+    """
+    _ensure_nodes(node, node + 1, grid)
+    end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
+    if over_v:
+        return grid.functions[node, _LN_ETA_OVER_F] - end
+    return grid.functions[node, _LN_LAM] - (end + NODES_PER_OCTAVE * _STEP)
+
+
+@kernel
+def _collect_points(row, first, count, over_v, grid):
+    """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
+
+    row : number of the row that spans the octave.  first : index of the first function at a node.
+    count : number of functions, 1 or 2.  over_v : True if they are functions of v, False for u.
+    grid : the :class:`Grid`.  Arguments are ln u or ln v, counted from the end of the octave.
+    """
+    middle = -0.5 * NODES_PER_OCTAVE * _STEP
+    node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
+    steps = NODES_PER_OCTAVE
+    while abs(steps) > 1:  # u and v fall with z, by half an octave to two octaves in one octave of z
+        steps = int(0.5 * (_ln_from_end(node, row, over_v, grid) - middle) / _STEP)
+        node += steps
+    while not _ln_from_end(node, row, over_v, grid) > middle:
+        node -= 1
+    while _ln_from_end(node + 1, row, over_v, grid) > middle:
+        node += 1
+    node += 1 - POINT_COUNT // 2
+    for k in range(POINT_COUNT):
+        point = node + _OUTWARDS[k]
+        grid.scratch[ARGUMENTS + k] = _ln_from_end(point, row, over_v, grid)
+        for which in range(count):
+            grid.scratch[VALUES + FUNCTION_STRIDE * which + k] = grid.functions[point, first + which]
+
+
+@kernel
+def _collect_slow_points(first, count, over_v, grid):
+    """Write the 36 points of the slow row, from 1/z = 0 to a little beyond its end, into the scratch of ``grid``.
+
+    first : index of the first function at a node.  count : number of functions, 1 or 2.
+    over_v : True if they are functions of v, False for u.  grid : the :class:`Grid`. Arguments are t = u or v
+    divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided by t.
+    """
+    end = math.ldexp(1.0, int(grid.e0))
+    _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)
+    for k in range(POINT_COUNT):
+        node = grid.functions[grid.node_count - POINT_COUNT + k]
+        x = node[_V] if over_v else node[_U]
+        grid.scratch[ARGUMENTS + k] = x / end
+        for which in range(count):
+            function = first + which
+            scale = x if _is_times_u(function) else x / end if function == _EPSILON else 1.0
+            grid.scratch[VALUES + FUNCTION_STRIDE * which + k] = node[function] / scale - _slow_limit(function, grid)
