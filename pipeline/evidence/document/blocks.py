@@ -107,6 +107,18 @@ def grids(results: Results) -> str:
     )
 
 
+def mutants(results: Results) -> str:
+    """Number of defects planted in the kernels, and of those that the tests noticed."""
+    outcomes = [row["outcome"] for row in results["mutants"].values()]
+    killed = outcomes.count("killed")
+    noticed = "all of them" if killed == len(outcomes) else f"{killed}"
+    return (
+        "Coverage by lines cannot be measured in compiled kernels.  Instead "
+        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.py) were planted in them, one at a time: "
+        f"the tests noticed {noticed} ([results](data/results/mutants.json)).\n"
+    )
+
+
 # --- prove ---
 
 
@@ -272,7 +284,7 @@ def symbols(_: Results) -> Iterator[Row]:
 MAKERS: dict[str, Callable[[Results], Any]] = {
     made.__name__: made
     for made in (
-        three, headline, grids, ensembles, ensembles_plan, proofs, independent_paper,
+        three, headline, grids, mutants, ensembles, ensembles_plan, proofs, independent_paper,
         unsteady_gamma, unsteady, unsteady_ways, bench_peers, bench_own, bench_driven, bench_bound_law,
         bench_series, symbols, house.rooms, house.commands, house.sections, *identification.MAKERS,
     )

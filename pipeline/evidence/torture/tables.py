@@ -31,6 +31,12 @@ alpha = [8, 16]
 material = { E = 2.3e5, nu = 0.49, T_epsilon = 10.7, T_sigma = 0.97 }
 [tables.laws.rubber]
 material = { E = 3e6, nu = 0.5, prony = { E = [0.3, 0.6, 1.5], tau = [2e-2, 1e-3, 1e-5] } }
+[tables.grid]
+preset = "paper-section-5-rounded"
+V = [0.1, 2.0, 5]
+delta = 5
+alpha = [8.0, 11.0, 13.0, 16.0]
+allowed = 1e-12
 """
 #: seconds within which it is killed once a temporary file is there: what a write and its two fsyncs take
 WRITE = 0.02

@@ -3,33 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, Literal, overload
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Literal, overload
 
 from ..core.array_types import Numbers
-from ..core.checks import broadcast_shape, check_array, check_array_extent, check_bool
-from ..core.errors import ParameterError, exactly_one_error
+from ..core.checks import check_array, check_array_extent, check_bool
+from ..core.errors import exactly_one_error
 from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
-from ..materials.bodies import Bodies
 from ..materials.cover import Cover
-from ..materials.law_table import LawTable
-from ..materials.prony import Prony
-from .contact_fields import UNSTEADY, complete, computed_fields, field_names
-from .contact_table import FASTEST, evaluate_law, refuse_overflow
-from .parameters import Parameters, Rolls, framed
-
-#: Largest kappa |V| for Q by the printed Eq. (15), in which the rounding error of a bracket grows with kappa |V|:
-#: beyond it Q has lost four digits of mu and more.
-_FASTEST_DIRECT = 1e12
+from .contact_fields import field_names
+from .contact_table import evaluate_contact
+from .parameters import Roller, resolve_model
+from .validity.model_warnings import warn_of_contact
 
 
 @overload
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     delta: Numbers,
@@ -39,7 +30,7 @@ def contact(
 ) -> Values: ...
 @overload
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     omega: Numbers,
@@ -48,7 +39,7 @@ def contact(
     method: Literal["table", "direct"] = "table",
 ) -> Values: ...
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     delta: Numbers | None = None,
@@ -123,7 +114,7 @@ def contact(
     Beside float64 input and its result a call takes a few megabytes, for any sizes and any
     broadcasting (``tests/test_invariance.py``).
     """
-    _, scene, scale = framed(roller, "contact")
+    _, scene, scale = resolve_model(roller, "contact")
     if (delta is None) == (omega is None):
         raise exactly_one_error("delta", "omega", both=delta is not None)
     if slopes is not False:
@@ -139,7 +130,7 @@ def contact(
     given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
-        roller.look(speed, ends)
+        warn_of_contact(roller, speed, ends)
         about = roller.about
         speed = speed / scale["V"]
         creep = creep / scale["omega"] if delta is None else creep
@@ -147,45 +138,3 @@ def contact(
     if scale.si:
         found = {name: value * scale[name] if name in DIMENSIONS else value for name, value in found.items()}
     return Values(found, given, si=scale.si, labels=labels, about=about)
-
-
-def evaluate_contact(
-    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
-) -> dict[str, Any]:
-    """Return dimensionless fields of the contact by name, at checked arguments.
-
-    Parameters
-    ----------
-    scene : parameters of the roller.
-    V : speeds, dimensionless.
-    creep : angular velocities if ``creep_is_omega``, else creepages.
-    names : fields, as of :func:`.contact_fields.field_names`.
-    method : as of :func:`contact`.
-
-    Raises
-    ------
-    ParameterError
-        Speeds out of range, shapes that do not broadcast, a material with method "direct", N of many materials.
-    """
-    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
-    arrays["omega" if creep_is_omega else "delta"] = creep
-    direct = method == "direct"
-    fastest = _FASTEST_DIRECT if direct and "Q" in names else FASTEST
-    shape: tuple[int, ...] = ()
-    if V.ndim or creep.ndim or scene.shape:
-        arrays = {name: np.asarray(value) for name, value in arrays.items()}
-        shape = broadcast_shape(**arrays)
-        refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * float(V)) <= fastest:
-        refuse_overflow(np.asarray(scene.kappa), V, fastest)
-    if scene.material is not None and direct:
-        raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
-    material = None if direct else scene.table or scene.each
-    if isinstance(material, Prony | Bodies):
-        if UNSTEADY in names:
-            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
-        arrays["alpha"] = np.arange(len(material), dtype=np.float64)
-    unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
-    computed = computed_fields(names, unlike)
-    rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
-    return complete(names, computed, rows, shape)

@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 
 from ..core.array_types import Floats
 from ..core.blocks import block_reader, run_blocks
-from ..core.checks import extent
+from ..core.checks import broadcast_shape, extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from ..materials.law_modes import by_modes
 from ..materials.law_table import LawTable
 from ..materials.prony import Prony
-from .contact_fields import UNSTEADY, kernel_rows
+from .contact_fields import UNSTEADY, complete, computed_fields, kernel_rows
+from .parameters import Parameters
 
 #: States of a block: some milliseconds of work.
 _BLOCK = 1 << 15
@@ -30,6 +31,51 @@ _TOGETHER = 64
 _NO_ORDER = np.empty(0, np.int64)
 #: Largest kappa |V|: beyond it zeta underflows.
 FASTEST = 1e300
+#: Largest kappa |V| for Q by the printed Eq. (15), in which the rounding error of a bracket grows with kappa |V|:
+#: beyond it Q has lost four digits of mu and more.
+_FASTEST_DIRECT = 1e12
+
+
+def evaluate_contact(
+    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
+) -> dict[str, Any]:
+    """Return dimensionless fields of the contact by name, at checked arguments.
+
+    Parameters
+    ----------
+    scene : parameters of the roller.
+    V : speeds, dimensionless.
+    creep : angular velocities if ``creep_is_omega``, else creepages.
+    names : fields, as of :func:`.contact_fields.field_names`.
+    method : as of :func:`contact`.
+
+    Raises
+    ------
+    ParameterError
+        Speeds out of range, shapes that do not broadcast, a material with method "direct", N of many materials.
+    """
+    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
+    arrays["omega" if creep_is_omega else "delta"] = creep
+    direct = method == "direct"
+    fastest = _FASTEST_DIRECT if direct and "Q" in names else FASTEST
+    shape: tuple[int, ...] = ()
+    if V.ndim or creep.ndim or scene.shape:
+        arrays = {name: np.asarray(value) for name, value in arrays.items()}
+        shape = broadcast_shape(**arrays)
+        refuse_overflow(arrays["kappa"], V, fastest)
+    elif not abs(scene.kappa * float(V)) <= fastest:
+        refuse_overflow(np.asarray(scene.kappa), V, fastest)
+    if scene.material is not None and direct:
+        raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
+    material = None if direct else scene.table or scene.material_array
+    if isinstance(material, Prony | Bodies):
+        if UNSTEADY in names:
+            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
+        arrays["alpha"] = np.arange(len(material), dtype=np.float64)
+    unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
+    computed = computed_fields(names, unlike)
+    rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
+    return complete(names, computed, rows, shape)
 
 
 def evaluate_law(

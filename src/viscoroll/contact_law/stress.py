@@ -16,8 +16,9 @@ from ..core.results import Values
 from ..materials.bodies import one_series
 from ..materials.cover_solve import pressure
 from ..materials.law_modes import kernel_series
-from .contact import evaluate_contact
-from .parameters import Parameters, Rolls, framed
+from .contact_table import evaluate_contact
+from .parameters import Parameters, Roller, resolve_model
+from .validity.model_warnings import warn_of_contact
 
 #: Points of a block: some milliseconds of work.
 _BLOCK = 1 << 15
@@ -26,11 +27,11 @@ _FIELDS = "lam", "epsilon", "beta", "zeta", "delta"
 
 
 @overload
-def stress(roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers) -> Values: ...
 @overload
-def stress(roller: Rolls, x: Numbers, V: Numbers, *, omega: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers) -> Values: ...
 def stress(
-    roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
+    roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
 ) -> Values:
     """Pressure and shear stress along the contact, Eqs. (11)-(14).
 
@@ -69,7 +70,7 @@ def stress(
     """
     from ..kernels.rows.stress import Points
 
-    _, scene, scale = framed(roller, "stress")
+    _, scene, scale = resolve_model(roller, "stress")
     if (delta is None) == (omega is None):
         raise exactly_one_error("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
@@ -77,14 +78,14 @@ def stress(
     given = {name: check_array(name, value) for name, value in given.items()}
     position, speed, creep = given.values()
     if scale.si:
-        roller.look(speed)
+        warn_of_contact(roller, speed)
         # A position that overflows lies outside the contact, a speed that overflows is refused.
         with np.errstate(over="ignore"):
             position, speed, creep = position / scale["length"], speed / scale["V"], creep / scale[creep_name]
     lam, epsilon, beta, zeta, delta = evaluate_contact(scene, speed, creep, creep_name == "omega", _FIELDS).values()
     # For V < 0 positions are mirrored, and tau changes its sign.
     mirror = np.where(speed < 0.0, -1.0, 1.0)
-    alpha = scene.alpha if scene.each is None else np.arange(len(scene.each), dtype=np.float64)
+    alpha = scene.alpha if scene.material_array is None else np.arange(len(scene.material_array), dtype=np.float64)
     arrays = {"x": position, "kappa": scene.kappa, "mu": scene.mu, "lam": lam, "epsilon": epsilon, "beta": beta}
     arrays |= {"zeta": zeta, "alpha": alpha, "mirror": mirror, "sign": np.sign(delta) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in arrays.items()}
@@ -114,15 +115,15 @@ def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats)
     """
     from ..kernels.rows.stress import new_memory_weights, stress_loop
 
-    ends: Any = [] if scene.each is None else 1 + np.flatnonzero(np.diff(alpha))
+    ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
     for first, last in pairwise([0, *ends, p.size]):
         part = points._make(each[first:last] if each.size > 1 else each for each in points)
         if scene.cover is not None:
             p[first:last] = _cover_pressure(scene, int(alpha[min(first, alpha.size - 1)]), part)
             continue
         material: Any = alpha if scene.series is None else scene.series
-        if scene.each is not None:
-            material = one_series(scene.each[int(alpha[min(first, alpha.size - 1)])])
+        if scene.material_array is not None:
+            material = one_series(scene.material_array[int(alpha[min(first, alpha.size - 1)])])
         series, alphas = kernel_series(material)
         stress_loop(
             series, alphas, new_memory_weights(series), new_memory_weights(series), part, p[first:last], tau[first:last]
@@ -134,7 +135,7 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
 
     scene: with the cover.  index: which of its covers, if there are many.  points: as the kernels take them.
     """
-    cover: Any = scene.cover if scene.each is None else scene.each[index]
+    cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
     states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
     found = np.empty(x.size)

@@ -26,14 +26,14 @@ KEPT = 64
 class FlowMap:
     """Tables of the motions of one scene.
 
-    Attributes ----------
+    Attributes
+    ----------
     parameters : alpha or series in its own unit of time, kappa, mu, j.
     first : kappa V of the slowest tabulated onset is 2**first.
     table : all tables, see ``kernels/flow/layout.py``.
     errors : stated errors, four times the largest of 100 motions against the integrator at rtol 1e-12, measured when
-    the map
-        was built: of V and omega relative to the larger of the two; of distance and angle relative to the larger of
-        the two so far (and to 1e-5 of that at rest); of slip and rolling loss relative to the initial energy.
+        the map was built: of V and omega relative to the larger of the two; of distance and angle relative to the
+        larger of the two so far (and to 1e-5 of that at rest); of slip and rolling loss relative to the initial energy.
     problem : why the scene has no map, or "".
     """
 

@@ -75,7 +75,7 @@ def fit(arguments: Namespace) -> int:
     example:
       viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
     """
-    from ...contact_law.assumptions import MISFIT_LIMIT
+    from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.file import as_toml
 
     columns, units = _columns(arguments.column), arguments.units and tuple(arguments.units.split(","))

@@ -10,9 +10,8 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
-from contextlib import suppress
 from functools import partial
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TextIO
 
 from ... import __version__
 from ...core.errors import Interrupted, ViscorollError
@@ -126,8 +125,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:  # a file that may fail raises FileError; an OSError without a name is of standard output
         if error.filename is not None:
             return _print_error(f"{error.filename}: {error.strerror}")
-        # the rest of the buffer is dropped, or the interpreter would report it when it ends
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard(sys.stdout)
         if isinstance(error, BrokenPipeError):
             return _BROKEN_PIPE
         return _print_error(f"standard output: {error.strerror}")
@@ -161,5 +159,15 @@ def _print_error(error: object) -> int:
 def _print_line(message: object) -> None:
     """Print a message in one line on standard error, unless it is closed or full."""
     if sys.stderr is not None:
-        with suppress(OSError):
+        try:
             print("viscoroll:", " ".join(str(message).split()), file=sys.stderr, flush=True)
+        except OSError:
+            _discard(sys.stderr)
+
+
+def _discard(stream: TextIO) -> None:
+    """Discard the buffer and all further text of a stream that cannot be written.
+
+    The interpreter would try to write it at its end, and exit with its own code.
+    """
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...contact_law.assumptions import Assumption, measurement, passage
 from ...contact_law.contact import contact
+from ...contact_law.validity.assumptions import Assumption, assess_measured_band, transit_frequency
 from ...core.array_types import Booleans, Floats, Numbers
 from ...core.checks import check_array
 from ...core.errors import ParameterError
@@ -173,8 +173,8 @@ class SeriesFit(Result):
             raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
         speed = check_array("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
-        seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
-        return measurement(seen, {"the material": self.measured})
+        seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
+        return assess_measured_band(seen, {"the material": self.measured})
 
     def _moduli(self, x: ArrayLike) -> Floats:
         """Return the moduli of the fit, in the unit of the data.

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ...contact_law.assumptions import passage
 from ...contact_law.contact import contact
+from ...contact_law.validity.assumptions import transit_frequency
 from ...core.array_types import Floats
 from ...materials.prony import Prony
 from ...scene import Scene
@@ -75,7 +75,7 @@ def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats
     low, high = np.log10(slow / np.sqrt(prony.alpha)), np.log10(fast)
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))
     state = _contact_of(prony, 1.0, V)
-    passed = passage(V, state.lam)
+    passed = transit_frequency(V, state.lam)
     within = (passed >= slow) & (passed <= fast)
     return V[within], state.M[within]
 

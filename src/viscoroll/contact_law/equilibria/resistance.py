@@ -20,7 +20,7 @@ from ...core.errors import ParameterError
 from ...core.renamed import warn_renamed
 from ...materials.law_table import LawTable
 from ..contact_table import pure_rolling_fields
-from ..parameters import Rolls, framed, refuse_arrays
+from ..parameters import Roller, refuse_arrays, resolve_model
 
 #: octaves of u on either side of the rates of a material with closely spaced nodes
 _CLOSE_OCTAVES = 15
@@ -119,7 +119,7 @@ class Branches:
         return np.concatenate(indices), np.concatenate(nodes)
 
 
-def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
+def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     """Every local maximum and minimum of the rolling resistance M over the speed.
 
     A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
@@ -151,7 +151,7 @@ def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
     >>> extrema.is_maximum[0]
     np.True_
     """
-    _, scene, scale = framed(roller, "resistance_extrema")
+    _, scene, scale = resolve_model(roller, "resistance_extrema")
     refuse_arrays(scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None

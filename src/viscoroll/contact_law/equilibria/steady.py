@@ -15,7 +15,8 @@ from ...core.drive import Feedback, make_dimensionless
 from ...core.errors import ParameterError
 from ...core.labels import strip_labels
 from ...materials.law_table import LawTable
-from ..parameters import Rolls, framed, scale_of
+from ..parameters import Roller, resolve_model, scale_of
+from ..validity.model_warnings import warn_of_contact
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import Diagnosis, Steady, pack_result
@@ -24,7 +25,7 @@ from .states import Field, States, find_crossings, states_at
 
 
 def steady(
-    roller: Rolls,
+    roller: Roller,
     *,
     force: Numbers | Feedback | None = None,
     torque: Numbers | Feedback | None = None,
@@ -87,7 +88,7 @@ def steady(
     units = scale_of(roller)
     plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
-    roller, scene, scale = framed(roller, "steady", slope=slope)
+    roller, scene, scale = resolve_model(roller, "steady", slope=slope)
     force, torque, V = (make_dimensionless(name, plain[name], scale) for name in ("force", "torque", "V"))
     loads = loads_of(scene, force, torque, slope, V)
     law = scene.table
@@ -115,7 +116,7 @@ def steady(
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
     reasons = Diagnosis(loads, states, count, maximum, neutral)
     found = pack_result(loads, existing, reasons, scale, labels)
-    roller.look(found.V)
+    warn_of_contact(roller, found.V)
     return found
 
 

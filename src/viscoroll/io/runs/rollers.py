@@ -10,7 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from ...contact_law.parameters import Parameters, Rolls
+from ...contact_law.parameters import Parameters, Roller
 from ...core.array_types import Floats
 from ...core.checks import check_array
 from ...core.drive import Schedule
@@ -25,7 +25,7 @@ from ..config import make_roller
 
 
 @dataclass(frozen=True, eq=False)
-class Rollers(Rolls):
+class Rollers(Roller):
     """Cylinders that have a material each, in SI units.
 
     Attributes
@@ -59,8 +59,8 @@ class Rollers(Rolls):
     def scene(self) -> Parameters:
         return self._scene
 
-    def tilted(self, slope: Any) -> Self:
-        return replace(self, like=self.like.tilted(slope))
+    def on_slope(self, slope: Any) -> Self:
+        return replace(self, like=self.like.on_slope(slope))
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
@@ -71,7 +71,7 @@ class Rollers(Rolls):
         return scale
 
 
-def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
+def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
     """Return the roller of the motions of a block: a scene, a cylinder, or a cylinder for each motion.
 
     path: of the run file, for errors and the files that it names.

@@ -35,9 +35,11 @@ from ...core.array_types import Floats
 from ...core.errors import FileError, ParameterError, check_names
 from ...core.sections import read_toml, section_error
 from ...materials.file import as_toml, materials_of
-from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
+from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
-from ...motion.driven import Drive
+from ...motion.drive import Drive
+from ...motion.ensemble import FIELDS
+from ...motion.problem import SolverOptions, make_problem
 from ...motion.summaries import QUANTITIES
 from ..config import check_sections, locate_error
 from ..sampling import Design
@@ -320,9 +322,9 @@ def _begin_motions(run: Run, values: dict[str, Any]) -> None:
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
             raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
-    asked = Asked(settings.rtol, settings.rest, 1)
+    options = SolverOptions(settings.rtol, settings.rest, 1, None, settings.unsteady, settings.rested)
     drive = Drive(**drive_of(content))
-    begin(roller, start, drive, run.t[-1], asked, unsteady=settings.unsteady, rested=settings.rested)
+    make_problem(roller, start, drive, run.t[-1], options)
 
 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:

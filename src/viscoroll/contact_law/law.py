@@ -1,4 +1,4 @@
-"""The contact law of one scene, for integrators: :func:`law`."""
+"""The contact law of one scene as a function for integrators: :func:`law`."""
 
 from __future__ import annotations
 
@@ -16,42 +16,48 @@ from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from ..materials.law_grid import LawGrid
 from .contact import contact
 from .contact_table import refuse_overflow
-from .parameters import Rolls, framed, refuse_arrays
+from .parameters import Roller, refuse_arrays, resolve_model
+from .validity.model_warnings import warn_of_contact
 
-#: what the law takes as it is; all else goes through :func:`contact`
+#: Types that the compiled function takes; others go through :func:`contact`.
 _NUMBERS = frozenset({float, int, np.float64})
-_loads, _loads_and_slopes = partial(tuple.__new__, Loads), partial(tuple.__new__, LoadsAndSlopes)
+#: Makes :class:`Loads` from four numbers, faster than its constructor.
+_loads = partial(tuple.__new__, Loads)
+#: Makes :class:`LoadsAndSlopes` from eight numbers.
+_loads_and_slopes = partial(tuple.__new__, LoadsAndSlopes)
 
 
 class Law:
-    """The law of a scene or a cylinder, bound: what :func:`law` returns.
+    """The law of a scene or a cylinder as a function of V and omega: the result of :func:`law`.
 
     Attributes
     ----------
-    roller, scene : that it is the law of, and the dimensionless scene of that.
+    roller, scene : the scene or cylinder, and its dimensionless parameters.
     """
 
-    def __init__(self, roller: Rolls) -> None:
+    def __init__(self, roller: Roller) -> None:
+        """Check that ``roller`` is one scene of one material, and compile its law; raises ParameterError."""
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted
 
-        _, scene, scale = framed(roller, "law")
-        if scene.each is not None:
-            raise ParameterError(
-                "material", repr(scene.material), "one material, as material[i]: a law is of one scene"
-            )
+        _, scene, scale = resolve_model(roller, "law")
+        if scene.material_array is not None:
+            allowed = "one material, as material[i]: a law is of one scene"
+            raise ParameterError("material", repr(scene.material), allowed)
         refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
         table = scene.table
         assert table is not None
-        self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
+        self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])
+        #: whether there are speeds that give a warning
+        self._warns = roller.body_data is not None and roller.body_data.covered_speeds is not None
         scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
-        self._take(Jitted(scenes, table))
+        self._use(Jitted(scenes, table))
 
-    def _take(self, jitted: Any) -> None:
-        """Keep what is called, and the room for what it finds."""
+    def _use(self, jitted: Any) -> None:
+        """Keep the compiled function, its two kinds of user data, and the type of its output."""
         from ..kernels.rows.jitted_law import ResultBuffer
 
-        self._jitted, self._room = jitted, ResultBuffer
+        self._jitted, self._output = jitted, ResultBuffer
         self._function, self._plain, self._sloped = jitted.function, jitted.plain, jitted.address
 
     @overload
@@ -87,46 +93,48 @@ class Law:
         """
         if slopes is not False:
             slopes = check_bool("slopes", slopes)
-        if type(V) in _NUMBERS and type(omega) in _NUMBERS:
-            out = self._room()
-            try:
-                status = self._function(V, omega, out, self._sloped if slopes else self._plain)
-            except ctypes.ArgumentError:  # an integer beyond the doubles
-                status = 1
-            if status:
-                self._refuse(check_array("V", V), check_array("omega", omega))
-            return _loads_and_slopes(out) if slopes else _loads(out[:4])
-        return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+        if type(V) not in _NUMBERS or type(omega) not in _NUMBERS:
+            return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+        out = self._output()
+        try:
+            status = self._function(V, omega, out, self._sloped if slopes else self._plain)
+        except ctypes.ArgumentError:  # an integer beyond the doubles
+            status = 1
+        if status:
+            self._refuse(check_array("V", V), check_array("omega", omega))
+        if self._warns:
+            warn_of_contact(self.roller, V, (V, V))
+        return _loads_and_slopes(out) if slopes else _loads(out[:4])
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        """The law at arrays, as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
+        """Return the law at arrays ``V`` and ``omega`` as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
         """Raise ParameterError for finite numbers at which the law is not defined."""
-        refuse_overflow(self._fastest, V)
+        refuse_overflow(self._kappa, V)
 
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
         """(V, omega) -> :class:`LoadsAndSlopes` for numba's jitted functions, which take it as an argument or from
-        around them.  NaN, and no error, where the law would raise one.
+        around them.  It returns NaN where the law would raise an error.
         """
         return self._jitted
 
     @property
     def address(self) -> tuple[int, int]:
-        """Address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of its user
-        data.
+        """The address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of
+        its user data.
 
         It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
-        error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
-        there.  All laws of half-spaces share the function, and all laws of covers another one.
+        error, with NaN, and returns another number.  Any number of threads may call it, while this law exists.  All
+        laws of half-spaces share the function, and all laws of covers another one.
         """
         return self._jitted.function_address, self._jitted.address
 
     @property
     def ctypes(self) -> tuple[Any, Any]:
-        """Both for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them; either keeps what it needs."""
+        """Function and user data for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them."""
         return self._jitted.ctypes
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -136,38 +144,33 @@ class Law:
         return f"law of {self.roller!r}"
 
 
-class WatchedLaw(Law):
-    """The law of a cylinder that has speeds to warn of: each call with numbers looks at its speed."""
-
-    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
-        found: Any = super().__call__(V, omega, slopes=slopes)  # type: ignore[call-overload]
-        if type(V) in _NUMBERS and type(omega) in _NUMBERS:  # of arrays contact looks
-            self.roller.look(V, (V, V))
-        return found
-
-
 class _LawOfGrid(Law):
     """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
 
     def __init__(self, grid: LawGrid) -> None:
+        """Compile the splines of a ``grid``."""
         from ..kernels.splines.law import jitted_grid
 
         self.roller: Any = grid
+        self._warns = False
         (low, high), slowest = grid.delta, grid.V[0]
-        self._take(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+        self._use(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        each = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
-        return kind(*each(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
+        """Return the law at arrays, one state after another; see :class:`Law`."""
+        evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
+        return kind(*evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
+        """Raise OutOfTableError for a state outside the axes of the grid."""
         self.roller.refuse_outside(V, omega)
 
 
-def law(roller: Rolls | LawGrid) -> Law:
-    """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
+def law(roller: Roller | LawGrid) -> Law:
+    """The contact law of one scene as a function of V and omega, for integrators of one's own: Eqs. (6)-(10),
+    (15)-(18).
 
-    ``law(V, omega)`` is :func:`contact` at a given omega with nothing left to check but V and omega, and
+    ``law(V, omega)`` is :func:`contact` at a given omega, where only V and omega remain to be checked;
     ``law.jitted`` and ``law.address`` are the same for numba and C.
 
     Parameters
@@ -189,17 +192,25 @@ def law(roller: Rolls | LawGrid) -> Law:
 
     Notes
     -----
-    For numbers the digits are those of :func:`contact` to the bit, and for arrays it is :func:`contact` that is called
+    For numbers the bits are those of :func:`contact`; for arrays :func:`contact` is called
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
-    a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
+    a corner in V only; the slopes there are those of full slip.  A call without slopes does not compute them.
 
     Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
 
-    Of a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file states
+    For a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file states
     (``tests/tables/test_splines.py``): clipped to \\|Q\\| <= mu P; below the slowest speed Q is that at the slowest,
     and M in proportion to V; beyond both ends of delta \\|Q\\| is mu P where the grid slips fully there.  Other states
     outside of the axes raise OutOfTableError.  Arrays are looked up one state after another.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> law = vr.law(vr.Scene(alpha=11.0, kappa=10.0, mu=0.3))
+    >>> loads = law(0.5, 0.51)
+    >>> loads.Q > 0.0
+    True
     """
     if isinstance(roller, LawGrid):
         return _LawOfGrid(roller)
-    return WatchedLaw(roller) if isinstance(roller, Rolls) and roller.watched else Law(roller)
+    return Law(roller)

@@ -1,40 +1,53 @@
-"""Many motions as they are given back: :class:`Ensemble`."""
+"""The result of many motions: :class:`Ensemble`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..contact_law.assumptions import Validity
-from ..contact_law.judged import validity
-from ..contact_law.steadiness import Steadiness
+from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.validity import validity
 from ..core.array_types import Booleans, Floats, Integers
 from ..core.checks import check_array
 from ..core.errors import MotionStatus, ParameterError, describe_value
 from ..core.labels import Labels
 from ..core.results import SummaryRow
-from .result import Rolled
+from .result import RollResult
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: motions that validity looks at
-_JUDGED = 256
+#: Largest number of motions that ``validity`` examines: some tenths of a second.
+_EXAMINED = 256
+
+
+class Fastest(NamedTuple):
+    """Motions of an ensemble and their highest speeds.
+
+    motion : indices of the motions, (m,).
+    V, omega : highest speeds that each starts with or reaches, (m,); omega < 0 where the start speeds have opposite
+        signs.
+    """
+
+    motion: Integers
+    V: Floats
+    omega: Floats
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble(Rolled):
-    """Motions 0 ... n - 1 at common output times, in the units of what rolled, as of a :class:`Motion`.
+class Ensemble(RollResult):
+    """Motions 0 ... n - 1 at common output times, in the units of the roller, as of a :class:`Motion`.
 
     Attributes
     ----------
-    roller : what rolled, on its slope.
+    roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
     t : output times.
-    V, omega, x, angle, delta, regime : shape (n, len(t)); those not asked for are None.
-    slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2 or in J/m: the integrals of
+    V, omega, x, angle, delta, regime : shape (n, len(t)); those not requested are None.
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_epsilon)^2 or in J/m: the
+    integrals of
         gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
         (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
     force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
@@ -43,14 +56,21 @@ class Ensemble(Rolled):
     success, status : (n,), whether each came to its end, and its :class:`MotionStatus`; outputs a motion did not reach
         are NaN.
     switches, steps : (n,), changes of regime, and integration steps taken.
-    flow : (n,), whether the flow map gave this motion; the others were integrated.
+    flow : (n,), whether the motion is from the flow map; the others were integrated.
     flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
         ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
         relative to the energy at the start if larger; NaN without a map.
     flow_problem : why a map that was tried could not be used, or "".
     drive_error : as of a :class:`Motion`.
-    drive : what was given to drive them.
+    drive : loads and prescribed speeds as they were given.
     labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> result = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+    >>> len(result), bool(result.success.all())
+    (2, True)
     """
 
     V0: Floats
@@ -65,7 +85,7 @@ class Ensemble(Rolled):
 
     @property
     def message(self) -> str:
-        """How they ended, in words."""
+        """How the motions ended, in words."""
         return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
 
     def messages(self) -> dict[str, int]:
@@ -102,35 +122,34 @@ class Ensemble(Rolled):
         return summary_of(self, tuple(levels.tolist()))
 
     def validity(self) -> Validity:
-        """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
+        """Report which assumptions of the model the motions violate, at the highest speeds of each.
 
-        ``steady`` looks at all speeds on the way.  See :func:`viscoroll.validity`; arrays over the motions, of more
-        than 256 over that many of them, evenly picked.
+        ``steady`` examines all speeds of a motion.  See :func:`viscoroll.validity`; arrays over the motions, for more
+        than 256 over that many of them, evenly spaced.
         """
-        some, V, omega = self.judged()
-        roller = self.roller.some(some, len(self))
-        scene, scale = roller.scene(), roller.scale
-        found = validity(roller, V, omega=omega)
-        if self.V is None or not some.size or scene.cover is not None:
-            return found
-        speeds = np.vstack([self.V0[some], self.V[some].T])
-        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[some]) & ~np.isnan(speeds)
-        x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(some.size), self.x[some].T])
-        free = scene.freely(np.nan_to_num(speeds / scale["V"])).scaled(scale)
-        return found._replace(steady=Steadiness.along(free, rolls, x, ends=True))
+        index, V, omega = self.fastest()
+        roller = self.roller.take(index, len(self))
+        report = validity(roller, V, omega=omega)
+        if self.V is None or not index.size or roller.scene().cover is not None:
+            return report
+        speeds = np.vstack([self.V0[index], self.V[index].T])
+        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(speeds)
+        x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(index.size), self.x[index].T])
+        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
 
-    def judged(self) -> tuple[Integers, Floats, Floats]:
-        """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""
-        fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
-        for name, found in fastest.items():
+    def fastest(self) -> Fastest:
+        """Return the motions that :meth:`validity` examines, with their highest speeds."""
+        speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
+        for name, start in speeds.items():
             if (values := getattr(self, name)) is not None:
-                fastest[name] = np.fmax(found, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
-        some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(np.int64))
-        return some, fastest["V"][some], np.copysign(fastest["omega"], self.V0 * self.omega0)[some]
+                speeds[name] = np.fmax(start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
+        index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
+        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Title and rows of the printed report."""
         ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
-        rows = [self._times()]
+        rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
             if (values := getattr(self, name)) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]
