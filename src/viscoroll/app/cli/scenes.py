@@ -1,4 +1,4 @@
-"""What a scene does: ``viscoroll contact``, ``stress``, ``roll``, ``steady`` and ``validity``."""
+"""Contact and motion of a scene: ``viscoroll contact``, ``stress``, ``roll``, ``steady`` and ``validity``."""
 
 from __future__ import annotations
 
@@ -9,24 +9,29 @@ from typing import Any
 
 import viscoroll as vr
 
-from .arguments import SCENE, TABLE, Option, body_of, command, numbers, option
+from .arguments import SCENE, TABLE, Option, command, numbers, option, roller_of_argument
 from .output import show
 
-#: places across the contact, and loads without an equilibrium that are told of
-_POINTS, _LINES = 101, 3
+#: Positions along the contact in the output of ``stress``.
+_POSITIONS = 101
+#: Largest number of loads without an equilibrium that ``steady`` lists.
+_MOST_LINES = 3
+#: Help of a speed.
+_V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
+    """Return the scene and the speeds of a contact as arguments; kind: type of a speed."""
     return (
         SCENE,
-        option("--V", type=kind, required=True, help="velocity of the axis, of either sign"),
+        option("--V", type=kind, required=True, help=_V_HELP),
         option("--delta", type=kind, help="creepage (omega R - V)/V"),
         option("--omega", type=kind, help="angular velocity; give it or --delta"),
     )
 
 
-@command("contact", *_speeds(numbers), *TABLE)
-def contact(given: Namespace) -> None:
+@command("contact", *_speeds(numbers), TABLE)
+def contact(arguments: Namespace) -> None:
     """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
 
     The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT,
@@ -37,13 +42,13 @@ def contact(given: Namespace) -> None:
     """
     import numpy as np
 
-    V, creep = given.V, given.omega if given.delta is None else given.delta
+    V, creep = arguments.V, arguments.omega if arguments.delta is None else arguments.delta
     V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
-    show(given, body_of(given.scene).contact(V, delta=given.delta, omega=given.omega))
+    show(arguments, roller_of_argument(arguments.scene).contact(V, delta=arguments.delta, omega=arguments.omega))
 
 
-@command("stress", *_speeds(float), *TABLE)
-def stress(given: Namespace) -> None:
+@command("stress", *_speeds(float), TABLE)
+def stress(arguments: Namespace) -> None:
     """Compute pressure and shear stress along the contact.
 
     The stresses are given at 101 points of the contact, for one V and one delta (or omega).
@@ -53,22 +58,25 @@ def stress(given: Namespace) -> None:
     """
     import numpy as np
 
-    body, speeds = body_of(given.scene), {"V": given.V, "delta": given.delta, "omega": given.omega}
-    state = body.contact(**speeds, fields=("length", "epsilon"))
+    roller, speeds = (
+        roller_of_argument(arguments.scene),
+        {name: getattr(arguments, name) for name in ("V", "delta", "omega")},
+    )
+    state = roller.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
-    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POINTS)
-    x = 0.5 * state.length * (ahead if given.V >= 0.0 else -ahead[::-1])
-    show(given, body.stress(x, **speeds))
+    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POSITIONS)
+    x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
+    show(arguments, roller.stress(x, **speeds))
 
 
 @command(
     "roll", SCENE,
-    option("--V0", type=float, required=True, help="initial velocity of the axis"),
-    option("--omega0", type=float, required=True, help="initial angular velocity"),
+    option("--V0", type=float, required=True, help="velocity of the axis at the start"),
+    option("--omega0", type=float, required=True, help="angular velocity at the start"),
     option("--t", type=numbers, required=True, help="output times, written as the numbers of `viscoroll contact`"),
-    *TABLE,
+    TABLE,
 )  # fmt: skip
-def roll(given: Namespace) -> None:
+def roll(arguments: Namespace) -> None:
     """Integrate one free motion from given initial speeds.
 
     The motion obeys Eq. (22), and may change between full slip and partial slip.
@@ -78,22 +86,22 @@ def roll(given: Namespace) -> None:
       viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # how it ended is printed
-        motion = body_of(given.scene).roll(given.V0, given.omega0, given.t)
-    show(given, motion, str(motion))
-    if given.output is not None:
+        warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
+        motion = roller_of_argument(arguments.scene).roll(arguments.V0, arguments.omega0, arguments.t)
+    show(arguments, motion, str(motion))
+    if arguments.output is not None:
         print(motion)
 
 
 @command(
     "steady", SCENE,
-    option("--force", type=numbers, help="force on the axis along V (default 0)"),
-    option("--torque", type=numbers, help="torque on the cylinder along omega (default 0)"),
+    option("--force", type=numbers, help="force on the axis along V (default: 0)"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
     option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill; the normal load is P cos(slope)"),
-    option("--V", type=numbers, help="prescribed speed; then give --force or --torque, and the other one is computed"),
-    *TABLE,
+    option("--V", type=numbers, help="prescribed speed; it takes the place of --force or --torque, which is then computed"),
+    TABLE,
 )  # fmt: skip
-def steady(given: Namespace) -> None:
+def steady(arguments: Namespace) -> None:
     """Find the steady speeds under force, torque or slope.
 
     Each equilibrium of each load is a row.  If a load has no equilibrium, the reason is printed.
@@ -104,23 +112,24 @@ def steady(given: Namespace) -> None:
     """
     import numpy as np
 
-    loads = {name: getattr(given, name) for name in ("force", "torque", "slope", "V")}
-    found = body_of(given.scene).steady(**{name: np.atleast_1d(x) for name, x in loads.items() if x is not None})
-    lines = [f"load {n}: {reason}" for n, reason in enumerate(found.reason) if reason]
-    if len(lines) > _LINES:
-        lines[_LINES:] = [f"{len(lines) - _LINES} more loads have no steady speed"]
-    if given.output is not None or given.format != "text":  # a table for programs has no heading that says it
+    loads = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
+    loads = {name: np.atleast_1d(load) for name, load in loads.items() if load is not None}
+    equilibria = roller_of_argument(arguments.scene).steady(**loads)
+    lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
+    if len(lines) > _MOST_LINES:
+        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have no steady speed"]
+    if arguments.output is not None or arguments.format != "text":  # a table for programs has no heading
         for line in lines:
             warnings.warn(line, vr.ModelWarning, stacklevel=2)
-    show(given, found, "\n".join(lines))
+    show(arguments, equilibria, "\n".join(lines))
 
 
 @command(
     "validity", SCENE,
-    option("--V", type=float, required=True, help="velocity of the axis, of either sign"),
-    option("--omega", type=float, help="angular velocity; without it the assumptions on creepage are not checked"),
+    option("--V", type=float, required=True, help=_V_HELP),
+    option("--omega", type=float, help="angular velocity; without it the assumption on creepage is not checked"),
 )  # fmt: skip
-def validity(given: Namespace) -> None:
+def validity(arguments: Namespace) -> None:
     """Check the assumptions of the model at one speed.
 
     Each line has the name of an assumption, whether it holds (yes, no, or ? if data are missing), and the reason.
@@ -128,4 +137,4 @@ def validity(given: Namespace) -> None:
     example:
       viscoroll validity rubber-roller --V 5 --omega 4.9
     """
-    print(body_of(given.scene).validity(given.V, omega=given.omega))
+    print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+import warnings
 from argparse import ArgumentTypeError, Namespace
 from pathlib import Path
 
 import viscoroll as vr
 
-from .arguments import FILE, SCENE, body_of, command, numbers, option, output
+from .arguments import FILE, SCENE, command, numbers, option, output, roller_of_argument
 
-_LAW, _GRID = (".nc", ".cdf", ".h", ".json"), (".nc", ".cdf", ".csv", ".txt", ".mat")
+#: Suffixes of the formats of a law.
+_LAW = (".nc", ".cdf", ".h", ".json")
+#: Suffixes of the formats of a grid.
+_GRID = (".nc", ".cdf", ".csv", ".txt", ".mat")
 
 
 def _low_high(text: str) -> tuple[float, ...]:
-    """The numbers of LOW:HIGH."""
+    """Return the numbers of LOW:HIGH; raise ArgumentTypeError."""
     try:
         return tuple(map(float, text.split(":")))
     except ValueError:
         raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, for example 1:4096") from None
 
 
-def _size(path: Path) -> None:
+def _print_size(path: Path) -> None:
+    """Print the name and the size of a written file."""
     print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 
 
@@ -28,24 +33,24 @@ def _size(path: Path) -> None:
     "tables law",
     option("file", metavar="MATERIAL", nargs="?",
            help="TOML file with [material] (and [base]), [scene] or [cylinder], or netCDF file of a material"),
-    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; give it instead of MATERIAL"),
+    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; it takes the place of MATERIAL"),
     output(*_LAW),
 )  # fmt: skip
-def law(given: Namespace) -> None:
-    """Write the contact law of a material, of a pair, or of a range of alpha to a file.
+def law(arguments: Namespace) -> None:
+    """Write the contact law of a material, pair, cover or range of alpha to a file.
 
-    .nc is read by vr.load_law, by run files and by every netCDF reader; .cdf is the same without HDF5; .h is a header
-    of C99 or C++ with table and evaluator; .json is read by JavaScript.  --alpha writes the law of one relaxation
-    time for every alpha of the range.
+    .nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
+    or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
+    every alpha of a range.
 
     example:
       viscoroll tables law docs/examples/rubber.toml -o rubber.h
     """
     from ...io.config import read_law_source
 
-    material = None if given.file is None else read_law_source(given.file)
-    vr.tables.export(vr.tables.law(material, alpha=given.alpha), given.output)
-    _size(given.output)
+    material = None if arguments.file is None else read_law_source(arguments.file)
+    vr.tables.export(vr.tables.law(material, alpha=arguments.alpha), arguments.output)
+    _print_size(arguments.output)
 
 
 @command(
@@ -53,10 +58,10 @@ def law(given: Namespace) -> None:
     option("--V", type=numbers, required=True, help="velocities of the axis, > 0"),
     option("--delta", type=numbers, required=True, help="values of the creepage"),
     option("--alpha", type=numbers, help="values of a third axis, only for a scene"),
-    option("--method", default="table", help="table (default): law of the scene; direct: numerical roots of the equations of the paper"),
+    option("--method", default="table", help="table (default): the law of the scene; direct: numerical roots of the equations of the paper"),
     output(*_GRID),
 )  # fmt: skip
-def build(given: Namespace) -> None:
+def build(arguments: Namespace) -> None:
     """Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
     The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
@@ -65,39 +70,40 @@ def build(given: Namespace) -> None:
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
     """
-    axes = {"delta": given.delta, "alpha": given.alpha}
-    vr.tables.export(vr.tables.build(body_of(given.scene), given.V, **axes, method=given.method), given.output)
-    _size(given.output)
+    axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
+    vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
+    _print_size(arguments.output)
 
 
 @command("tables info", FILE)
-def info(given: Namespace) -> None:
+def info(arguments: Namespace) -> None:
     """Print the contents of a table file: functions or grid, stated errors, material and provenance.
 
     example:
       viscoroll tables info data/tables/rubber.nc
     """
-    print(vr.tables.info(given.file))
+    print(vr.tables.info(arguments.file))
 
 
-@command("tables validate", FILE, option("-n", type=int, default=10_000, help="number of random speeds (default 10000)"))
-def validate(given: Namespace) -> int:
+@command("tables validate", FILE, option("-n", type=int, default=10_000, help="number of random speeds (default: 10000)"))
+def validate(arguments: Namespace) -> int:
     """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
-    The exit code is 1 if an error exceeds the error stated in the file.
+    The exit code is 1 if an error is larger than the file states.
 
     example:
       viscoroll tables validate data/tables/rubber.nc
     """
     from ...io.tables.check import Report, check_table
 
-    report = Report(tuple(check_table(vr.tables.load(given.file), given.n, 0)), {"file": given.file, "points": given.n})
+    about = {"file": arguments.file, "points": arguments.n}
+    report = Report(tuple(check_table(vr.tables.load(arguments.file), arguments.n, 0)), about)
     print(report)
     return not report.ok
 
 
 @command("export", FILE, output(*dict.fromkeys(_LAW + _GRID)))
-def export(given: Namespace) -> None:
+def export(arguments: Namespace) -> None:
     """Convert the results of a run, or a table, to another file format.
 
     A results store (STORE.zarr) becomes .nc with summaries and stored motions.  A law becomes .nc, .cdf, .h or .json.
@@ -106,29 +112,29 @@ def export(given: Namespace) -> None:
     example:
       viscoroll export data/tables/rubber.nc -o rubber.h
     """
-    if Path(given.file).is_dir():
-        if given.output.suffix.lower() != ".nc":
-            allowed = "a name that ends in .nc for the results of a run"
-            raise vr.ParameterError("-o", str(given.output), allowed)
-        vr.runs.export_netcdf(given.file, given.output)
+    path = arguments.output
+    if not Path(arguments.file).is_dir():
+        vr.tables.export(vr.tables.load(arguments.file), path)
+    elif path.suffix.lower() == ".nc":
+        vr.runs.export_netcdf(arguments.file, path)
     else:
-        vr.tables.export(vr.tables.load(given.file), given.output)
-    _size(given.output)
+        raise vr.ParameterError("-o", str(path), "a name that ends in .nc for the results of a run")
+    _print_size(path)
 
 
 @command(
     "fmu",
     option("file", metavar="MATERIAL_OR_LAW",
-           help="TOML file with [material] (and [base]), and perhaps [cylinder] with the default parameters; or a law file "
-           "of `viscoroll tables law`; or the netCDF file of a material"),
+           help="TOML with [material], perhaps [base], and perhaps [cylinder], whose numbers are the start values; the "
+           "file of `viscoroll tables law`; or the netCDF of a material"),
     option("--model", default="Roller", help="Roller (default) or ContactElement"),
     option("--fmi", type=int, default=2, help="version of the standard: 2 (default) or 3"),
     output(".fmu"),
 )  # fmt: skip
-def fmu(given: Namespace) -> None:
+def fmu(arguments: Namespace) -> None:
     """Build an FMU of a cylinder, for Modelica tools and others.
 
-    The FMU contains the law of a material or pair and its C sources, and is compiled for this machine by cc.
+    The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
     Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
     ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
     Both provide exact directional derivatives.
@@ -137,13 +143,17 @@ def fmu(given: Namespace) -> None:
       viscoroll fmu docs/examples/rubber.toml -o roller.fmu
     """
     from ...core.sections import read_toml
-    from ...io.config import read_law_source, read_roller
+    from ...io.config import SCENES, read_law_source, read_roller
     from ...materials.law_store import is_law
 
-    path = given.file
-    if Path(path).suffix == ".nc":
-        what = vr.load_law(path) if is_law(path) else read_law_source(path)
+    path = arguments.file
+    content = {} if Path(path).suffix == ".nc" else read_toml(path)
+    if not content and is_law(path):
+        source = vr.load_law(path)
     else:
-        what = read_roller(path) if "cylinder" in read_toml(path) else read_law_source(path)
-    vr.fmu.build(what, given.output, given.model, given.fmi)
-    _size(given.output)
+        source = read_roller(path) if "cylinder" in content else read_law_source(path)
+    vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
+    if "cylinder" not in content and content.keys() & set(SCENES):
+        text = "an FMU is in SI units: of a dimensionless scene it takes the law, not kappa, mu, gamma and j; set R, "
+        warnings.warn(f"{text}E_prime, T_ref, mu, load and mass in the tool", vr.ModelWarning, stacklevel=2)
+    _print_size(arguments.output)
