@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.core.plots.style import new_figure, save
-from viscoroll.materials.law_store import errors_of
+from viscoroll.materials.law_file import errors_of
 
 from . import benchmark_integrator, stage
 from .runtime import least_seconds

@@ -20,8 +20,8 @@ import xarray as xr
 import viscoroll as vr
 from viscoroll.core.errors import FileError
 from viscoroll.io.config import preset
-from viscoroll.materials.file import SECTIONS, materials_of
-from viscoroll.materials.law_store import errors_of
+from viscoroll.materials.law_file import errors_of
+from viscoroll.materials.material_toml import SECTIONS, materials_of
 
 from . import stage
 

@@ -24,9 +24,9 @@ from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_bodies, read_body
 from viscoroll.io.runs import read_run
 from viscoroll.io.sampling import sample
-from viscoroll.materials.file import read_materials
-from viscoroll.materials.law_file import table_of
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.netcdf import table_of
+from viscoroll.materials.law.table import law_table
+from viscoroll.materials.material_toml import read_materials
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text()
 LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]

@@ -18,7 +18,7 @@ from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
-from .materials.law_table import LawTable
+from .materials.law.table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony

@@ -20,8 +20,8 @@ from processes import printed, python
 
 import viscoroll as vr
 from viscoroll.app.cli import arguments, main
-from viscoroll.materials.file import read_materials
-from viscoroll.materials.law_store import checksum, content_of
+from viscoroll.materials.law_file import checksum, content_of
+from viscoroll.materials.material_toml import read_materials
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

@@ -3,7 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import viscoroll as vr
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.table import law_table
 
 SOFT = vr.Prony([2.0, 5.0], [1.0, 1e-3])
 

@@ -13,8 +13,8 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.core.files import write_dataset
-from viscoroll.materials.file import as_toml, read_materials
-from viscoroll.materials.store import as_dataset
+from viscoroll.materials.material_netcdf import as_dataset
+from viscoroll.materials.material_toml import as_toml, read_materials
 
 RUBBER = vr.Material(
     E=2.3e5,

@@ -17,9 +17,9 @@ import viscoroll as vr
 from viscoroll.core import files
 from viscoroll.io.config import read_bodies, read_body
 from viscoroll.io.tables.check import check_table
-from viscoroll.materials.law_file import table_of
-from viscoroll.materials.law_store import checksum
-from viscoroll.materials.law_table import FUNCTIONS, LawTable, law_table
+from viscoroll.materials.law.netcdf import table_of
+from viscoroll.materials.law.table import FUNCTIONS, LawTable, law_table
+from viscoroll.materials.law_file import checksum
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
 RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber"', density=1100.0)

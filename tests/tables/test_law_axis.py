@@ -12,8 +12,8 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.io.tables.check import check_table
-from viscoroll.materials.law_axis import FUNCTIONS, law_axis
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.alpha_axis import FUNCTIONS, law_axis
+from viscoroll.materials.law.table import law_table
 
 V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
 

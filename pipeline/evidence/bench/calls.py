@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.materials.law_table import made
+from viscoroll.materials.law.table import made
 from viscoroll.motion import flow
 
 from ..timing import seconds_of, timed

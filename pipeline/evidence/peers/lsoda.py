@@ -20,7 +20,7 @@ from viscoroll.kernels.rows.contact import traction_of
 from viscoroll.kernels.rows.law import place, speed, way_of
 from viscoroll.kernels.rows.record import Law
 from viscoroll.kernels.rows.states import State
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.table import law_table
 
 #: share of rtol that the absolute tolerance is
 ATOL_SHARE = 1e-3

@@ -18,7 +18,7 @@ import viscoroll as vr
 from viscoroll.contact_law.contact_fields import OF_BODIES
 from viscoroll.kernels.rows.modes import modes_loop
 from viscoroll.kernels.rows.series import FUNCTIONS, room_of
-from viscoroll.materials.law_modes import series_of
+from viscoroll.materials.law.evaluate import series_of
 
 from ..truth.enclosures import INPUTS, enclosed, slopes, zone_of
 from ..truth.material import Material, material_of

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.results import Row, as_html, as_text
-from ..materials.law_modes import by_modes
+from ..materials.law.evaluate import by_modes
 from ..materials.measured import Measured
 from ..materials.prony import Prony
 

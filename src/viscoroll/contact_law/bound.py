@@ -13,7 +13,7 @@ from ..core.checks import checked, yes_or_no
 from ..core.errors import ParameterError
 from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
-from ..materials.law_grid import LawGrid
+from ..materials.law.grid import LawGrid
 from .contact import contact
 from .contact_table import refuse_overflow
 from .parameters import Rolls, framed, refuse_arrays

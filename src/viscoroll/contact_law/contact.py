@@ -21,7 +21,7 @@ from ..core.scale import DIMENSIONS
 from ..core.typed import Numbers
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
-from ..materials.law_table import LawTable
+from ..materials.law.table import LawTable
 from ..materials.prony import Prony
 from .contact_fields import FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .contact_table import FASTEST, refuse_overflow, states_of
@@ -122,7 +122,7 @@ def contact(
     1/(1 - |delta|/delta_star), their condition number, of the grip twice that.  N: 2e-14 of its largest size
     (``tests/kernels/rows/test_unsteady.py``).
 
-    The law of one material is read from polynomials of one variable (:mod:`.materials.law_table`), made on first use in
+    The law of one material is read from polynomials of one variable (:mod:`.materials.law.table`), made on first use in
     some milliseconds and kept.  A state's result depends on nothing else in the call.
 
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and

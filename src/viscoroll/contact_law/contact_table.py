@@ -13,9 +13,9 @@ from ..core.blocks import elements, run_blocks
 from ..core.checks import extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
-from ..materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
-from ..materials.law_modes import by_modes
-from ..materials.law_table import LawTable
+from ..materials.law.evaluate import by_modes
+from ..materials.law.per_element import law_of_alphas, law_of_materials, order_of_alphas
+from ..materials.law.table import LawTable
 from ..materials.prony import Prony
 from .contact_fields import UNSTEADY
 

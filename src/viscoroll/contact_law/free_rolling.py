@@ -20,8 +20,8 @@ import numpy as np
 from ..core.scale import Scale
 from ..core.typed import Booleans, Floats, Integers
 from ..materials.bodies import one_series
-from ..materials.law_modes import by_modes
-from ..materials.law_table import law_table
+from ..materials.law.evaluate import by_modes
+from ..materials.law.table import law_table
 from ..materials.prony import Prony
 from .contact_table import rolling
 

@@ -15,7 +15,7 @@ from ..core.checks import number
 from ..core.errors import ModelWarning, outside
 from ..core.scale import SI
 from ..kernels.compile.notice import is_worker
-from ..materials.law_table import law_table
+from ..materials.law.table import law_table
 from ..materials.material import Material
 from ..materials.measured import Measured
 from ..materials.pair import Pair

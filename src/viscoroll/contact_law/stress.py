@@ -14,7 +14,7 @@ from ..core.labels import unlabelled
 from ..core.results import Values
 from ..core.typed import Floats, Numbers
 from ..materials.bodies import one_series
-from ..materials.law_modes import kernel_series
+from ..materials.law.evaluate import kernel_series
 from .contact import states
 from .parameters import Parameters, Rolls, framed, refuse_cover
 

@@ -16,7 +16,15 @@ import msgspec
 from ..core.errors import FileError, ParameterError, unknown
 from ..core.sections import as_struct, fault, read, refuse_unknown
 from ..cylinder import Cylinder
-from ..materials.file import SECTIONS, SUFFIX, CreepSection, PronySection, materials_of, read_materials, series_of
+from ..materials.material_toml import (
+    SECTIONS,
+    SUFFIX,
+    CreepSection,
+    PronySection,
+    materials_of,
+    read_materials,
+    series_of,
+)
 from ..materials.pair import Pair
 from ..presets import PRESETS
 from ..scene import Scene

@@ -14,8 +14,6 @@ from ..core.checks import checked, frozen, number
 from ..core.errors import ParameterError
 from ..core.results import short
 from .bodies import Bodies
-from .cover_rows import CoverRows, cover_rows
-from .cover_solve import CoverModes
 from .prony import Prony, series_of_alpha
 from .prony_forms import HIGHEST_ALPHA
 
@@ -117,15 +115,6 @@ class Cover(Bodies):
     def part(self) -> float:
         """The layer's part of the long-time compliance."""
         return float(self.share if self.on == "cylinder" else 1.0 - self.share)
-
-    @property
-    def modes(self) -> CoverModes:
-        """What the solve takes of it."""
-        return CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
-
-    def rows(self, thickest: float | None = None) -> CoverRows:
-        """The law over speed, of one cover; 0.1 to 0.3 s.  ``thickest`` : as of :func:`.cover_rows.cover_rows`."""
-        return cover_rows(self.modes, self.thickness, 1.0 if self.on == "base" else -1.0, thickest)
 
     def of_thickness(self, thickness: ArrayLike) -> Cover:
         """The same bodies with another thickness over l0."""

@@ -219,7 +219,7 @@ class Material(FromPrograms):
 
     def to_xarray(self) -> xr.Dataset:
         """Both forms of the series and the constants, with names and units, as :meth:`to_netcdf` writes them."""
-        from .store import as_dataset
+        from .material_netcdf import as_dataset
 
         return as_dataset(self)
 
@@ -263,7 +263,7 @@ class Material(FromPrograms):
         FileError
             If it cannot be written there; a file of that name is left as it was.
         """
-        from .store import save
+        from .material_netcdf import save
 
         save(self, path)
 
@@ -280,7 +280,7 @@ class Material(FromPrograms):
         FileError
             A file that is missing, damaged in any byte, or no material.
         """
-        from .store import load
+        from .material_netcdf import load
 
         return load(path, cls)
 

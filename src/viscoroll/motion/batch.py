@@ -16,8 +16,8 @@ from ..core.errors import MotionStatus, ParameterError, refuse_unknown
 from ..core.scale import OF_TIME
 from ..core.typed import Booleans, Floats, Integers, Numbers
 from ..materials.bodies import Bodies
-from ..materials.law_each import law_of_alphas, law_of_materials
-from ..materials.law_table import law_table
+from ..materials.law.per_element import law_of_alphas, law_of_materials
+from ..materials.law.table import law_table
 from .checks import SPEED_RANGE, in_words, output_times
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, bare
 from .flow import FlowMap, FlowResult, flow_map, look_up_ensemble

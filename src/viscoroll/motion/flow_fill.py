@@ -17,8 +17,8 @@ from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
 from ..kernels.motion.records import PARTIAL
 from ..kernels.numerics.nodes import gauss
-from ..materials.law_build import paired
-from ..materials.law_table import law_table
+from ..materials.law.fit import paired
+from ..materials.law.table import law_table
 from .flow_rows import NODES, Nodes, Rows, octaves
 from .flow_store import FlowMap
 from .rolling import motions

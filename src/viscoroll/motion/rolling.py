@@ -17,7 +17,7 @@ from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
 from ..core.typed import Floats, Integers
-from ..materials.law_table import law_table
+from ..materials.law.table import law_table
 from .checks import controls, in_words, refuse_end, refuse_many
 from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
 

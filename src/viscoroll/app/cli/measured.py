@@ -28,7 +28,7 @@ def show(given: Namespace) -> None:
     import pandas as pd
 
     from ...core.results import as_text
-    from ...materials.file import read_materials
+    from ...materials.material_toml import read_materials
 
     for section, material in read_materials(given.file).items():
         print(f"[{section}] {as_text(*material._card())}\n")
@@ -74,7 +74,7 @@ def fit(given: Namespace) -> int:
       viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
     """
     from ...contact_law.assumptions import MISFIT_LIMIT
-    from ...materials.file import as_toml
+    from ...materials.material_toml import as_toml
 
     record = vr.read_dma(
         given.data, columns=_columns(given.column), decimal=given.decimal, encoding=given.encoding,

@@ -54,7 +54,7 @@ def _of_toml(path: str) -> Any:
 
     from ...core.sections import read
     from ...io.config import SCENES, read_body
-    from ...materials.file import read_materials
+    from ...materials.material_toml import read_materials
 
     if not read(path).keys() & set(SCENES):
         return read_materials(path)["material"].plot()

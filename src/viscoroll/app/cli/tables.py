@@ -136,7 +136,7 @@ def fmu(given: Namespace) -> None:
     """
     from ...core.sections import read
     from ...io.config import read_bodies, read_body
-    from ...materials.law_store import is_law
+    from ...materials.law_file import is_law
 
     path = given.file
     if Path(path).suffix == ".nc":

@@ -21,7 +21,7 @@ from ...core.files import replacing
 from ...cylinder import Cylinder
 from ...io import tables
 from ...materials.cover import Cover
-from ...materials.law_file import table_of
+from ...materials.law.netcdf import table_of
 from .description import described, sources_described
 from .variables import MODELS, Variable
 

@@ -10,7 +10,7 @@ from ...core.checks import whole, yes_or_no
 from ...core.errors import ParameterError, refuse_unknown
 from ...core.typed import Floats
 from ...cylinder import Cylinder
-from ...materials.file import SECTIONS
+from ...materials.material_toml import SECTIONS
 from .fit import Identification
 from .problem import Found, Problem
 from .records import OF_RECORDS, Record

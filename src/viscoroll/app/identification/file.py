@@ -16,7 +16,7 @@ from ...core.sections import as_struct, fault, read, refuse_unknown
 from ...cylinder import Cylinder
 from ...io.config import read_body
 from ...io.measurements import find, is_heading, missing, quantity, read_table
-from ...materials.file import shifts_of
+from ...materials.material_toml import shifts_of
 from .records import Coastdown, Record, Resistance, Traction
 
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}

@@ -17,7 +17,7 @@ import numpy as np
 from ...core.errors import ParameterError
 from ...core.renamed import warn_renamed
 from ...core.typed import Booleans, Floats, Integers
-from ...materials.law_table import LawTable
+from ...materials.law.table import LawTable
 from ..contact_table import rolling
 from ..parameters import Rolls, framed, refuse_arrays
 

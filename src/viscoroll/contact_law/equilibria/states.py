@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.blocks import run_blocks
 from ...core.typed import Floats, Integers
-from ...materials.law_table import LawTable
+from ...materials.law.table import LawTable
 from ..contact_table import states_of
 from .loads import Gains, Loads
 from .resistance import branches

@@ -14,7 +14,7 @@ from ...core.drive import Feedback, over
 from ...core.errors import ParameterError
 from ...core.labels import unlabelled
 from ...core.typed import Integers, Numbers
-from ...materials.law_table import LawTable
+from ...materials.law.table import LawTable
 from ..parameters import Rolls, framed, scale_of
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches

@@ -16,8 +16,8 @@ from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
 from ...cylinder import Cylinder, contact_length, scene_of
-from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
+from ...materials.material_toml import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
 from ..config import body_of

@@ -31,7 +31,7 @@ import msgspec
 from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
 from ...core.typed import Floats
-from ...materials.file import as_toml, materials_of
+from ...materials.material_toml import as_toml, materials_of
 from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
 from ...motion.checks import output_times
 from ...motion.driven import Drive

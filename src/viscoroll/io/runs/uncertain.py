@@ -15,7 +15,7 @@ from ...core.extras import imported
 from ...core.scale import si_unit
 from ...core.sections import fault, hint, refuse_unknown
 from ...core.typed import Floats
-from ...materials.file import SECTIONS
+from ...materials.material_toml import SECTIONS
 from ..config import SCHEMA
 from ..measurements import is_heading, quantity, read_table
 from .inputs import Distribution, Input, Inputs

@@ -12,9 +12,9 @@ from ...contact_law.contact import contact
 from ...core.errors import ParameterError
 from ...core.typed import Floats
 from ...cylinder import Cylinder
-from ...materials.law_file import described, law_of
-from ...materials.law_store import content_of
-from ...materials.law_table import LawTable
+from ...materials.law.netcdf import described, law_of
+from ...materials.law.table import LawTable
+from ...materials.law_file import content_of
 from ...materials.prony_forms import HIGHEST_ALPHA
 from ...scene import Scene
 from . import schema

@@ -10,8 +10,8 @@ import numpy as np
 from ... import __version__
 from ...core.checks import whole
 from ...core.errors import FileError
-from ...materials.law_file import axis_of, law_of
-from ...materials.law_store import AXIS, KIND, content_of, errors_of
+from ...materials.law.netcdf import axis_of, law_of
+from ...materials.law_file import AXIS, KIND, content_of, errors_of
 from ...scene import Scene
 from . import schema
 from .build import RELATIVE, differences, errors_at, random_points

@@ -17,8 +17,8 @@ from ...core.errors import ParameterError
 from ...core.files import replacing, write_text
 from ...core.symbols import PAPER
 from ...core.typed import Floats
-from ...materials.law_file import law_of
-from ...materials.law_store import CHECKSUM, COVER, content_of
+from ...materials.law.netcdf import law_of
+from ...materials.law_file import CHECKSUM, COVER, content_of
 from . import schema, store
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from ...core.checks import broadcast_shape, checked
 from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
 from ...core.results import Values
 from ...core.typed import Floats
-from ...materials.grid_splines import compiled, spline
-from ...materials.law_grid import friction_limit
+from ...materials.law.grid import friction_limit
+from ...materials.law.splines import compiled, spline
 from . import schema
 
 if TYPE_CHECKING:

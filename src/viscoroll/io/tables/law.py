@@ -11,11 +11,11 @@ from ...contact_law.contact_table import states_of
 from ...core.errors import ParameterError, one_of
 from ...core.typed import Floats
 from ...cylinder import Cylinder
-from ...materials import law_axis
-from ...materials.cover_rows import at_speed
-from ...materials.law_file import as_dataset, table_of
-from ...materials.law_modes import by_modes
-from ...materials.law_table import FUNCTIONS, LawTable
+from ...materials.law import alpha_axis
+from ...materials.law.cover_rows import at_speed
+from ...materials.law.evaluate import by_modes
+from ...materials.law.netcdf import as_dataset, table_of
+from ...materials.law.table import FUNCTIONS, LawTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,7 +60,7 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     if alpha is not None:
         if base is not None or np.shape(alpha) != (2,):
             raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
-        found: LawTable | law_axis.LawAxis = law_axis.law_axis(*alpha)
+        found: LawTable | alpha_axis.LawAxis = alpha_axis.law_axis(*alpha)
     else:
         found = (_of_cylinder if isinstance(material, Cylinder) else table_of)(material, base)
     return as_dataset(found, measured_errors(found))
@@ -74,7 +74,7 @@ def _of_cylinder(given: Cylinder, base: Any) -> LawTable:
 
 
 def measured_errors(
-    table: LawTable | law_axis.LawAxis, count: int | None = None, seed: int = _SEED
+    table: LawTable | alpha_axis.LawAxis, count: int | None = None, seed: int = _SEED
 ) -> dict[str, float]:
     """Largest relative error of every function at random places before its fast limit.
 
@@ -86,13 +86,13 @@ def measured_errors(
     count : of places, of every alpha or so; default: eight an octave.
     seed : of the places.
     """
-    if isinstance(table, law_axis.LawAxis):
+    if isinstance(table, alpha_axis.LawAxis):
         octaves, random = len(table.rows), np.random.default_rng(seed)
         alphas = np.exp2(table.first + octaves * random.random(_ALPHAS * octaves)).tolist()
         each = [measured_errors(table.at(alpha), count and 1 + count // len(alphas), seed) for alpha in alphas]
         worst = {name: max(one[name] for one in each) for name in FUNCTIONS}
         worst["m"] = worst["m_half_space"] + worst["m_cylinder"]
-        return {name: worst[name] for name in law_axis.FUNCTIONS}
+        return {name: worst[name] for name in alpha_axis.FUNCTIONS}
     if table.cover is not None:
         return _errors_of_cover(table, count or _SOLVES, seed)
     rows, e0 = table.coefficients.shape[0], table.e0
@@ -117,10 +117,9 @@ def _errors_of_cover(table: LawTable, count: int, seed: int) -> dict[str, float]
     """Those of a layer against its solve with half as many terms again, at speeds around its rates; share and press
     against what they are of the others, L."""
     cover: Any = table.material
-    modes = cover.modes
     slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
     u = slow * (fast / slow) ** np.random.default_rng(seed).random(count)
-    exact = np.array([at_speed(modes, cover.thickness, each, orders=_TERMS) for each in u.tolist()]).T
+    exact = np.array([at_speed(cover, each, orders=_TERMS) for each in u.tolist()]).T
     found = states_of(table, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, _OF_COVER)
     L, M = exact[1], u * exact[4]
     free = found[2] * (2.0 if cover.on == "base" else -2.0)

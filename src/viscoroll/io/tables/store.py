@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...core.errors import FileError
 from ...core.files import sealed_content, write_dataset
-from ...materials import law_store
+from ...materials import law_file
 from . import schema
 
 if TYPE_CHECKING:
@@ -21,13 +21,13 @@ _MOST_BYTES = 1 << 31
 
 def is_law(table: Any) -> bool:
     """Whether a dataset is the law of a material or of every alpha, and no grid."""
-    return getattr(table, "attrs", {}).get(schema.KIND) in law_store.KINDS
+    return getattr(table, "attrs", {}).get(schema.KIND) in law_file.KINDS
 
 
 def check(table: Any, path: Any) -> None:
     """Refuse what is neither a law nor a grid; raises FileError."""
     if is_law(table):
-        law_store.check(law_store.content_of(table), path)
+        law_file.check(law_file.content_of(table), path)
     else:
         schema.check(table, path)
 
@@ -104,13 +104,13 @@ def info(path: str | PathLike[str]) -> str:
     lines = [f"{path}: {about[schema.KIND]}, {size:.0f} kB", about["title"], ""]
     if is_law(table):
         lines += [f"  {'function':<14}largest relative error"]
-        lines += [f"  {name:<14}{error:.1e}" for name, error in law_store.errors_of(table).items()]
+        lines += [f"  {name:<14}{error:.1e}" for name, error in law_file.errors_of(table).items()]
     else:
         axes = {axis: table[axis].values for axis in schema.axes_of(table)}
         lines += [f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items()]
         lines += ["", f"  {'field':<26}{'over':<18}error between the nodes"]
         lines += [_field_line(table[name]) for name in schema.fields_of(table)]
-    keys = ("material", "comment", "source", "history", law_store.CHECKSUM)
+    keys = ("material", "comment", "source", "history", law_file.CHECKSUM)
     return "\n".join([*lines, "", *(f"{key}: {about[key]}" for key in keys if key in about)])
 
 

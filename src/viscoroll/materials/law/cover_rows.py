@@ -14,11 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.errors import ParameterError
-from ..core.typed import Floats
-from ..kernels.numerics.nodes import chebyshev, rounded
-from .cover_solve import MOST_THETA, CoverModes, CoverState, local_strain, solve
-from .law_build import FUNCTIONS, TERMS, Rows, octaves
+from ...core.errors import ParameterError
+from ...core.typed import Floats
+from ...kernels.numerics.nodes import chebyshev, rounded
+from ..cover import Cover
+from .cover_solve import MOST_THETA, CoverModes, CoverState, local_strain, modes_of, solve
+from .fit import FUNCTIONS, TERMS, Rows, octaves
 
 #: nodes an octave of u, and nodes on either side of an octave that take part in its polynomial
 PER_OCTAVE, _ASIDE = 12, 18
@@ -58,7 +59,7 @@ class CoverRows(NamedTuple):
     limits: Floats
 
 
-def cover_rows(modes: CoverModes, thickness: float, side: float, thickest: float | None = None) -> CoverRows:
+def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     """The rows of one cover.
 
     Parameters
@@ -74,6 +75,8 @@ def cover_rows(modes: CoverModes, thickness: float, side: float, thickest: float
     ParameterError
         A cover so thin that the half length at rest is more than six thicknesses.
     """
+    # the creep of free rolling has the sign of a cover on the base, which has all of M
+    modes, thickness, side = modes_of(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
     slow_limit = _elastic(modes, thickness, 1.0) if thickness > _THINNEST else None
     if slow_limit is None or slow_limit[_LAM] > 2.0 * MOST_THETA * thickness:
         allowed = f"larger: half the contact at rest may be at most {MOST_THETA:g} thicknesses long"
@@ -147,9 +150,10 @@ def quantities(state: CoverState, z: float, u: float) -> Floats:
     return np.array([2.0 * z * u, 2.0 * u * state.creep_limit, 2.0 * u * state.strain, state.shift / z, state.moment])
 
 
-def at_speed(modes: CoverModes, thickness: float, u: float, *, orders: int | None = None) -> Floats:
+def at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
     """lam, L, 2 kappa delta_0 (of a cover on the base), epsilon and M/V at u, by the solve alone: what rows are
     compared with."""
+    modes, thickness = modes_of(cover), cover.thickness
     z = 0.5 / u / math.sqrt(1.0 + (modes.alpha - 1.0) * u / (u + 1.0)) / (1.0 + 0.2 / thickness)
     return _node(modes, thickness, u, math.log(z), 2.0, orders)[0]
 

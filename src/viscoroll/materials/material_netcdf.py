@@ -12,7 +12,7 @@ import numpy as np
 from .. import __version__
 from ..core.errors import FileError, ParameterError
 from ..core.files import seal_holds, write_dataset
-from .law_store import content_at
+from .law_file import content_at
 from .measured import Measured
 from .prony import Prony
 

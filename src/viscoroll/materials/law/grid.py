@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.checks import checked, number
-from ..core.errors import FileError, OutOfTableError, ParameterError
-from ..core.files import sealed_content
-from ..core.typed import Floats
-from ..core.units import factor
-from .grid_splines import compiled, spline
+from ...core.checks import checked, number
+from ...core.errors import FileError, OutOfTableError, ParameterError
+from ...core.files import sealed_content
+from ...core.typed import Floats
+from ...core.units import factor
+from .splines import compiled, spline
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,7 @@ class LawGrid:
 
     Attributes
     ----------
-    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.grid_splines.compiled` writes them; over
+    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.law.splines.compiled` writes them; over
         load and load times radius, or N/m and N.
     V : slowest and fastest speed; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.

@@ -14,7 +14,7 @@ exp(-2 u): the layer adds a smooth operator S to the Hilbert transform, and to t
 c.  The unknowns are the coefficients q up to order N = 14 + 6 theta; the exponentials of the relaxation modes enter by
 their first N coefficients, so that alpha may be arbitrarily large.
 
-Sources of the method: the law of the half-space in closed form (:mod:`.law_modes`), and the layer's kernels as in
+Sources of the method: the law of the half-space in closed form (:mod:`.evaluate`), and the layer's kernels as in
 Johnson, Contact Mechanics (1985), Sect. 5.8.
 """
 
@@ -26,9 +26,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.typed import Floats
-from .law_modes import series_of
-from .prony import Prony
+from ...core.typed import Floats
+from ..cover import Cover
+from ..prony import Prony
+from .evaluate import series_of
 
 #: terms of the pressure: these many, and so many for each unit of theta (found by doubling them: 3e-14 up to theta = 1)
 _TERMS, _TERMS_PER_THETA = 14, 6
@@ -113,6 +114,11 @@ class CoverModes:
     def layer_storage(self, k: Floats) -> Any:
         """Real part of the layer's share of that compliance."""
         return self.layer_instant + (self.layer_J * (self.layer_b**2 / (self.layer_b**2 + k[:, None] ** 2))).sum(axis=1)
+
+
+def modes_of(cover: Cover) -> CoverModes:
+    """The series of a cover as the solve takes it."""
+    return CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu)
 
 
 def _local(nu: float) -> float:

@@ -16,12 +16,12 @@ import numpy as np
 
 from ..core.errors import FileError, ParameterError
 from ..core.sections import as_struct, fault, read
-from .law_store import is_law, read_law
+from .law_file import is_law, read_law
 from .material import Material
+from .material_netcdf import SUFFIX
 from .measured import Measured
 from .prony import Prony
 from .shift import WLF, Arrhenius, relative
-from .store import SUFFIX
 
 SECTIONS = ("material", "base")
 

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import ParameterError
-from .bodies import Bodies, one_series
-from .cover import Cover
-from .cover_rows import CoverRows
-from .law_build import FUNCTIONS, TERMS, Floats, Rows, added, arranged, build, octaves, paired, with_unsteady
-from .law_modes import by_modes, refuse_far
-from .pair import Pair
-from .prony import Prony, read_only
+from ...core.errors import ParameterError
+from ..bodies import Bodies, one_series
+from ..cover import Cover
+from ..pair import Pair
+from ..prony import Prony, read_only
+from .cover_rows import CoverRows, cover_rows
+from .evaluate import by_modes, refuse_far
+from .fit import FUNCTIONS, TERMS, Floats, Rows, added, arranged, build, octaves, paired, with_unsteady
 
 #: tables kept, of some 0.2 MB
 _KEPT = 32
@@ -64,7 +64,7 @@ class LawTable:
 
     @cached_property
     def coefficients(self) -> Floats:
-        """(rows, 24 powers, 7 functions), the functions in the order of :data:`.law_build.FUNCTIONS`.
+        """(rows, 24 powers, 7 functions), the functions in the order of :data:`.fit.FUNCTIONS`.
 
         Raises
         ------
@@ -82,7 +82,7 @@ class LawTable:
     @cached_property
     def record(self) -> Any:
         """What kernels take, derived from this table and from nothing else."""
-        from ..kernels.rows.record import COUNT, E0, PARTS, WIDTH, Law
+        from ...kernels.rows.record import COUNT, E0, PARTS, WIDTH, Law
 
         count, front = (
             len(self.given_coefficients),
@@ -149,7 +149,7 @@ def made(given: float | Prony | Bodies, coefficients: Floats | None = None, cove
     sums = np.array([[math.fsum(share * row) for row in terms] for share in shares])
     table, e0 = _elastic(), 0
     if isinstance(given, Cover):
-        cover = cover or given.rows()
+        cover = cover or cover_rows(given)
         table, e0 = cover.coefficients, cover.e0
     elif modes.a.size:
         refuse_far(modes.b[0], modes.a[-1])
@@ -165,7 +165,7 @@ def made(given: float | Prony | Bodies, coefficients: Floats | None = None, cove
 
 
 def cover_front(cover: CoverRows) -> Floats:
-    """The numbers in front of a cover's rows (:mod:`..kernels.rows.record`), by which the fast limit of the half-space
+    """The numbers in front of a cover's rows (:mod:`...kernels.rows.record`), by which the fast limit of the half-space
     says that of the cover: L = L_1 (1 + a/u) and M = b V/u^2, without logarithms."""
     L, _, _, L_slope, _, _, _, moment = cover.limits
     on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
@@ -174,8 +174,8 @@ def cover_front(cover: CoverRows) -> Floats:
 
 
 def cover_numbers(cover: CoverRows) -> Floats:
-    """What kernels read of a cover beside its rows (:mod:`..kernels.rows.cover`)."""
-    from ..kernels.rows.cover import FRONT
+    """What kernels read of a cover beside its rows (:mod:`...kernels.rows.cover`)."""
+    from ...kernels.rows.cover import FRONT
 
     L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
     share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.typed import Floats
+from ...core.typed import Floats
 
 
 def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
@@ -45,7 +45,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     """
     from scipy.interpolate import BSpline
 
-    from ..kernels.splines.spline import TERMS
+    from ...kernels.splines.spline import TERMS
 
     edges = knots[degree : knots.size - degree]
     of, own = np.arange(edges.size - 1)[:, np.newaxis], np.arange(degree + 1)

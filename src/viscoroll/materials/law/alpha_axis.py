@@ -8,11 +8,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..core.checks import number
-from ..core.errors import ParameterError
-from .law_table import Floats, LawTable, law_table, made
-from .prony import read_only
-from .prony_forms import HIGHEST_ALPHA
+from ...core.checks import number
+from ...core.errors import ParameterError
+from ..prony import read_only
+from ..prony_forms import HIGHEST_ALPHA
+from .table import Floats, LawTable, law_table, made
 
 #: functions of an axis in their order, some of them over c = (alpha - 1)/alpha, whose limits as alpha -> 1 are finite
 FUNCTIONS = ("lam", "epsilon", "m", "N", "share", "press")
@@ -108,6 +108,6 @@ def to_chebyshev(values: Floats) -> Floats:
 @lru_cache(maxsize=1)
 def _nodes() -> tuple[Floats, Floats]:
     """Nodes of an octave in [-1, 1], and the matrix from values there to terms."""
-    from ..kernels.numerics.nodes import chebyshev, rounded, to_chebyshev
+    from ...kernels.numerics.nodes import chebyshev, rounded, to_chebyshev
 
     return rounded(chebyshev(TERMS_OF_ALPHA)), to_chebyshev(TERMS_OF_ALPHA)

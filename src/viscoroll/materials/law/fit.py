@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core.typed import Floats
-from ..kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
-from .law_modes import AtPlaces
+from ...core.typed import Floats
+from ...kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
+from .evaluate import AtPlaces
 
 TERMS = 24
 #: functions of a table in their order: the first five are of kappa |V|, the others of 1/F(eta)
@@ -162,7 +162,7 @@ def octaves(slowest: Any, fastest: Any) -> tuple[Any, Any]:
 
     So far behind the shortest time the fast limit is good to rounding.
     """
-    from ..kernels.rows.grid import FAST
+    from ...kernels.rows.grid import FAST
 
     e0 = np.frexp(slowest)[1] - _SLOW
     return e0, np.frexp(fastest)[1] + FAST - e0 + 1
@@ -219,7 +219,7 @@ def added(N: Floats, e0: int, alpha: float) -> Floats:
 
 
 def arranged(table: Floats, e0: int, alpha: float, fast: Floats, given: Floats | None = None) -> Floats:
-    """The rows that kernels read (:mod:`..kernels.rows.law`): functions side by side, and L = lam (1 + epsilon), or
+    """The rows that kernels read (:mod:`...kernels.rows.law`): functions side by side, and L = lam (1 + epsilon), or
     the rows ``given`` of L = 2 kappa delta_star/mu.
 
     ``fast``: W and C of the fast limit.  L^2 press(2 u/L) = 1, which Q loses digits by, holds to rounding.

@@ -10,18 +10,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.typed import Floats, Integers
-from .bodies import Bodies
-from .cover import Cover
-from .law_axis import OCTAVES, tables_of, to_chebyshev
-from .law_build import octaves
-from .law_modes import refuse_far, series_of
-from .law_table import made
-from .prony import Block, Prony, read_only
+from ...core.typed import Floats, Integers
+from ..bodies import Bodies
+from ..cover import Cover
+from ..prony import Block, Prony, read_only
+from .alpha_axis import OCTAVES, tables_of, to_chebyshev
+from .cover_rows import cover_rows
+from .evaluate import refuse_far, series_of
+from .fit import octaves
+from .table import made
 
 _lock = threading.Lock()
-#: the axis: what was met of each octave of alpha in this process (:mod:`..kernels.rows.axis`), never dropped again, and
-#: its address and how many rows it has, 0: not met
+#: the axis: what was met of each octave of alpha in this process (:mod:`...kernels.rows.axis`), never dropped again,
+#: and its address and how many rows it has, 0: not met
 _octaves: dict[int, Floats] = {}
 _known = np.zeros((OCTAVES, 2), np.int64)
 
@@ -29,10 +30,10 @@ _known = np.zeros((OCTAVES, 2), np.int64)
 def law_of_alphas(alpha: Floats) -> Any:
     """The record of states or motions that have these alphas, one or one each, for one thread.
 
-    It holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
+    It holds the law of one of them at a time (:func:`...kernels.rows.record.hold`).
     """
-    from ..kernels.rows.axis import E0_OF_ALPHA, SOURCE, hold, make
-    from ..kernels.rows.record import E0
+    from ...kernels.rows.axis import E0_OF_ALPHA, SOURCE, hold, make
+    from ...kernels.rows.record import E0
 
     alpha = np.ascontiguousarray(alpha, dtype=np.float64)
     met = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
@@ -57,7 +58,7 @@ def order_of_alphas(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
 
 def _room(count: int) -> tuple[Floats, Integers]:
     """Of so many rows, numbers and marks, with those in front."""
-    from ..kernels.rows.record import PARTS, WIDTH
+    from ...kernels.rows.record import PARTS, WIDTH
 
     return np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
 
@@ -68,8 +69,8 @@ def _record(hold: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> 
     ``free``: room for what a cover has beside its rows, which its kernels know too.
     """
     known |= {} if free is None else {"free": free}
-    from ..kernels.compile.intrinsics import function_address
-    from ..kernels.rows.record import Law
+    from ...kernels.compile.intrinsics import function_address
+    from ...kernels.rows.record import Law
 
     source = np.zeros(1, kind)
     for name, value in known.items():
@@ -83,8 +84,8 @@ def _record(hold: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> 
 
 def _octave(octave: int) -> tuple[Floats, int]:
     """(numbers, rows) of an octave of alpha."""
-    from ..kernels.rows.axis import PIECES
-    from ..kernels.rows.record import BODIES, PART, PRESS, WIDTH
+    from ...kernels.rows.axis import PIECES
+    from ...kernels.rows.record import BODIES, PART, PRESS, WIDTH
 
     tables = tables_of(octave)
     rows, c = len(tables[0].given_coefficients), np.array([table.T_mean for table in tables])
@@ -99,12 +100,12 @@ def _octave(octave: int) -> tuple[Floats, int]:
 def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     """The record of states or motions that have the materials ``which``.
 
-    For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
+    For one thread; it holds the law of one of them at a time (:func:`...kernels.rows.record.hold`).
     """
     if isinstance(materials, Cover):
         return _law_of_covers(materials, which)
-    from ..kernels.rows.grid import FRONT, HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
-    from ..kernels.rows.series import LANES, packed_size, room_size
+    from ...kernels.rows.grid import FRONT, HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
+    from ...kernels.rows.series import LANES, packed_size, room_size
 
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
@@ -128,7 +129,7 @@ def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
 
 
 def _numbers(block: Block) -> Floats:
-    """What the kernels take of materials, a row each (:mod:`..kernels.rows.grid`)."""
+    """What the kernels take of materials, a row each (:mod:`...kernels.rows.grid`)."""
     modes, count = block.modes, block.rows.size
     weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights
     alpha, fast = np.broadcast_to(modes.alpha, count), modes.J * modes.b
@@ -145,9 +146,9 @@ def _numbers(block: Block) -> Floats:
 
 def _law_of_covers(covers: Cover, which: Integers) -> Any:
     """The record of states or motions that have the covers ``which``, for one thread."""
-    from ..kernels.numerics.nodes import to_chebyshev as to_terms
-    from ..kernels.rows.cover_axis import HELD, NODES, SOURCE, hold, make
-    from ..kernels.rows.record import E0
+    from ...kernels.numerics.nodes import to_chebyshev as to_terms
+    from ...kernels.rows.cover_axis import HELD, NODES, SOURCE, hold, make
+    from ...kernels.rows.record import E0
 
     some, of = np.unique(which, return_inverse=True)
     octave, place = np.floor(np.log2(covers.thickness[some])), np.log2(covers.thickness[some])
@@ -185,13 +186,13 @@ def _octave_of_covers(thinnest: Cover) -> _CoverLaws:
 
 @lru_cache(maxsize=32)
 def _made_octave_of_covers(thinnest: Cover) -> _CoverLaws:
-    from ..kernels.numerics.nodes import chebyshev, rounded
-    from ..kernels.rows.cover_axis import NODES
-    from ..kernels.rows.record import E0, WIDTH
+    from ...kernels.numerics.nodes import chebyshev, rounded
+    from ...kernels.rows.cover_axis import NODES
+    from ...kernels.rows.record import E0, WIDTH
 
     numbers = []
     for place in rounded(chebyshev(NODES)).tolist():
         cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * place))
-        law = made(cover, cover=cover.rows(2.0 * thinnest.thickness)).record
+        law = made(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
         numbers.append(np.concatenate([law.rows, law.free]))
     return _CoverLaws(np.array(numbers), law.rows.size // WIDTH - 1, int(law.marks[E0]), law.free.size)

@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.errors import ParameterError
-from ..core.typed import Floats
-from .bodies import Bodies
-from .prony import Prony
-from .prony_forms import Modes
+from ...core.errors import ParameterError
+from ...core.typed import Floats
+from ..bodies import Bodies
+from ..prony import Prony
+from ..prony_forms import Modes
 
 #: times in T_ref beyond which numbers of rows leave the doubles
 _LONGEST = 1e100
@@ -25,7 +25,7 @@ def refuse_far(slowest: float, fastest: float) -> None:
 
 def series_of(modes: Modes, weights: Floats | None = None) -> Any:
     """The record of one series, or of many; ``weights``: the half-space's, of two bodies that differ."""
-    from ..kernels.rows.series import Series
+    from ...kernels.rows.series import Series
 
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
     e, t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
@@ -34,7 +34,7 @@ def series_of(modes: Modes, weights: Floats | None = None) -> Any:
 
 def kernel_series(given: Any) -> tuple[Any, Floats]:
     """(The record of a series, nothing), or (that of one mode, the alphas that it is to have); for one thread."""
-    from ..kernels.rows.series import Series
+    from ...kernels.rows.series import Series
 
     if isinstance(given, Bodies):
         # a copy, which can be written to: the table of a pair keeps its weights read only
@@ -58,8 +58,8 @@ class AtPlaces(NamedTuple):
 
 def by_modes(given: Any, z: Floats) -> AtPlaces:
     """By no table, at every z = zeta > 0; ``given``: a series, a pair, or alphas, one or one each."""
-    from ..kernels.rows.modes import modes_loop
-    from ..kernels.rows.series import FUNCTIONS, room_of
+    from ...kernels.rows.modes import modes_loop
+    from ...kernels.rows.series import FUNCTIONS, room_of
 
     series, alpha = kernel_series(given)
     found, z = np.zeros((2 * FUNCTIONS + 1, z.size)), z.view()
