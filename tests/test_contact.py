@@ -80,7 +80,7 @@ def test_a_material_each_is_that_material_alone(name):
 def test_a_law_keeps_alive_what_its_kernels_have_the_addresses_of():
     alpha = np.array([3.0, 200.0])
     held = weakref.ref(alpha)
-    law = per_element.law_of_alphas(alpha)
+    law = per_element.record_of_alphas(alpha)
     del alpha
     assert held() is not None
     del law

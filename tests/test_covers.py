@@ -12,7 +12,7 @@ from refusals import refused
 
 import viscoroll as vr
 from pipeline.evidence.prove import layer
-from viscoroll.materials.law.cover_rows import at_speed
+from viscoroll.materials.law.cover_rows import solve_at_speed
 from viscoroll.materials.law.cover_solve import CoverModes, solve
 
 ONE, THREE = vr.Prony([10.0], [1.0 / 11.0]), vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003])
@@ -49,7 +49,7 @@ def test_a_thick_cover_is_a_half_space(p):
 def test_rows_are_the_solve(cover):
     """With twice as many terms of the pressure."""
     u = 10.0 ** np.linspace(-2.5, 3.0, 12)
-    truth = np.array([at_speed(cover, each, orders=60) for each in u]).T
+    truth = np.array([solve_at_speed(cover, each, orders=60) for each in u]).T
     found = vr.contact(scene_on(cover), u / KAPPA, delta=0.0)
     assert close(found.lam, truth[0], rel=tol.COVER_ROWS)
     assert close(2.0 * KAPPA / MU * found.delta_star, truth[1], rel=tol.COVER_ROWS)

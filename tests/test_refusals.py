@@ -24,7 +24,7 @@ from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_bodies, read_body
 from viscoroll.io.runs import read_run
 from viscoroll.io.sampling import sample
-from viscoroll.materials.law.netcdf import table_of
+from viscoroll.materials.law.netcdf import law_table_of
 from viscoroll.materials.law.table import law_table
 from viscoroll.materials.material_toml import read_materials
 
@@ -49,7 +49,7 @@ NAMES = vars(experiments) | {
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
     "read_body": read_body, "read_bodies": read_bodies, "read_materials": read_materials, "sample": sample,
     "Steadiness": Steadiness, "Scale": Scale,
-    "law_table": law_table, "table_of": table_of,
+    "law_table": law_table, "table_of": law_table_of,
     "SOFT": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0),
     "STEEL": vr.Material.elastic(2e11, 0.3),
     "COVERED": vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0),

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.results import Row, as_html, as_text
-from ..materials.law.evaluate import by_modes
+from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.measured import Measured
 from ..materials.prony import Prony
 
@@ -140,7 +140,7 @@ def passage(V: Any, length: Any) -> Any:
 def held_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
     """kappa V at which the contact is passed at two rates; all over T_ref."""
     rates = np.array([low, high])
-    rise = by_modes(series, 0.5 / rates).values[1]
+    rise = evaluate_by_modes(series, 0.5 / rates).values[1]
     low, high = (rates / np.sqrt(1.0 + 2.0 * rise)).tolist()  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
     return low, high
 

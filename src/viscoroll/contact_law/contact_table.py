@@ -13,8 +13,8 @@ from ..core.blocks import elements, run_blocks
 from ..core.checks import extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
-from ..materials.law.evaluate import by_modes
-from ..materials.law.per_element import law_of_alphas, law_of_materials, order_of_alphas
+from ..materials.law.evaluate import evaluate_by_modes
+from ..materials.law.per_element import record_of_alphas, record_of_materials, sort_by_octave
 from ..materials.law.table import LawTable
 from ..materials.prony import Prony
 from .contact_fields import UNSTEADY
@@ -53,10 +53,10 @@ def states_of(
         if isinstance(given, LawTable):
             law = given.record
         elif given is not None:
-            law = law_of_materials(given, each.astype(np.int64))
+            law = record_of_materials(given, each.astype(np.int64))
             order = np.argsort(each, kind="stable") if each.size > 1 else order
         elif not direct:
-            law, order = law_of_alphas(each), order_of_alphas(each, parts[0], parts[2])
+            law, order = record_of_alphas(each), sort_by_octave(each, parts[0], parts[2])
         asked = of.Asked(of.States(*parts, creep_is_omega), order, to, out, start)
         if direct:
             if loop(law, asked, stop - start):
@@ -74,7 +74,7 @@ def states_of(
         else:
             to_zeta = _asked(("zeta",), direct)[-1]
             loop(law, asked._replace(to=to_zeta, out=N[None], first=0), np.empty((4, room)), stop - start)
-            N[:] = by_modes(each, N).N
+            N[:] = evaluate_by_modes(each, N).N
 
     if count <= _TOGETHER and single:
         states = np.empty((len(arrays), *(shape or (1,))))

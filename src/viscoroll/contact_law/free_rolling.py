@@ -19,8 +19,8 @@ import numpy as np
 
 from ..core.scale import Scale
 from ..core.typed import Booleans, Floats, Integers
-from ..materials.bodies import one_series
-from ..materials.law.evaluate import by_modes
+from ..materials.bodies import total_series
+from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.law.table import law_table
 from ..materials.prony import Prony
 from .contact_table import rolling
@@ -44,13 +44,15 @@ class Curve:
     def __init__(self, material: float | Prony) -> None:
         from scipy.interpolate import CubicSpline
 
-        series = one_series(material)
+        series = total_series(material)
         self.modes, self.alpha = (series.J, series.T), series.alpha
         shortest, longest = series.tau[-1], series.T[0]
         octaves = math.ceil(math.log2(longest / shortest * math.sqrt(self.alpha))) + 2 * _MARGIN
         places = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
         # by the formulas of the modes at places of 1/(2 zeta): kernels of contacts need not be compiled for a warning
-        (_, rise, half_space, cylinder), _, N = by_modes(material, 0.5 * np.exp(_MARGIN * math.log(2.0) - places))
+        (_, rise, half_space, cylinder), _, N = evaluate_by_modes(
+            material, 0.5 * np.exp(_MARGIN * math.log(2.0) - places)
+        )
         self.s = places - _MARGIN * math.log(2.0) - 0.5 * np.log1p(2.0 * rise)
         u = np.exp(self.s)
         M = u * (half_space + cylinder)
@@ -120,7 +122,7 @@ class Curve:
 @lru_cache(maxsize=256)  # those that an ensemble's validity looks at; 0.1 MB each
 def curve(material: float | Prony) -> Curve | None:
     """The curve of a material in its own time; None of an elastic one, which rolls for ever."""
-    return Curve(material) if one_series(material).alpha > 1.0 else None
+    return Curve(material) if total_series(material).alpha > 1.0 else None
 
 
 class Strained(NamedTuple):

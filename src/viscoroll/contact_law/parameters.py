@@ -14,7 +14,7 @@ from ..core.errors import ParameterError, one_of
 from ..core.results import short
 from ..core.scale import DIMENSIONLESS, Scale
 from ..core.typed import Floats, Integers
-from ..materials.bodies import Bodies, one_series
+from ..materials.bodies import Bodies, total_series
 from ..materials.cover import Cover
 from ..materials.law.grid import LawGrid
 from ..materials.law.table import LawTable, law_table
@@ -241,7 +241,7 @@ class Parameters(Rolls):
             given, unit = self.in_own_time()
             materials, which = np.unique(given, return_inverse=True) if np.ndim(given) else ([given], np.zeros((), int))
         else:
-            given, unit = zip(*(_in_own_time(one_series(one)) for one in self.each), strict=True)
+            given, unit = zip(*(_in_own_time(total_series(one)) for one in self.each), strict=True)
             unit = np.array(unit, np.float64)
             materials, which = given, np.arange(unit.size)
         gamma = np.nan if self.gamma is None else self.gamma

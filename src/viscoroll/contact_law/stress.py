@@ -13,8 +13,8 @@ from ..core.errors import one_of
 from ..core.labels import unlabelled
 from ..core.results import Values
 from ..core.typed import Floats, Numbers
-from ..materials.bodies import one_series
-from ..materials.law.evaluate import kernel_series
+from ..materials.bodies import total_series
+from ..materials.law.evaluate import series_record
 from .contact import states
 from .parameters import Parameters, Rolls, framed, refuse_cover
 
@@ -103,7 +103,7 @@ def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Float
     for first, last in pairwise([0, *ends, p.size]):
         given: Any = numbers if scene.series is None else scene.series
         if scene.each is not None:
-            given = one_series(scene.each[int(numbers[min(first, numbers.size - 1)])])
-        series, alpha = kernel_series(given)
+            given = total_series(scene.each[int(numbers[min(first, numbers.size - 1)])])
+        series, alpha = series_record(given)
         some = points._make(part[first:last] if part.size > 1 else part for part in points)
         stress_loop(series, alpha, memories(series), memories(series), some, p[first:last], tau[first:last])

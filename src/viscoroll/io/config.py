@@ -21,9 +21,9 @@ from ..materials.material_toml import (
     SUFFIX,
     CreepSection,
     PronySection,
-    materials_of,
+    parse_materials,
+    parse_series,
     read_materials,
-    series_of,
 )
 from ..materials.pair import Pair
 from ..presets import PRESETS
@@ -96,7 +96,7 @@ def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene 
     content = read(path)
     check_sections(path, content, dict.fromkeys(beside))
     try:
-        body = body_of(path, content, materials_of(path, content))
+        body = body_of(path, content, parse_materials(path, content))
         body.scene()  # refuses what leaves the range of doubles
     except ParameterError as error:
         raise located(path, content, error) from error
@@ -127,7 +127,7 @@ def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any])
     if "cylinder" in content:
         return Cylinder(**content["cylinder"], **materials)
     given = dict(content.get("scene", {}))
-    if (series := series_of(path, "scene", given)) is not None:
+    if (series := parse_series(path, "scene", given)) is not None:
         given["material"] = series
     given = {name: value for name, value in given.items() if name not in ("prony", "creep")}
     if "preset" in content:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..core.checks import broadcast_shape, checked, frozen
 from ..core.errors import ParameterError
 from ..core.typed import Floats, Integers
-from .prony import Block, OneOrMany, Prony, descending, series_of_alpha
+from .prony import Block, OneOrMany, Prony, series_of_alpha, sort_modes
 from .prony_forms import MOST_MODES
 
 
@@ -98,7 +98,7 @@ class Bodies(OneOrMany):
         own, J, T = (
             np.concatenate([np.broadcast_to(e, (*self.shape, e.shape[-1])) for e in each], -1) for each in bodies
         )
-        return tuple(descending(J, T, own))
+        return tuple(sort_modes(J, T, own))
 
     @cached_property
     def total(self) -> Prony:
@@ -140,7 +140,7 @@ class Bodies(OneOrMany):
         return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r})"
 
 
-def one_series(given: float | Prony | Bodies) -> Prony:
+def total_series(given: float | Prony | Bodies) -> Prony:
     """The series of a material by its alpha, of a series, or of both bodies together."""
     if isinstance(given, Bodies):
         return given.total

@@ -126,9 +126,9 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths, an unknown keyword.
         """
-        E, nu = number("E", E, unit=SI, low=0.0, strict=True), poisson(nu)
-        strengths, times = pairs("G", G, "tau", tau)
-        bulk = None if K is None else pairs("K", K, "tau", times)[0]
+        E, nu = number("E", E, unit=SI, low=0.0, strict=True), check_poisson(nu)
+        strengths, times = check_pairs("G", G, "tau", tau)
+        bulk = None if K is None else check_pairs("K", K, "tau", times)[0]
         return cls._of_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
 
     @classmethod
@@ -169,11 +169,11 @@ class FromPrograms:
             A value out of range, lists of different lengths, no long-time modulus or several, both or
             neither of nu and bulk, an unknown keyword.
         """
-        strengths, rates = pairs("G", G, "beta", beta, strict=False)
+        strengths, rates = check_pairs("G", G, "beta", beta, strict=False)
         resting = rates == 0.0
         rest = _long_time(strengths, G0, G_inf, strengths[resting])
         strengths, times = strengths[~resting], 1.0 / rates[~resting]
-        terms = None if K is None else pairs("K", K, "beta", rates, strict=False)[0]
+        terms = None if K is None else check_pairs("K", K, "beta", rates, strict=False)[0]
         if terms is not None:
             if terms[resting].any():
                 if nu is not None or bulk is not None:
@@ -186,7 +186,7 @@ class FromPrograms:
             bulk = number("bulk", bulk, unit=SI, low=0.0, strict=True)
             nu = (3.0 * bulk - 2.0 * rest) / (6.0 * bulk + 2.0 * rest)
             terms = np.zeros_like(strengths) if terms is None else terms
-        return cls._of_moduli(rest, poisson(nu), strengths, times, terms, more, bulk)
+        return cls._of_moduli(rest, check_poisson(nu), strengths, times, terms, more, bulk)
 
     @classmethod
     def _relative(
@@ -201,12 +201,12 @@ class FromPrograms:
         more: dict[str, Any],
     ) -> Any:
         """From shares of the instantaneous moduli; ``long``: E is the long-time modulus."""
-        E, nu = number("E0", E, unit=SI, low=0.0, strict=True), poisson(nu)
-        values, times = pairs(name, shares, "tau", tau)
+        E, nu = number("E0", E, unit=SI, low=0.0, strict=True), check_poisson(nu)
+        values, times = check_pairs(name, shares, "tau", tau)
         left = _left(name, values)
         if bulk is None:
             return cls._made(more, E=E if long else E * left, nu=nu, prony=Prony(values / left, times))
-        others = pairs("k", bulk, "tau", times)[0]
+        others = check_pairs("k", bulk, "tau", times)[0]
         left_of_bulk = _left("k", others)
         G, K = E / (2.0 * (1.0 + nu)), E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
         G, K = (G, K) if long else (G * left, K * left_of_bulk)
@@ -239,7 +239,7 @@ class FromPrograms:
         return cls(**own, **more)
 
 
-def poisson(nu: Any) -> float:
+def check_poisson(nu: Any) -> float:
     """Poisson's ratio in (-1, 0.5]; raises ParameterError."""
     nu = number("nu", nu)
     if not -1.0 < nu <= 0.5:
@@ -247,7 +247,9 @@ def poisson(nu: Any) -> float:
     return nu
 
 
-def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True) -> tuple[Floats, Floats]:
+def check_pairs(
+    name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True
+) -> tuple[Floats, Floats]:
     """Two lists of one length, the first >= 0, the second > 0 (>= 0 unless ``strict``); raises ParameterError."""
     first = checked(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = checked(other, at, unit="s" if other == "tau" else "s-1", low=0.0, strict=strict)

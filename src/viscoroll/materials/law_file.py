@@ -144,7 +144,7 @@ class Content(NamedTuple):
     attributes: dict[str, Any]
 
 
-def content_of(found: Any) -> Content:
+def dataset_content(found: Any) -> Content:
     """That of a dataset; of what is none, nothing."""
     numbers = {str(name): variable.values for name, variable in getattr(found, "variables", {}).items()}
     return Content(numbers, getattr(found, "attrs", {}))
@@ -158,7 +158,7 @@ def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
     return digest.hexdigest()
 
 
-def dataset_of(law: Any, kind: str, title: str, errors: Mapping[str, float], **more: str) -> xr.Dataset:
+def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], **more: str) -> xr.Dataset:
     """The dataset of a file: its numbers, what they are and where they come from, and their checksum.
 
     title : what the law is of.  errors : the largest relative one of each function.  more : other attributes.
@@ -183,10 +183,10 @@ def dataset_of(law: Any, kind: str, title: str, errors: Mapping[str, float], **m
         "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
     }  # fmt: skip
     found = xr.Dataset(data, attrs=attributes)
-    return found.assign_attrs({CHECKSUM: checksum(content_of(found).numbers, kind)})
+    return found.assign_attrs({CHECKSUM: checksum(dataset_content(found).numbers, kind)})
 
 
-def errors_of(found: Any) -> dict[str, float]:
+def stated_errors(found: Any) -> dict[str, float]:
     """The largest relative error of every function that a dataset states."""
     functions = KINDS[found.attrs[KIND]].functions
     return {name: float(found[name].attrs["largest_relative_error"]) for name in functions}
@@ -195,7 +195,7 @@ def errors_of(found: Any) -> dict[str, float]:
 def is_law(path: str | PathLike[str]) -> bool:
     """Whether a file is the law of a material or a cover; raises FileError of one that cannot be read or is damaged."""
     try:
-        return content_at(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
+        return read_content(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
     except OSError:  # the reader of materials says what it is not
         return False
 
@@ -203,16 +203,16 @@ def is_law(path: str | PathLike[str]) -> bool:
 def read_law(path: str | PathLike[str]) -> Content:
     """What a law file holds, verified; raises FileError."""
     try:
-        found = content_at(path, "law file of viscoroll", REMEDY)
+        found = read_content(path, "law file of viscoroll", REMEDY)
     except Exception as error:  # libraries raise many kinds
         if isinstance(error, FileError):
             raise
         raise FileError(path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}") from error
-    check(found, path)
+    check_law(found, path)
     return found
 
 
-def content_at(path: str | PathLike[str], what: str, remedy: str) -> Content:
+def read_content(path: str | PathLike[str], what: str, remedy: str) -> Content:
     """The numbers and attributes of a file by h5py alone, which takes a tenth of the time of xarray.
 
     Raises FileError of one that cannot be read or is not what was sealed, else whatever h5py does.
@@ -231,7 +231,7 @@ def _single(value: Any) -> Any:
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
-def check(content: Content, path: Any) -> None:
+def check_law(content: Content, path: Any) -> None:
     """Refuse what is no law of this schema, or not the numbers that its checksum is of; raises FileError."""
     numbers, attributes = content
     kind = attributes.get(KIND)

@@ -16,10 +16,10 @@ from ..core.errors import ParameterError
 from ..core.results import Row, Shown
 from ..core.scale import SI
 from ..core.typed import Floats
-from .importers import FromPrograms, poisson
+from .importers import FromPrograms, check_poisson
 from .measured import Measured
 from .prony import Prony
-from .shift import celsius, keep, relative
+from .shift import check_celsius, check_fields, relative_shift
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,15 +75,17 @@ class Material(FromPrograms):
             if self.thickness is not None:
                 raise ParameterError("thickness", self.thickness, "left out of a rigid body")
         else:
-            keep(self, E=0.0)
-        object.__setattr__(self, "nu", poisson(self.nu))
+            check_fields(self, E=0.0)
+        object.__setattr__(self, "nu", check_poisson(self.nu))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        keep(self, SI, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
+        check_fields(
+            self, SI, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None}
+        )
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
         if self.temperature is not None:
-            object.__setattr__(self, "temperature", celsius("temperature", self.temperature))
+            object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -177,8 +179,8 @@ class Material(FromPrograms):
                 "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
             )
             raise ParameterError("temperature", given.shape, "one number", sentence)
-        temperature = celsius("temperature", float(given))
-        factor = relative(shift, temperature, self.temperature)
+        temperature = check_celsius("temperature", float(given))
+        factor = relative_shift(shift, temperature, self.temperature)
         measured = None if self.measured is None else self.measured.shifted(factor)
         return replace(self, T_ref=self.T_ref * factor, measured=measured, temperature=temperature)
 
@@ -219,9 +221,9 @@ class Material(FromPrograms):
 
     def to_xarray(self) -> xr.Dataset:
         """Both forms of the series and the constants, with names and units, as :meth:`to_netcdf` writes them."""
-        from .material_netcdf import as_dataset
+        from .material_netcdf import material_as_dataset
 
-        return as_dataset(self)
+        return material_as_dataset(self)
 
     def _card(self) -> tuple[str, list[Row]]:
         rows = [
@@ -263,9 +265,9 @@ class Material(FromPrograms):
         FileError
             If it cannot be written there; a file of that name is left as it was.
         """
-        from .material_netcdf import save
+        from .material_netcdf import save_material
 
-        save(self, path)
+        save_material(self, path)
 
     @classmethod
     def from_netcdf(cls, path: str | PathLike[str]) -> Material:
@@ -280,9 +282,9 @@ class Material(FromPrograms):
         FileError
             A file that is missing, damaged in any byte, or no material.
         """
-        from .material_netcdf import load
+        from .material_netcdf import load_material
 
-        return load(path, cls)
+        return load_material(path, cls)
 
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Storage and loss modulus over E; omega times a relaxation time beyond the doubles is as good as infinite."""

@@ -12,7 +12,7 @@ import numpy as np
 from .. import __version__
 from ..core.errors import FileError, ParameterError
 from ..core.files import seal_holds, write_dataset
-from .law_file import content_at
+from .law_file import read_content
 from .measured import Measured
 from .prony import Prony
 
@@ -44,7 +44,7 @@ _OPTIONAL = ("density", "thickness", "temperature")
 _BAND = ("low", "high", "misfit")
 
 
-def as_dataset(material: Any) -> xr.Dataset:
+def material_as_dataset(material: Any) -> xr.Dataset:
     """Both forms of the series over "mode", slowest first, and the constants; ``given`` names the form to trust."""
     import xarray as xr
 
@@ -68,15 +68,15 @@ def as_dataset(material: Any) -> xr.Dataset:
     )  # fmt: skip
 
 
-def save(material: Any, path: str | PathLike[str]) -> None:
+def save_material(material: Any, path: str | PathLike[str]) -> None:
     """Write a material, sealed; raises FileError."""
-    write_dataset(as_dataset(material), path, sealed=True)
+    write_dataset(material_as_dataset(material), path, sealed=True)
 
 
-def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
-    """What ``make`` gives of the arguments of a material that :func:`save` wrote; raises FileError."""
+def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
+    """What ``make`` gives of the arguments of a material that :func:`save_material` wrote; raises FileError."""
     try:
-        numbers, about = content_at(path, "material of this package", "write it again")
+        numbers, about = read_content(path, "material of this package", "write it again")
         if about.get("schema") != _SCHEMA:
             raise FileError(path, f"is no material: its schema is {about.get('schema')!r}, not {_SCHEMA!r}")
         if seal_holds(Path(path).read_bytes()) is None:

@@ -21,7 +21,7 @@ from .material import Material
 from .material_netcdf import SUFFIX
 from .measured import Measured
 from .prony import Prony
-from .shift import WLF, Arrhenius, relative
+from .shift import WLF, Arrhenius, relative_shift
 
 SECTIONS = ("material", "base")
 
@@ -92,25 +92,25 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
     """
     if Path(path).suffix == SUFFIX:
         return {"material": Material.from_netcdf(path)}
-    found = materials_of(path, read(path))
+    found = parse_materials(path, read(path))
     if not found:
         raise fault(path, "", "material", "section [material] is missing: it needs E and nu")
     return found
 
 
-def materials_of(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
+def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
     """The materials of a file that was read; arguments and errors as :func:`read_materials`."""
     return {name: _material(path, name, content[name]) for name in SECTIONS if name in content}
 
 
-def shifts_of(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
+def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
     """a_T of the materials of a file that was read, over temperature, 1 at that of the file, where it has a shift."""
     given = {name: _section(path, name, content[name]) for name in SECTIONS if name in content}
     found = {name: _shift(path, name, each) for name, each in given.items()}
-    return {name: partial(relative, shift[0], reference=shift[1]) for name, shift in found.items() if shift}
+    return {name: partial(relative_shift, shift[0], reference=shift[1]) for name, shift in found.items() if shift}
 
 
-def as_toml(material: Material, section: str = "material") -> str:
+def material_as_toml(material: Material, section: str = "material") -> str:
     """The section of a TOML file that reads back as this material, to the bit."""
     measured = material.measured and (
         f"{{ low = {material.measured.low}, high = {material.measured.high}, misfit = {material.measured.misfit}, "
@@ -182,13 +182,13 @@ def _of_law(path: Path) -> Material:
         raise FileError(path, "is the law of a material without units: it must be of one with [material]")
     if "base" in found:
         raise FileError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
-    return materials_of(path, found)["material"]
+    return parse_materials(path, found)["material"]
 
 
 def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
     more = {key: getattr(given, key) for key in ("name", "density", "thickness", "measured")}
     more["temperature"] = given.reference
-    series = series_of(path, name, msgspec.to_builtins({"prony": given.prony, "creep": given.creep}))
+    series = parse_series(path, name, msgspec.to_builtins({"prony": given.prony, "creep": given.creep}))
     if given.T_epsilon is not None or given.T_sigma is not None:
         if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:
             raise fault(path, name, "", "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep")
@@ -196,7 +196,7 @@ def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
     return Material(given.E, given.nu, series or Prony.elastic(), 1.0 if given.T_ref is None else given.T_ref, **more)
 
 
-def series_of(path: Any, name: str, given: Mapping[str, Any]) -> Any:
+def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     """The series of a section by its keys prony and creep, of arrays one each; None without.  Raises FileError."""
     found = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
     if len(found) > 1:

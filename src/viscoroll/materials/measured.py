@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from ..core.checks import number
 from ..core.errors import ParameterError
-from .shift import keep
+from .shift import check_fields
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Measured:
     source: str = ""
 
     def __post_init__(self) -> None:
-        keep(self, "rad s-1", low=0.0, high=0.0)
+        check_fields(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")

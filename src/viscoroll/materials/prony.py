@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.checks import broadcast_shape, checked
 from ..core.errors import ParameterError
 from ..core.typed import Floats, Integers
-from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
+from .prony_forms import HIGHEST_ALPHA, LARGEST_TIME_RATIO, MOST_MODES, Modes, modes_of_creep, modes_of_relaxation
 
 
 class Block(NamedTuple):
@@ -159,11 +159,11 @@ class Prony(OneOrMany):
     @cached_property
     def modes(self) -> Modes:
         """Both forms of a single one, and the gaps between their rates."""
-        return (of_creep if self.by_creep else of_relaxation)(self._strengths, self._times, self.alpha)
+        return (modes_of_creep if self.by_creep else modes_of_relaxation)(self._strengths, self._times, self.alpha)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
         """The materials ``which``, those of as many modes together."""
-        form = of_creep if self.by_creep else of_relaxation
+        form = modes_of_creep if self.by_creep else modes_of_relaxation
         counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
             rows = np.flatnonzero(counts == count)
@@ -262,16 +262,16 @@ def _given(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tu
     shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
     if len(shape) not in (1, 2):
         raise ParameterError(", ".join(names), f"of shape {shape}", "(modes,) or (materials, modes)")
-    values, each = descending(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
+    values, each = sort_modes(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
     there = values > 0.0
     most = int(there.sum(axis=-1).max(initial=0))
     if most > MOST_MODES:
         raise ParameterError(names[1], f"{most} times", f"at most {MOST_MODES}")
     longest, shortest = each.max(axis=-1, initial=0.0, where=there), each.min(axis=-1, initial=np.inf, where=there)
-    wide = longest > WIDEST * shortest
+    wide = longest > LARGEST_TIME_RATIO * shortest
     if wide.any():
         ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
-        raise ParameterError(names[1], ends, f"within a factor of {WIDEST:g}")
+        raise ParameterError(names[1], ends, f"within a factor of {LARGEST_TIME_RATIO:g}")
     return values[..., :most], each[..., :most]
 
 
@@ -285,7 +285,7 @@ def series_of_alpha(alpha: float) -> Prony:
     return made
 
 
-def descending(strengths: NDArray, times: NDArray, *more: NDArray) -> list[Floats]:
+def sort_modes(strengths: NDArray, times: NDArray, *more: NDArray) -> list[Floats]:
     """Strengths and times by falling times: those of equal times added up, those of no strength behind the others.
 
     ``more`` : parts of the strengths, likewise.

@@ -17,7 +17,7 @@ from ..core.typed import Floats
 #: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
 HIGHEST_ALPHA = 1e12
 #: most modes of a series, and longest over shortest time
-MOST_MODES, WIDEST = 64, 1e32
+MOST_MODES, LARGEST_TIME_RATIO = 64, 1e32
 #: halvings of ln(distance) until it is good to a thousandth, and steps of Newton's iteration from there to rounding
 _HALVINGS, _POLISH = 20, 3
 #: a zero lies no closer to its pole than this share of the interval, whose logarithm is halved
@@ -39,7 +39,7 @@ class Modes:
     gap: Floats
 
 
-def of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
+def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     """Both forms from strengths and times of relaxation (..., modes), times descending."""
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
@@ -50,7 +50,7 @@ def of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     return Modes(alpha, a, b, E, _strengths(gap, alpha)[0] / b, gap)
 
 
-def of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
+def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     """Both forms from strengths and times of creep (..., modes), times descending."""
     b = 1.0 / T
     gap = zeros_from_poles(_between(T), J * b, np.asarray(1.0 / alpha))

@@ -52,12 +52,12 @@ class WLF:
     C2: float = 51.6
 
     def __post_init__(self) -> None:
-        keep(self, C1=0.0, C2=0.0)
-        object.__setattr__(self, "T0", celsius("T0", self.T0))
+        check_fields(self, C1=0.0, C2=0.0)
+        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
-        above = celsius("temperature", temperature) - self.T0
+        above = check_celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
             allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF, in degrees Celsius"
             raise ParameterError("temperature", temperature, allowed)
@@ -89,16 +89,16 @@ class Arrhenius:
     T0: float
 
     def __post_init__(self) -> None:
-        keep(self, energy=0.0)
-        object.__setattr__(self, "T0", celsius("T0", self.T0))
+        check_fields(self, energy=0.0)
+        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
-        kelvin = celsius("temperature", temperature) - ABSOLUTE_ZERO
+        kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
 
 
-def celsius(name: str, temperature: Any) -> float:
+def check_celsius(name: str, temperature: Any) -> float:
     """A temperature in degrees Celsius, checked.
 
     Parameters
@@ -124,7 +124,7 @@ def celsius(name: str, temperature: Any) -> float:
     return found
 
 
-def relative(shift: Callable[[float], float], temperature: float, reference: float | None) -> float:
+def relative_shift(shift: Callable[[float], float], temperature: float, reference: float | None) -> float:
     """Times at a temperature over those at a reference, a_T(temperature)/a_T(reference).
 
     The ratio is the same whatever temperature the constants of the shift refer to: WLF and Arrhenius keep their form
@@ -147,7 +147,7 @@ def relative(shift: Callable[[float], float], temperature: float, reference: flo
     return number("a_T", factor / number("a_T", shift(reference), low=0.0, strict=True), low=0.0, strict=True)
 
 
-def keep(given: Any, unit: Units = SI, **lows: float) -> None:
+def check_fields(given: Any, unit: Units = SI, **lows: float) -> None:
     """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError.
 
     ``unit`` : of all of them, or what has units by name.

@@ -16,7 +16,7 @@ from ..core.errors import MotionStatus, ParameterError, refuse_unknown
 from ..core.scale import OF_TIME
 from ..core.typed import Booleans, Floats, Integers, Numbers
 from ..materials.bodies import Bodies
-from ..materials.law.per_element import law_of_alphas, law_of_materials
+from ..materials.law.per_element import record_of_alphas, record_of_materials
 from ..materials.law.table import law_table
 from .checks import SPEED_RANGE, in_words, output_times
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, bare
@@ -259,12 +259,12 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
 
     def made(alpha: NDArray, which: Integers) -> tuple[Any, bool]:
         if each is None:
-            return law_table(alpha.item()).unsteady_record if unsteady else law_of_alphas(alpha), False
+            return law_table(alpha.item()).unsteady_record if unsteady else record_of_alphas(alpha), False
         which = np.minimum(which, len(each) - 1)
         if unsteady:
             given: Any = scene.material
             return law_table(given[which.item()]).unsteady_record, False
-        return law_of_materials(each, which), isinstance(each, Bodies)
+        return record_of_materials(each, which), isinstance(each, Bodies)
 
     return made
 

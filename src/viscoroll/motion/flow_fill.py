@@ -17,7 +17,7 @@ from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
 from ..kernels.motion.records import PARTIAL
 from ..kernels.numerics.nodes import gauss
-from ..materials.law.fit import paired
+from ..materials.law.fit import interleave_pairs
 from ..materials.law.table import law_table
 from .flow_rows import NODES, Nodes, Rows, octaves
 from .flow_store import FlowMap
@@ -143,14 +143,14 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         if not (np.diff(kept.ravel(), prepend=0.0) > 0.0).all():
             raise NoFlowMap(_STOPS)
         time, path, onset = NODES.powers(T), NODES.powers(X), NODES.powers(kept)
-        parts.slide[n] = np.concatenate([paired(time, NODES.powers(limit)), path], axis=-1)
+        parts.slide[n] = np.concatenate([interleave_pairs(time, NODES.powers(limit)), path], axis=-1)
         # nearly held: the inverse would end before the speeds that are served
         if not kappa * mu * time[-3].sum() < 2.0 ** (layout.HIGH - 1):
             raise NoFlowMap(_STOPS)
         parts.after[n] = NODES.powers(_SPEEDS.inverse(time, _SPEEDS.x / (kappa * mu)) / kappa)
         u = _SPEEDS.inverse(onset, _SPEEDS.x * (1.0 + j) / kappa)
         at = [NODES.powers(value) for value in (u / kappa, _SPEEDS.value(time, u), _SPEEDS.value(path, u))]
-        parts.onset[n] = np.concatenate([paired(*at[:2]), at[2]], axis=-1)
+        parts.onset[n] = np.concatenate([interleave_pairs(*at[:2]), at[2]], axis=-1)
 
 
 class SlowManifold(NamedTuple):
@@ -196,8 +196,8 @@ def _fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     speeds = NODES.powers(V), NODES.powers(delta)
     slow_log = rows.inverse(speeds[0], _SPEEDS.x / problem.parameters[1])
     slow = SlowManifold(rows, speeds, (to_go[0], to_go[1]), to_go[2], NODES.powers(slow_log))
-    parts.slow[: len(V)] = np.concatenate([paired(*speeds), paired(*slow.path), slow.loss], axis=-1)
-    parts.manifold[:] = paired(slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log)))
+    parts.slow[: len(V)] = np.concatenate([interleave_pairs(*speeds), interleave_pairs(*slow.path), slow.loss], axis=-1)
+    parts.manifold[:] = interleave_pairs(slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log)))
     return slow
 
 
@@ -270,7 +270,13 @@ def _fill_layers(
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
     gained = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
     asymptote[:] = np.concatenate(
-        [paired(known + _padded(above), rates), _padded(split_powers), paired(*gained[:2]), gained[2]], axis=-1
+        [
+            interleave_pairs(known + _padded(above), rates),
+            _padded(split_powers),
+            interleave_pairs(*gained[:2]),
+            gained[2],
+        ],
+        axis=-1,
     )
 
 

@@ -74,7 +74,7 @@ def fit(given: Namespace) -> int:
       viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
     """
     from ...contact_law.assumptions import MISFIT_LIMIT
-    from ...materials.material_toml import as_toml
+    from ...materials.material_toml import material_as_toml
 
     record = vr.read_dma(
         given.data, columns=_columns(given.column), decimal=given.decimal, encoding=given.encoding,
@@ -101,7 +101,7 @@ def fit(given: Namespace) -> int:
     if given.output is not None and given.output.suffix.lower() == ".nc":
         material.to_netcdf(given.output)
     elif given.output is not None:
-        write_text(given.output, as_toml(material))
+        write_text(given.output, material_as_toml(material))
     return 0
 
 

@@ -9,8 +9,8 @@ from ...core.checks import number, whole
 from ...core.errors import ParameterError, unknown
 from ...core.typed import Numbers
 from ...materials.prony import Prony
-from ...materials.prony_forms import MOST_MODES, WIDEST
-from ...materials.shift import celsius
+from ...materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
+from ...materials.shift import check_celsius
 from .choose import chosen
 from .curve import Relaxation, curve_of, data_of, kramers_kronig, thinned
 from .record import DynamicModuli
@@ -19,7 +19,7 @@ from .shift import master_curve
 from .spectrum import Data, Spectrum, misfits
 
 #: highest over lowest frequency; times reach a decade beyond on either side
-MOST_SPREAD = WIDEST / 100.0
+MOST_SPREAD = LARGEST_TIME_RATIO / 100.0
 #: last over first relaxation modulus from which on it is none: noise on a plateau stays below
 _RISES = 1.1
 
@@ -205,7 +205,7 @@ def fit_relaxation(
     series = _series(whole_data, data, modes, misfit)
     return RelaxationFit(
         **series, misfit=misfits(data, _spectrum(series))[0], mode=_mode(mode), source=source,
-        temperature=None if temperature is None else celsius("temperature", temperature), **data._asdict(),
+        temperature=None if temperature is None else check_celsius("temperature", temperature), **data._asdict(),
     )  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from ...core.errors import ParameterError
 from ...core.plots.measured import fitted, relaxed
 from ...core.results import Row, Shown
 from ...core.typed import Booleans, Floats, Numbers
-from ...materials.importers import poisson
+from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
@@ -129,7 +129,7 @@ class SeriesFit(Shown):
         """
         E, measured = self.E, self.measured
         if self.mode == "shear":
-            factor = 2.0 * (1.0 + poisson(nu))
+            factor = 2.0 * (1.0 + check_poisson(nu))
             E, source = E * factor, f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G"
             measured = Measured(measured.low, measured.high, measured.misfit, source)
         return Material(

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from ...core.checks import checked
 from ...core.errors import ModelWarning, ParameterError, outside
 from ...core.typed import Floats
-from ...materials.shift import USUAL_RANGE, celsius, relative
+from ...materials.shift import USUAL_RANGE, check_celsius, relative_shift
 from .curve import Curve, curve_of, thinned
 from .sweeps import default_reference, listed_factors, nearest, points_of, sets_of
 
@@ -87,13 +87,13 @@ def master_curve(
     whole = [checked(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)]
     sets = sets_of(at, first)
     temperatures = sets.temperature
-    celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
-    base = None if reference is None else celsius("reference", reference)
+    check_celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
+    base = None if reference is None else check_celsius("reference", reference)
     unknown = np.full(temperatures.size - 1, math.nan)
     mismatch = freedom = unknown
     if callable(shift):
         base = default_reference(temperatures, [getattr(shift, "T0", math.nan)]) if base is None else base
-        factor = np.array([relative(shift, T, base) for T in temperatures.tolist()])
+        factor = np.array([relative_shift(shift, T, base) for T in temperatures.tolist()])
     elif shift is not None:
         factor, base = listed_factors(shift, sets, base)
     else:

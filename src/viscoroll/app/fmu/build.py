@@ -21,7 +21,7 @@ from ...core.files import replacing
 from ...cylinder import Cylinder
 from ...io import tables
 from ...materials.cover import Cover
-from ...materials.law.netcdf import table_of
+from ...materials.law.netcdf import law_table_of
 from .description import described, sources_described
 from .variables import MODELS, Variable
 
@@ -64,7 +64,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise ParameterError("version", version, "2 or 3, of FMI")
     if (isinstance(given, Cylinder) and given.pair.covered) or getattr(given, "cover", None) or type(given) is Cover:
         raise ParameterError("thickness", "of a body", "left out: FMUs do not hold the law of a layer")
-    table = table_of(given.pair if isinstance(given, Cylinder) else given)
+    table = law_table_of(given.pair if isinstance(given, Cylinder) else given)
     known = {"T_ref": table.T_ref} | ({} if table.pair is None else {"E_prime": table.pair.E_prime})
     if isinstance(given, Cylinder):
         known |= _of_cylinder(given)

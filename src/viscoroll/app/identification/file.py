@@ -16,7 +16,7 @@ from ...core.sections import as_struct, fault, read, refuse_unknown
 from ...cylinder import Cylinder
 from ...io.config import read_body
 from ...io.measurements import find, is_heading, missing, quantity, read_table
-from ...materials.material_toml import shifts_of
+from ...materials.material_toml import parse_shifts
 from .records import Coastdown, Record, Resistance, Traction
 
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}
@@ -47,7 +47,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
             raise fault(path, "", section, f"section {'[[data]]' if kind is list else f'[{section}]'} is missing")
     data = [_record(Path(path), section) for section in content["data"]]
     given = {name: content[name] for name in ("unknown", "prior")}
-    return {"cylinder": cylinder, "data": data, "shift": shifts_of(path, content)} | given
+    return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | given
 
 
 def _record(path: Path, given: Any) -> Record:

@@ -17,7 +17,7 @@ from ...core.errors import ParameterError
 from ...core.scale import Scale
 from ...cylinder import Cylinder, contact_length, scene_of
 from ...materials.material import Material
-from ...materials.material_toml import SECTIONS, materials_of, series_of, shifts_of
+from ...materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
 from ..config import body_of
@@ -101,11 +101,11 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid
     if isinstance(given, Material):
         return given, given
     first = _first(given)
-    typical = materials_of(path, {name: first})[name]
-    series = series_of(path, name, given)
+    typical = parse_materials(path, {name: first})[name]
+    series = parse_series(path, name, given)
     series = typical.prony if series is None else series
     if np.ndim(given.get("temperature")):
-        shift = shifts_of(path, {name: first})[name]
+        shift = parse_shifts(path, {name: first})[name]
         series = series.slower([shift(each) for each in given["temperature"]])
     E, nu = given.get("E", typical.E), given.get("nu", typical.nu)
     thickness = given.get("thickness", typical.thickness)
@@ -138,7 +138,7 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
             continue
         factor: Any = 1.0
         if isinstance(given, dict) and np.ndim(given.get("temperature", 0.0)):  # the record is at the first of them
-            shift = shifts_of(path, {name: _first(given)})[name]
+            shift = parse_shifts(path, {name: _first(given)})[name]
             factor = np.array([shift(each) for each in given["temperature"]])
         found[record] = record.low / factor, record.high / factor
     return found

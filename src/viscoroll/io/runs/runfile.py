@@ -31,7 +31,7 @@ import msgspec
 from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
 from ...core.typed import Floats
-from ...materials.material_toml import as_toml, materials_of
+from ...materials.material_toml import material_as_toml, parse_materials
 from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
 from ...motion.checks import output_times
 from ...motion.driven import Drive
@@ -226,7 +226,7 @@ def read_run(path: str | PathLike[str]) -> Run:
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
             raise fault(path, "", name, f"section [{name}] is missing: it needs {needed}")
-    materials = materials_of(path, medians)
+    materials = parse_materials(path, medians)
     # those that are certain are read once
     known = {name: found for name, found in materials.items() if not inputs_in(inputs.content[name])}
     inputs = correlated(path, replace(inputs, content=inputs.content | known))
@@ -237,7 +237,7 @@ def read_run(path: str | PathLike[str]) -> Run:
     except ParameterError as error:
         raise fault(path, "run", "t", str(error)) from error
     text = path.read_text(encoding="utf-8-sig")
-    digest = _digest(settings, times, content, [as_toml(each) for each in known.values()], inputs)
+    digest = _digest(settings, times, content, [material_as_toml(each) for each in known.values()], inputs)
     run = Run(path, text, settings, inputs, times, digest)
     _check_settings(run)
     _check_inputs(run)

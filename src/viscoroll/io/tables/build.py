@@ -12,9 +12,9 @@ from ...contact_law.contact import contact
 from ...core.errors import ParameterError
 from ...core.typed import Floats
 from ...cylinder import Cylinder
-from ...materials.law.netcdf import described, law_of
+from ...materials.law.netcdf import bodies_as_toml, parse_law
 from ...materials.law.table import LawTable
-from ...materials.law_file import content_of
+from ...materials.law_file import dataset_content
 from ...materials.prony_forms import HIGHEST_ALPHA
 from ...scene import Scene
 from . import schema
@@ -100,7 +100,7 @@ def build(
     table = xr.Dataset(data, coordinates, schema.global_attributes(title, of, command) | {"method": method})
     material = what.pair if isinstance(what, Cylinder) else what.material
     numbers = {name: float(getattr(what, name)) for name in _NUMBERS[si] if name not in axes}
-    table.attrs |= numbers | ({} if material is None else {"material": described(material)})
+    table.attrs |= numbers | ({} if material is None else {"material": bodies_as_toml(material)})
     _state_errors(table, what)
     if method == "direct":
         for name, difference in differences(table, what).items():
@@ -111,7 +111,7 @@ def build(
 def _single(what: Any) -> Scene | Cylinder:
     """What has the contact: a law at kappa = mu = 1."""
     if getattr(what, "attrs", {}).get(schema.KIND) == "law":
-        what = law_of(content_of(what), "law")
+        what = parse_law(dataset_content(what), "law")
     if isinstance(what, LawTable):
         what = Scene(kappa=1.0, mu=1.0, material=what)
     if not isinstance(what, Scene | Cylinder):

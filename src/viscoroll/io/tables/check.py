@@ -10,8 +10,8 @@ import numpy as np
 from ... import __version__
 from ...core.checks import whole
 from ...core.errors import FileError
-from ...materials.law.netcdf import axis_of, law_of
-from ...materials.law_file import AXIS, KIND, content_of, errors_of
+from ...materials.law.netcdf import parse_axis, parse_law
+from ...materials.law_file import AXIS, KIND, dataset_content, stated_errors
 from ...scene import Scene
 from . import schema
 from .build import RELATIVE, differences, errors_at, random_points
@@ -95,8 +95,8 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     source = table.encoding.get("source", "table")
     if not is_law(table):
         return _check_grid(table, count, seed, source)
-    content = content_of(table)
-    read = axis_of if content.attributes[KIND] == AXIS else law_of
+    content = dataset_content(table)
+    read = parse_axis if content.attributes[KIND] == AXIS else parse_law
     found = measured_errors(read(content, source), count, seed)
     return [
         Check(
@@ -104,7 +104,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
             ALLOWANCE * stated + ROUNDING,
             f"relative; {count} places, against the formulas of the modes",
         )
-        for name, stated in errors_of(table).items()
+        for name, stated in stated_errors(table).items()
     ]  # fmt: skip
 
 

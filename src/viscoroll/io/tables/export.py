@@ -17,8 +17,8 @@ from ...core.errors import ParameterError
 from ...core.files import replacing, write_text
 from ...core.symbols import PAPER
 from ...core.typed import Floats
-from ...materials.law.netcdf import law_of
-from ...materials.law_file import CHECKSUM, COVER, content_of
+from ...materials.law.netcdf import parse_law
+from ...materials.law_file import CHECKSUM, COVER, dataset_content
 from . import schema, store
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def _write_header(found: xr.Dataset, path: Path) -> None:
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
-    table = law_of(content_of(found), path)
+    table = parse_law(dataset_content(found), path)
     octaves = ",\n".join(
         "{" + ",\n ".join("{" + _numbers(powers) + "}" for powers in octave) + "}" for octave in table.coefficients
     )

@@ -13,7 +13,7 @@ from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
 from ...core.results import Values
 from ...core.typed import Floats
 from ...materials.law.grid import friction_limit
-from ...materials.law.splines import compiled, spline
+from ...materials.law.splines import fit_spline, pack_spline
 from . import schema
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class Interpolant:
             raise ParameterError("field", name, "of a grid over V and delta")
         dims, found = self._spline(name)
         logs = () if self._linear else ("V", "alpha")
-        return spline_at, compiled(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
+        return spline_at, pack_spline(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
 
     def _places(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
@@ -135,7 +135,7 @@ class Interpolant:
             field = self._table[name].squeeze()
             dims = tuple(map(str, field.dims))
             axes = [self._mapped(dim, self._table[dim].values) for dim in dims]
-            self._splines[name] = dims, spline(field.values, axes, 1 if self._linear else 3)
+            self._splines[name] = dims, fit_spline(field.values, axes, 1 if self._linear else 3)
         return self._splines[name]
 
 

@@ -12,9 +12,9 @@ from ...core.errors import ParameterError, one_of
 from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...materials.law import alpha_axis
-from ...materials.law.cover_rows import at_speed
-from ...materials.law.evaluate import by_modes
-from ...materials.law.netcdf import as_dataset, table_of
+from ...materials.law.cover_rows import solve_at_speed
+from ...materials.law.evaluate import evaluate_by_modes
+from ...materials.law.netcdf import law_as_dataset, law_table_of
 from ...materials.law.table import FUNCTIONS, LawTable
 
 if TYPE_CHECKING:
@@ -62,15 +62,15 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
             raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
         found: LawTable | alpha_axis.LawAxis = alpha_axis.law_axis(*alpha)
     else:
-        found = (_of_cylinder if isinstance(material, Cylinder) else table_of)(material, base)
-    return as_dataset(found, measured_errors(found))
+        found = (_of_cylinder if isinstance(material, Cylinder) else law_table_of)(material, base)
+    return law_as_dataset(found, measured_errors(found))
 
 
 def _of_cylinder(given: Cylinder, base: Any) -> LawTable:
     """That of its bodies; of a layer at its l0."""
     if given.pair.covered is None:
-        return table_of(given.pair, base)
-    return replace(table_of(given.scene().material, base), T_ref=given.T_ref, pair=given.pair)
+        return law_table_of(given.pair, base)
+    return replace(law_table_of(given.scene().material, base), T_ref=given.T_ref, pair=given.pair)
 
 
 def measured_errors(
@@ -100,7 +100,7 @@ def measured_errors(
     octaves = rows + np.log2(table.alpha) / 2.0 + 3.0
     random = np.random.default_rng(seed)
     zeta = np.exp2(2.0 - e0 - octaves * random.random(count or int(_PLACES * octaves)))
-    (shift, rise, half_space, cylinder), _, N = by_modes(table.material, zeta)
+    (shift, rise, half_space, cylinder), _, N = evaluate_by_modes(table.material, zeta)
     root, F, M = np.sqrt(1.0 + 2.0 * rise), 1.0 + shift, half_space + cylinder
     exact = 1.0 / root, shift, half_space, cylinder, N, 1.0 / F, (root / F) ** 2
     scales = exact[0], exact[1], M, M, np.full(zeta.size, np.abs(N).max()), exact[5], exact[6]
@@ -119,7 +119,7 @@ def _errors_of_cover(table: LawTable, count: int, seed: int) -> dict[str, float]
     cover: Any = table.material
     slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
     u = slow * (fast / slow) ** np.random.default_rng(seed).random(count)
-    exact = np.array([at_speed(cover, each, orders=_TERMS) for each in u.tolist()]).T
+    exact = np.array([solve_at_speed(cover, each, orders=_TERMS) for each in u.tolist()]).T
     found = states_of(table, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, _OF_COVER)
     L, M = exact[1], u * exact[4]
     free = found[2] * (2.0 if cover.on == "base" else -2.0)

@@ -27,7 +27,7 @@ def is_law(table: Any) -> bool:
 def check(table: Any, path: Any) -> None:
     """Refuse what is neither a law nor a grid; raises FileError."""
     if is_law(table):
-        law_file.check(law_file.content_of(table), path)
+        law_file.check_law(law_file.dataset_content(table), path)
     else:
         schema.check(table, path)
 
@@ -104,7 +104,7 @@ def info(path: str | PathLike[str]) -> str:
     lines = [f"{path}: {about[schema.KIND]}, {size:.0f} kB", about["title"], ""]
     if is_law(table):
         lines += [f"  {'function':<14}largest relative error"]
-        lines += [f"  {name:<14}{error:.1e}" for name, error in law_file.errors_of(table).items()]
+        lines += [f"  {name:<14}{error:.1e}" for name, error in law_file.stated_errors(table).items()]
     else:
         axes = {axis: table[axis].values for axis in schema.axes_of(table)}
         lines += [f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items()]

@@ -12,7 +12,7 @@ from ...core.checks import number
 from ...core.errors import ParameterError
 from ..prony import read_only
 from ..prony_forms import HIGHEST_ALPHA
-from .table import Floats, LawTable, law_table, made
+from .table import Floats, LawTable, law_table, make_table
 
 #: functions of an axis in their order, some of them over c = (alpha - 1)/alpha, whose limits as alpha -> 1 are finite
 FUNCTIONS = ("lam", "epsilon", "m", "N", "share", "press")
@@ -63,7 +63,7 @@ class LawAxis:
         row[..., _OVER_C] *= (alpha - 1.0) / alpha
         row = row[..., [0, 1, 2, 2, 3, 4, 5]]  # either body takes half of m
         row[..., 2:4] *= 0.5
-        return made(alpha, row)
+        return make_table(alpha, row)
 
 
 def law_axis(low: float, high: float) -> LawAxis:
@@ -84,23 +84,23 @@ def law_axis(low: float, high: float) -> LawAxis:
     octaves = range(math.frexp(low)[1] - 1, math.ceil(math.log2(high)))
     pieces = []
     for octave in octaves:
-        tables = tables_of(octave)
+        tables = tables_of_octave(octave)
         values = np.array([table.coefficients for table in tables])[..., [0, 1, 2, 4, 5, 6]]
         values[..., FUNCTIONS.index("m")] *= 2.0
         values[..., _OVER_C] /= np.array([table.T_mean for table in tables])[:, None, None, None]
-        pieces.append(to_chebyshev(values))
+        pieces.append(alpha_terms(values))
     rows = tuple(piece.shape[1] for piece in pieces)
     behind = ((0, max(rows) - count) for count in rows)
     whole = read_only([np.pad(piece, ((0, 0), pad, (0, 0), (0, 0))) for piece, pad in zip(pieces, behind, strict=True)])
     return LawAxis(whole, rows, octaves[0], tables[0].e0)
 
 
-def tables_of(octave: int) -> list[LawTable]:
+def tables_of_octave(octave: int) -> list[LawTable]:
     """Tables at the nodes of an octave of alpha, upward; they have as many rows each."""
-    return [made(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
+    return [make_table(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
 
 
-def to_chebyshev(values: Floats) -> Floats:
+def alpha_terms(values: Floats) -> Floats:
     """Terms of an octave of alpha from values at its nodes, along the first axis."""
     return np.einsum("jk,k...->j...", _nodes()[1], values)
 

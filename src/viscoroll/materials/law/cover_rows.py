@@ -19,7 +19,7 @@ from ...core.typed import Floats
 from ...kernels.numerics.nodes import chebyshev, rounded
 from ..cover import Cover
 from .cover_solve import MOST_THETA, CoverModes, CoverState, local_strain, modes_of, solve
-from .fit import FUNCTIONS, TERMS, Rows, octaves
+from .fit import FUNCTIONS, TERMS, Rows, row_range
 
 #: nodes an octave of u, and nodes on either side of an octave that take part in its polynomial
 PER_OCTAVE, _ASIDE = 12, 18
@@ -84,7 +84,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     if not modes.a.size:
         return _of_elastic(slow_limit, side)
     fast_limit = _elastic(modes, thickness, modes.alpha)
-    e0 = int(octaves(modes.b[0], modes.a[-1])[0])
+    e0 = int(row_range(modes.b[0], modes.a[-1])[0])
     last = math.frexp(modes.a[-1] * max(1.0, thickest or thickness))[1] + _FAST_OCTAVES
     first = e0 * PER_OCTAVE - _END_NODES + 1
     u = np.exp2(np.arange(first, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
@@ -145,12 +145,12 @@ def _fast_rows(u: Floats, values: Floats, limit: Floats, x: Floats, last: int) -
     return np.stack([found + limit[:, None], -rising]).reshape(2, len(values), *x.shape), np.array(limits)
 
 
-def quantities(state: CoverState, z: float, u: float) -> Floats:
+def state_quantities(state: CoverState, z: float, u: float) -> Floats:
     """lam, L, 2 kappa delta_0, epsilon and M/V of a solve at u."""
     return np.array([2.0 * z * u, 2.0 * u * state.creep_limit, 2.0 * u * state.strain, state.shift / z, state.moment])
 
 
-def at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
+def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
     """lam, L, 2 kappa delta_0 (of a cover on the base), epsilon and M/V at u, by the solve alone: what rows are
     compared with."""
     modes, thickness = modes_of(cover), cover.thickness
@@ -172,7 +172,7 @@ def _node(
     for _ in range(_MOST_STEPS):
         z = math.exp(y)
         state = solve(modes, z, z * u / thickness, orders)
-        left, values = math.log(state.load) - goal, quantities(state, z, u)
+        left, values = math.log(state.load) - goal, state_quantities(state, z, u)
         if before is not None:
             slope = min(max((left - before[1]) / (y - before[0]), 0.5), 8.0)
         step = -left / slope

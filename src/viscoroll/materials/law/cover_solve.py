@@ -29,7 +29,7 @@ import numpy as np
 from ...core.typed import Floats
 from ..cover import Cover
 from ..prony import Prony
-from .evaluate import series_of
+from .evaluate import modes_record
 
 #: terms of the pressure: these many, and so many for each unit of theta (found by doubling them: 3e-14 up to theta = 1)
 _TERMS, _TERMS_PER_THETA = 14, 6
@@ -97,7 +97,7 @@ class CoverModes:
         self.alpha = float(total.alpha)
         self.a, self.b, self.J = modes.a, modes.b, modes.J
         self.e, self.t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
-        self.Q = series_of(modes).Q
+        self.Q = modes_record(modes).Q
         self.share, self.nodes, self.nus = share, layer_nodes(nu), (nu, other_nu)
         self.layer_J, self.layer_b = share * layer.J, 1.0 / layer.T
         self.layer_instant = share / float(layer.alpha)

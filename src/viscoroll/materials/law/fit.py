@@ -21,7 +21,7 @@ import numpy as np
 
 from ...core.typed import Floats
 from ...kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
-from .evaluate import AtPlaces
+from .evaluate import ModesValues
 
 TERMS = 24
 #: functions of a table in their order: the first five are of kappa |V|, the others of 1/F(eta)
@@ -157,7 +157,7 @@ class Fine:
         return np.exp(np.interp(np.log(x), np.log(w * per), np.log(w)))
 
 
-def octaves(slowest: Any, fastest: Any) -> tuple[Any, Any]:
+def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
     """(e0, rows) of a table, or of each, from the slowest rate of creep and the fastest of relaxation.
 
     So far behind the shortest time the fast limit is good to rounding.
@@ -168,7 +168,7 @@ def octaves(slowest: Any, fastest: Any) -> tuple[Any, Any]:
     return e0, np.frexp(fastest)[1] + FAST - e0 + 1
 
 
-def build(evaluate: Callable[[Floats], AtPlaces], rows: Rows, alpha: float, means: Floats) -> Floats:
+def fit_rows(evaluate: Callable[[Floats], ModesValues], rows: Rows, alpha: float, means: Floats) -> Floats:
     """The table (rows, 24 powers, 7 functions) with NaN for N.
 
     ``evaluate``: at places of z; ``means``: sums J_j T_j of half-space and cylinder.
@@ -188,7 +188,7 @@ def build(evaluate: Callable[[Floats], AtPlaces], rows: Rows, alpha: float, mean
     return table
 
 
-def with_unsteady(table: Floats, e0: int, evaluate: Callable[[Floats], Floats]) -> Floats:
+def fit_unsteady(table: Floats, e0: int, evaluate: Callable[[Floats], Floats]) -> Floats:
     """The table with N; ``evaluate``: N at places of z."""
     rows, whole = Rows(e0, len(table)), table.copy()
     (lam,), _ = rows.read(table[None, :, :, 0], rows.x.ravel())
@@ -199,7 +199,7 @@ def with_unsteady(table: Floats, e0: int, evaluate: Callable[[Floats], Floats]) 
     return whole
 
 
-def added(N: Floats, e0: int, alpha: float) -> Floats:
+def pack_unsteady(N: Floats, e0: int, alpha: float) -> Floats:
     """What kernels read of N; ``N``: its powers, [row, power].
 
     Rows of N and of its integral over u from where t is 0; then that until there from infinity down, of every row and
@@ -218,7 +218,7 @@ def added(N: Floats, e0: int, alpha: float) -> Floats:
     return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
 
 
-def arranged(table: Floats, e0: int, alpha: float, fast: Floats, given: Floats | None = None) -> Floats:
+def pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, given: Floats | None = None) -> Floats:
     """The rows that kernels read (:mod:`...kernels.rows.law`): functions side by side, and L = lam (1 + epsilon), or
     the rows ``given`` of L = 2 kappa delta_star/mu.
 
@@ -237,7 +237,9 @@ def arranged(table: Floats, e0: int, alpha: float, fast: Floats, given: Floats |
         L, dL = L - 0.5 * (L * value - 1.0 / L) / A, -0.5 * L * slope / A
     lengths = rows.fit_slopes(L.reshape(rows.x.shape), dL.reshape(rows.x.shape))
     lengths[0, 0] = 1.0 if given is None else given[0, 0]
-    pairs = [paired(*both) for both in ((lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder))]
+    pairs = [
+        interleave_pairs(*both) for both in ((lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder))
+    ]
     return np.concatenate([*pairs, press, share], axis=1)
 
 
@@ -251,7 +253,7 @@ def _press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats) -> 
     return np.where(far, alpha * share**2, value), np.where(far, bend * share, slope)
 
 
-def paired(a: Floats, b: Floats) -> Floats:
+def interleave_pairs(a: Floats, b: Floats) -> Floats:
     """a0 a1 b0 b1, a2 a3 b2 b3, ... of every row."""
     both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
     return both.reshape(len(a), -1)

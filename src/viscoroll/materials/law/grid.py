@@ -14,7 +14,7 @@ from ...core.errors import FileError, OutOfTableError, ParameterError
 from ...core.files import sealed_content
 from ...core.typed import Floats
 from ...core.units import factor
-from .splines import compiled, spline
+from .splines import fit_spline, pack_spline
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,7 @@ class LawGrid:
 
     Attributes
     ----------
-    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.law.splines.compiled` writes them; over
+    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.law.splines.pack_spline` writes them; over
         load and load times radius, or N/m and N.
     V : slowest and fastest speed; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
@@ -142,8 +142,8 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}
     for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
         field = table[name] if name in table else 0.5 * table["M"]
-        found = spline(field.transpose(*over).values, [axes[each] for each in over], 3)
-        splines[name] = compiled(found, over, ("V",), (-most, most) if name == "Q" else (-np.inf, np.inf))
+        found = fit_spline(field.transpose(*over).values, [axes[each] for each in over], 3)
+        splines[name] = pack_spline(found, over, ("V",), (-most, most) if name == "Q" else (-np.inf, np.inf))
     return LawGrid(
         splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
         slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= _FULL_SLIP * most).all()),

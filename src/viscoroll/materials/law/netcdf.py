@@ -18,16 +18,16 @@ from ...core.checks import checked, number
 from ...core.errors import FileError, ParameterError
 from ..bodies import Bodies
 from ..cover import Cover
-from ..law_file import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
+from ..law_file import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, make_dataset, read_law
 from ..material import Material
-from ..material_toml import as_toml, materials_of, series_as_toml, series_of
+from ..material_toml import material_as_toml, parse_materials, parse_series, series_as_toml
 from ..pair import Pair
 from ..prony import Prony
 from ..prony_forms import HIGHEST_ALPHA
 from .alpha_axis import LawAxis
 from .cover_rows import CoverRows
 from .grid import load_grid
-from .table import FUNCTIONS, Floats, LawTable, law_table, made
+from .table import FUNCTIONS, Floats, LawTable, law_table, make_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +37,7 @@ _NOT_N = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
 _OF_COVER = "nu", "thickness", "on", "part", "other_nu"
 
 
-def table_of(material: Any, base: Any = None) -> LawTable:
+def law_table_of(material: Any, base: Any = None) -> LawTable:
     """The law of a Prony, Bodies, alpha, Material (on a ``base``), Pair, or of a law that there is already."""
     if base is not None and not isinstance(material, Material):
         raise ParameterError("base", "given", "left out unless material is a Material")
@@ -54,21 +54,21 @@ def table_of(material: Any, base: Any = None) -> LawTable:
     return law_table(float(checked("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
 
 
-def as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
+def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
     """All that a file holds; ``errors``: largest relative error by function."""
     if isinstance(law, LawAxis):
-        return dataset_of(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
+        return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
     if law.cover is not None:
         rows = np.concatenate([law.given_coefficients[..., _NOT_N], np.moveaxis(law.cover.creep, 0, -1)], axis=-1)
-        text = ("" if law.pair is None else f"{described(law.pair)}\n") + described(law.material)
+        text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(law.material)
         numbers = SimpleNamespace(coefficients=rows, **{n: getattr(law, n) for n in ("e0", "alpha", "T_ref")})
         numbers.limits = law.cover.limits
-        return dataset_of(numbers, COVER, name_of(law), errors, material=text)
-    bodies, material = "unlike" if law.unlike else "alike", described(law.pair or law.material)
-    return dataset_of(law, LAW, name_of(law), errors, bodies=bodies, material=material)
+        return make_dataset(numbers, COVER, name_bodies(law), errors, material=text)
+    bodies, material = "unlike" if law.unlike else "alike", bodies_as_toml(law.pair or law.material)
+    return make_dataset(law, LAW, name_bodies(law), errors, bodies=bodies, material=material)
 
 
-def name_of(table: LawTable) -> str:
+def name_bodies(table: LawTable) -> str:
     """The bodies in words."""
     if table.pair is None:
         return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
@@ -109,8 +109,8 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     if content.attributes[KIND] != AXIS:
         if alpha is not None:
             raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material")
-        return law_of(content, path)
-    axis = axis_of(content, path)
+        return parse_law(content, path)
+    axis = parse_axis(content, path)
     low, high = axis.alpha
     if alpha is None or not low <= number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
         wider = "`viscoroll tables law --alpha LOW:HIGH` writes others"
@@ -118,7 +118,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     return axis.at(alpha)
 
 
-def law_of(content: Content, path: Any) -> LawTable:
+def parse_law(content: Content, path: Any) -> LawTable:
     """The law of what was checked; raises FileError where it does not name its material."""
     if content.attributes[KIND] == AXIS:
         raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
@@ -139,10 +139,10 @@ def _of_cover(content: Content, cover: Cover, pair: Pair | None) -> LawTable:
     coefficients = np.full((*stacked.shape[:2], len(FUNCTIONS)), np.nan)
     coefficients[..., _NOT_N] = stacked[..., :-2]
     rows = CoverRows(e0, coefficients, np.moveaxis(stacked[..., -2:], -1, 0), numbers["limits"])
-    return replace(made(cover, cover=rows), T_ref=float(numbers["T_ref"]), pair=pair)
+    return replace(make_table(cover, cover=rows), T_ref=float(numbers["T_ref"]), pair=pair)
 
 
-def axis_of(content: Content, path: Any) -> LawAxis:
+def parse_axis(content: Content, path: Any) -> LawAxis:
     """The law of every alpha, of what was checked; raises FileError."""
     with _whole(path):
         whole, numbers = _stacked(content, AXIS), content.numbers
@@ -169,11 +169,11 @@ def _whole(path: Any) -> Iterator[None]:
         raise FileError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
 
 
-def described(given: Any) -> str:
+def bodies_as_toml(given: Any) -> str:
     """A pair, Bodies, a series or an alpha as TOML that reads back to the bit: as in scene files, or dimensionless."""
     if isinstance(given, Pair):
-        text = as_toml(given.cylinder)
-        text += "" if given.base is None else f"\n{as_toml(given.base, 'base')}"
+        text = material_as_toml(given.cylinder)
+        text += "" if given.base is None else f"\n{material_as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
     if isinstance(given, Cover):
         lines = (f"{name} = {json.dumps(getattr(given, name))}" for name in _OF_COVER)
@@ -185,20 +185,20 @@ def described(given: Any) -> str:
 
 
 def _material_of(text: str, path: Any) -> Any:
-    """What :func:`described` wrote: a pair, Bodies, a series or an alpha; of a layer (Cover, its pair or None)."""
+    """What :func:`bodies_as_toml` wrote: a pair, Bodies, a series or an alpha; of a layer (Cover, its pair or None)."""
     content = tomllib.loads(text)
     if "cover" in content:
         given = content["cover"]
-        cover = Cover(series_of(path, "cover", given), **{name: given[name] for name in _OF_COVER})
-        bodies = materials_of(path, content) if "material" in content else None
+        cover = Cover(parse_series(path, "cover", given), **{name: given[name] for name in _OF_COVER})
+        bodies = parse_materials(path, content) if "material" in content else None
         return cover, None if bodies is None else Pair(bodies["material"], bodies.get("base"), content["plane"])
     if "material" in content:
-        found = materials_of(path, content)
+        found = parse_materials(path, content)
         return Pair(found["material"], found.get("base"), content["plane"])
     if "bodies" in content:
         given = content["bodies"]
         parts = (given[name] for name in ("cylinder", "base"))
-        series: Any = (series_of(path, "bodies", one) for one in parts)
+        series: Any = (parse_series(path, "bodies", one) for one in parts)
         return Bodies(*series, given["share"])  # type: ignore[call-arg]
     given = content["scene"]
-    return given["alpha"] if "alpha" in given else series_of(path, "scene", given)
+    return given["alpha"] if "alpha" in given else parse_series(path, "scene", given)

@@ -14,11 +14,11 @@ from ...core.typed import Floats, Integers
 from ..bodies import Bodies
 from ..cover import Cover
 from ..prony import Block, Prony, read_only
-from .alpha_axis import OCTAVES, tables_of, to_chebyshev
+from .alpha_axis import OCTAVES, alpha_terms, tables_of_octave
 from .cover_rows import cover_rows
-from .evaluate import refuse_far, series_of
-from .fit import octaves
-from .table import made
+from .evaluate import modes_record, refuse_distant_times
+from .fit import row_range
+from .table import make_table
 
 _lock = threading.Lock()
 #: the axis: what was met of each octave of alpha in this process (:mod:`...kernels.rows.axis`), never dropped again,
@@ -27,7 +27,7 @@ _octaves: dict[int, Floats] = {}
 _known = np.zeros((OCTAVES, 2), np.int64)
 
 
-def law_of_alphas(alpha: Floats) -> Any:
+def record_of_alphas(alpha: Floats) -> Any:
     """The record of states or motions that have these alphas, one or one each, for one thread.
 
     It holds the law of one of them at a time (:func:`...kernels.rows.record.hold`).
@@ -47,13 +47,13 @@ def law_of_alphas(alpha: Floats) -> Any:
     return _record(hold, make, SOURCE, rows=rows, marks=marks, alpha=alpha, count=alpha.size, octaves=_known)
 
 
-def order_of_alphas(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
+def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
     """An order in which states of one octave of alpha and one of kappa |V| follow each other.
 
     What they read is then near: scattered states take half as long again.
     """
-    octaves = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
-    return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
+    row_range = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
+    return np.argsort(row_range, kind="stable") if row_range.size > 1 else np.empty(0, np.int64)
 
 
 def _room(count: int) -> tuple[Floats, Integers]:
@@ -87,17 +87,17 @@ def _octave(octave: int) -> tuple[Floats, int]:
     from ...kernels.rows.axis import PIECES
     from ...kernels.rows.record import BODIES, PART, PRESS, WIDTH
 
-    tables = tables_of(octave)
+    tables = tables_of_octave(octave)
     rows, c = len(tables[0].given_coefficients), np.array([table.T_mean for table in tables])
     values = np.array([table.record.rows[WIDTH:].reshape(rows, WIDTH) for table in tables])
     pairs = values[..., :BODIES].reshape(len(tables), rows, -1, 2, 2)  # two powers of one function, then of the other
     pairs[..., 1, :] /= c[:, None, None, None]  # M/V and epsilon
     values = np.concatenate([values[..., :BODIES], values[..., PRESS:]], axis=-1)
-    found = to_chebyshev(values.reshape(len(tables), rows, PIECES, PART))
+    found = alpha_terms(values.reshape(len(tables), rows, PIECES, PART))
     return read_only(np.moveaxis(found, 0, 2)), rows
 
 
-def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
+def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     """The record of states or motions that have the materials ``which``.
 
     For one thread; it holds the law of one of them at a time (:func:`...kernels.rows.record.hold`).
@@ -113,7 +113,7 @@ def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     numbers = np.zeros((some.size, FRONT + packed_size(most)))
     for block in blocks:
         if block.modes.a.shape[-1]:
-            refuse_far(block.modes.b.min(), block.modes.a.max())
+            refuse_distant_times(block.modes.b.min(), block.modes.a.max())
         found = _numbers(block)
         numbers[block.rows, : found.shape[1]] = found
     count = int(numbers[:, LIMITS + 1].max(initial=1.0))
@@ -138,8 +138,8 @@ def _numbers(block: Block) -> Floats:
     means = [(share * modes.J / modes.b).sum(axis=-1) for share in (weights, 1.0 - weights)]
     first, rows, N = np.zeros(count), np.ones(count), np.full(count, modes.a.shape[-1])
     if modes.a.shape[-1]:
-        first, rows = octaves(modes.b[:, 0], modes.a[:, -1])
-    *vectors, Q = series_of(modes, weights)
+        first, rows = row_range(modes.b[:, 0], modes.a[:, -1])
+    *vectors, Q = modes_record(modes, weights)
     front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, first, rows, N]
     return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)
 
@@ -154,14 +154,14 @@ def _law_of_covers(covers: Cover, which: Integers) -> Any:
     octave, place = np.floor(np.log2(covers.thickness[some])), np.log2(covers.thickness[some])
     laws = {each: _octave_of_covers(covers.of_thickness(2.0**each)) for each in np.unique(octave).tolist()}
     weights = np.polynomial.chebyshev.chebvander(2.0 * (place - octave) - 1.0, NODES - 1) @ to_terms(NODES)
-    octaves = np.array([(laws[each].numbers.ctypes.data, laws[each].rows) for each in octave.tolist()], np.int64)
+    row_range = np.array([(laws[each].numbers.ctypes.data, laws[each].rows) for each in octave.tolist()], np.int64)
     most = max(law.rows for law in laws.values())
     rows, marks = _room(most)
     marks[HELD], marks[E0] = -1, next(iter(laws.values())).e0
     free = np.zeros(max(law.beside for law in laws.values()))
     return _record(
         hold, make, SOURCE, free, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
-        weights=np.ascontiguousarray(weights), octaves=octaves, covers=some.size,
+        weights=np.ascontiguousarray(weights), octaves=row_range, covers=some.size,
     )  # fmt: skip
 
 
@@ -193,6 +193,6 @@ def _made_octave_of_covers(thinnest: Cover) -> _CoverLaws:
     numbers = []
     for place in rounded(chebyshev(NODES)).tolist():
         cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * place))
-        law = made(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
+        law = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
         numbers.append(np.concatenate([law.rows, law.free]))
     return _CoverLaws(np.array(numbers), law.rows.size // WIDTH - 1, int(law.marks[E0]), law.free.size)

@@ -10,7 +10,7 @@ import numpy as np
 from ...core.typed import Floats
 
 
-def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
+def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
     """The tensor spline through values on a grid, not-a-knot, along few nodes of lower degree; no axes: the value.
 
     Parameters
@@ -56,12 +56,12 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     return np.concatenate([[edges.size - 1, degree + 1, log, stride], edges, basis.ravel()])
 
 
-def compiled(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds: tuple[float, float]) -> Floats:
+def pack_spline(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds: tuple[float, float]) -> Floats:
     """A spline over some of V, delta and alpha as the vector that ``kernels.splines.spline`` reads.
 
     Parameters
     ----------
-    found : of :func:`spline`; the value of a field over no axis.
+    found : of :func:`fit_spline`; the value of a field over no axis.
     axes : those that it is over, in their order.
     logs : those in whose logarithm it runs.
     bounds : to which values are clipped.

@@ -11,13 +11,24 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import ParameterError
-from ..bodies import Bodies, one_series
+from ..bodies import Bodies, total_series
 from ..cover import Cover
 from ..pair import Pair
 from ..prony import Prony, read_only
 from .cover_rows import CoverRows, cover_rows
-from .evaluate import by_modes, refuse_far
-from .fit import FUNCTIONS, TERMS, Floats, Rows, added, arranged, build, octaves, paired, with_unsteady
+from .evaluate import evaluate_by_modes, refuse_distant_times
+from .fit import (
+    FUNCTIONS,
+    TERMS,
+    Floats,
+    Rows,
+    fit_rows,
+    fit_unsteady,
+    interleave_pairs,
+    pack_rows,
+    pack_unsteady,
+    row_range,
+)
 
 #: tables kept, of some 0.2 MB
 _KEPT = 32
@@ -77,7 +88,7 @@ class LawTable:
         table = self.given_coefficients
         if not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
-        return read_only(with_unsteady(table, self.e0, lambda z: by_modes(self.material, z).N))
+        return read_only(fit_unsteady(table, self.e0, lambda z: evaluate_by_modes(self.material, z).N))
 
     @cached_property
     def record(self) -> Any:
@@ -90,10 +101,10 @@ class LawTable:
         )
         lengths = free = None
         if self.cover is not None:
-            front, free, lengths = cover_front(self.cover), read_only(cover_numbers(self.cover)), self.cover.creep[0]
+            front, free, lengths = pack_cover_front(self.cover), read_only(pack_cover(self.cover)), self.cover.creep[0]
         rows, marks = np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
         rows[:8] = front
-        rows[WIDTH:] = arranged(self.given_coefficients, self.e0, front[0], front[2:4], lengths).ravel()
+        rows[WIDTH:] = pack_rows(self.given_coefficients, self.e0, front[0], front[2:4], lengths).ravel()
         marks[[COUNT, E0]] = count, self.e0
         return Law(read_only(rows), read_only(marks), read_only(np.empty(0)), 0, 0, 0, free)
 
@@ -101,7 +112,7 @@ class LawTable:
     def unsteady_record(self) -> Any:
         """As :attr:`record`, with N."""
         N = self.coefficients[:, :, FUNCTIONS.index("N")]
-        return self.record._replace(added=read_only(added(N, self.e0, self.alpha)))
+        return self.record._replace(added=read_only(pack_unsteady(N, self.e0, self.alpha)))
 
 
 def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
@@ -126,7 +137,7 @@ def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | N
         given = given.total if given.total.E.size else 1.0
     given = given if isinstance(given, Prony | Bodies) else float(given)
     if coefficients is not None:
-        return made(given, coefficients)
+        return make_table(given, coefficients)
     with _lock:
         return _made(given)
 
@@ -136,12 +147,14 @@ _lock = threading.Lock()
 
 @lru_cache(maxsize=_KEPT)
 def _made(given: float | Prony | Bodies) -> LawTable:
-    return made(given)
+    return make_table(given)
 
 
-def made(given: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None) -> LawTable:
+def make_table(
+    given: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None
+) -> LawTable:
     """A table made anew, or of ``coefficients`` or rows of a cover that are known."""
-    total, unlike = one_series(given), isinstance(given, Bodies)
+    total, unlike = total_series(given), isinstance(given, Bodies)
     modes, alpha = total.modes, total.alpha
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
     W, shares = modes.J * modes.b, (1.0, weights, 1.0 - weights)
@@ -152,10 +165,10 @@ def made(given: float | Prony | Bodies, coefficients: Floats | None = None, cove
         cover = cover or cover_rows(given)
         table, e0 = cover.coefficients, cover.e0
     elif modes.a.size:
-        refuse_far(modes.b[0], modes.a[-1])
-        e0, count = map(int, octaves(modes.b[0], modes.a[-1]))
+        refuse_distant_times(modes.b[0], modes.a[-1])
+        e0, count = map(int, row_range(modes.b[0], modes.a[-1]))
         if coefficients is None:
-            coefficients = build(lambda z: by_modes(given, z), Rows(e0, count), alpha, sums[1:, 2])
+            coefficients = fit_rows(lambda z: evaluate_by_modes(given, z), Rows(e0, count), alpha, sums[1:, 2])
         table = coefficients
     arrays = map(read_only, (sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
     found = LawTable(given, read_only(table), e0, alpha, total.T_mean, unlike, *arrays)
@@ -164,7 +177,7 @@ def made(given: float | Prony | Bodies, coefficients: Floats | None = None, cove
     return replace(found, cover=cover, T_mean=float(cover.coefficients[0, 0, 2:4].sum()))
 
 
-def cover_front(cover: CoverRows) -> Floats:
+def pack_cover_front(cover: CoverRows) -> Floats:
     """The numbers in front of a cover's rows (:mod:`...kernels.rows.record`), by which the fast limit of the half-space
     says that of the cover: L = L_1 (1 + a/u) and M = b V/u^2, without logarithms."""
     L, _, _, L_slope, _, _, _, moment = cover.limits
@@ -173,7 +186,7 @@ def cover_front(cover: CoverRows) -> Floats:
     return np.array([1.0 / (L * L), L, 0.0, 4.0 * L_slope, 0.0, 8.0 * parts[0], 0.0, 8.0 * parts[1]])
 
 
-def cover_numbers(cover: CoverRows) -> Floats:
+def pack_cover(cover: CoverRows) -> Floats:
     """What kernels read of a cover beside its rows (:mod:`...kernels.rows.cover`)."""
     from ...kernels.rows.cover import FRONT
 
@@ -182,7 +195,7 @@ def cover_numbers(cover: CoverRows) -> Floats:
     front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
     assert len(front) == FRONT
     own = cover.creep[1]
-    return np.append(front, np.concatenate([own, paired(own, own)], axis=1))
+    return np.append(front, np.concatenate([own, interleave_pairs(own, own)], axis=1))
 
 
 def _elastic() -> Floats:
