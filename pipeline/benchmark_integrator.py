@@ -23,8 +23,8 @@ from viscoroll.kernels.printed.law import (
     direct_stick,
     direct_traction,
 )
-from viscoroll.kernels.rows.bound import OUT
-from viscoroll.kernels.rows.jitted import LawType
+from viscoroll.kernels.rows.c_function import RESULTS
+from viscoroll.kernels.rows.jitted_law import LawType
 
 #: Steps of a motion before it is given up: some hundred times what the paper's motions take at the tightest tolerance.
 MOST_STEPS = 100_000
@@ -107,7 +107,7 @@ def _loads(V, omega, scene):
 # as a kernel that Python calls, for kernels below it are compiled as parts of it; but not kept on disk
 @numba.njit(pipeline_class=EntryPipeline, error_model="numpy")
 def _root_solves(V, omega, to, scenes):
-    out, scene, h = carray(to, OUT), record_at(scenes), _STEP * abs(V)
+    out, scene, h = carray(to, RESULTS), record_at(scenes), _STEP * abs(V)
     Q, M = _loads(V, omega, scene)
     Q_V, M_V = _loads(V + h, omega, scene)
     Q_omega, _ = _loads(V, omega + h, scene)

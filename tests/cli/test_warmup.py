@@ -49,10 +49,10 @@ import importlib
 import numpy as np
 import viscoroll as vr
 from viscoroll.app.cli import main
-from viscoroll.kernels.compile.cache import HERE
+from viscoroll.kernels.compile.cache import KERNELS
 assert main(["warmup"]) == 0
 modules = [
-    importlib.import_module(f"viscoroll.kernels.{{path.parent.name}}.{{path.stem}}") for path in HERE.glob("*/[!_]*.py")
+    importlib.import_module(f"viscoroll.kernels.{{path.parent.name}}.{{path.stem}}") for path in KERNELS.glob("*/[!_]*.py")
 ]
 def ready():
     kernels = {{each for module in modules for each in vars(module).values() if hasattr(each, "overloads")}}

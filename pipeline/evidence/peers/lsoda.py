@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.compile.intrinsics import floats_at, integers_at
-from viscoroll.kernels.rows.contact import traction_of
-from viscoroll.kernels.rows.law import place, speed, way_of
+from viscoroll.kernels.rows.contact import signed_traction
+from viscoroll.kernels.rows.contact_states import State
+from viscoroll.kernels.rows.evaluate import length_and_moment, locate_row, moment_factor
 from viscoroll.kernels.rows.record import Law
-from viscoroll.kernels.rows.states import State
 from viscoroll.materials.law.table import law_table
 
 #: share of rtol that the absolute tolerance is
@@ -48,9 +48,9 @@ def _compiled():
         rows, marks = floats_at(int(par[6]), int(par[7])), integers_at(int(par[8]), int(par[9]))
         law, state = Law(rows, marks, rows[:0], 0, 0, 0), State(par[0], par[1], y[0], y[1], True)
         u = state.kappa * abs(y[0])
-        at = place(u, law)
-        of = speed(at, u, law)
-        Q, M = traction_of(u, of.L, state, law), way_of(at, u, of.scale, state) * of.m
+        at = locate_row(u, law)
+        of = length_and_moment(at, u, law)
+        Q, M = signed_traction(u, of.L, 0.0, state, law), moment_factor(at, u, of.scale, state) * of.m
         found[0] = par[2] * (Q - 0.5 * M + par[4])
         found[1] = par[2] / par[3] * (par[5] - Q - 0.5 * M)
 

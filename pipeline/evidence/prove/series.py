@@ -17,7 +17,7 @@ from flint import arb
 import viscoroll as vr
 from viscoroll.contact_law.contact_fields import OF_BODIES
 from viscoroll.kernels.rows.modes import modes_loop
-from viscoroll.kernels.rows.series import FUNCTIONS, room_of
+from viscoroll.kernels.rows.series import FUNCTIONS, new_workspace
 from viscoroll.materials.law.evaluate import modes_record
 
 from ..truth.enclosures import INPUTS, enclosed, slopes, zone_of
@@ -42,7 +42,7 @@ def of_z(p: vr.Prony, z: float) -> list[float]:
     """g, h and m, by the modes."""
     series, found, place = modes_record(p.modes), np.empty((2 * FUNCTIONS + 1, 1)), np.array([z])
     place.flags.writeable = False
-    modes_loop(series, np.empty(0), room_of(p.E.size), place, found)
+    modes_loop(series, np.empty(0), new_workspace(p.E.size), place, found)
     shift, rise, half_space, cylinder = found[:FUNCTIONS, 0].tolist()
     return [shift * z, rise * z, half_space + cylinder]
 

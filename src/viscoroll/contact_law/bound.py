@@ -32,7 +32,7 @@ class Law:
     """
 
     def __init__(self, roller: Rolls) -> None:
-        from ..kernels.rows.jitted import Jitted
+        from ..kernels.rows.jitted_law import Jitted
 
         _, scene, scale = framed(roller, "law")
         if scene.each is not None:
@@ -47,9 +47,9 @@ class Law:
 
     def _take(self, jitted: Any) -> None:
         """Keep what is called, and the room for what it finds."""
-        from ..kernels.rows.jitted import Room
+        from ..kernels.rows.jitted_law import ResultBuffer
 
-        self._jitted, self._room = jitted, Room
+        self._jitted, self._room = jitted, ResultBuffer
         self._function, self._plain, self._sloped = jitted.function, jitted.plain, jitted.address
 
     @overload

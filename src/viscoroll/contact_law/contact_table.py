@@ -57,7 +57,7 @@ def states_of(
             order = np.argsort(each, kind="stable") if each.size > 1 else order
         elif not direct:
             law, order = record_of_alphas(each), sort_by_octave(each, parts[0], parts[2])
-        asked = of.Asked(of.States(*parts, creep_is_omega), order, to, out, start)
+        asked = of.Request(of.States(*parts, creep_is_omega), order, to, out, start)
         if direct:
             if loop(law, asked, stop - start):
                 raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")
@@ -68,7 +68,7 @@ def states_of(
             return
         N = out[names.index(UNSTEADY), start:stop]
         if isinstance(given, LawTable):
-            from ..kernels.rows.added import unsteady_loop
+            from ..kernels.rows.added_mass import unsteady_loop
 
             unsteady_loop(given.unsteady_record, parts[0], parts[2], N)
         else:
@@ -98,13 +98,14 @@ def rolling(law: LawTable, u: NDArray, *names: str) -> NDArray:
 @lru_cache(maxsize=64)
 def _asked(names: tuple[str, ...], direct: bool) -> tuple[Any, Any, Any]:
     """(The kernel, what it takes, the row of each field)."""
-    from ..kernels.rows import states
+    from ..kernels.rows import contact_states
 
     if direct:
         from ..kernels.printed.loop import direct_loop as loop
     else:
         from ..kernels.rows.contact import contact_loop as loop
-    return loop, states, states.Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
+    to = contact_states.Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
+    return loop, contact_states, to
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:

@@ -97,7 +97,7 @@ def stress(
 
 def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """The stresses at points; ``numbers``: alphas, or of the materials, which lie together where they share one."""
-    from ..kernels.rows.stress import memories, stress_loop
+    from ..kernels.rows.stress import new_memory_weights, stress_loop
 
     ends: Any = [] if scene.each is None else 1 + np.flatnonzero(np.diff(numbers))
     for first, last in pairwise([0, *ends, p.size]):
@@ -106,4 +106,5 @@ def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Float
             given = total_series(scene.each[int(numbers[min(first, numbers.size - 1)])])
         series, alpha = series_record(given)
         some = points._make(part[first:last] if part.size > 1 else part for part in points)
-        stress_loop(series, alpha, memories(series), memories(series), some, p[first:last], tau[first:last])
+        weights = new_memory_weights(series), new_memory_weights(series)
+        stress_loop(series, alpha, *weights, some, p[first:last], tau[first:last])

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from ..core.checks import checked, number
 from ..core.errors import ParameterError
 from ..core.typed import Floats
-from ..kernels.numerics.nodes import powers_of_chebyshev
+from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: terms of a polynomial, looks at a callable, values taken of it at most
 TERMS, LOOKS, MOST = 14, 1000, 500_000

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..core.typed import Floats
-from ..kernels.numerics.nodes import Interpolation, chebyshev, powers_of_chebyshev, to_chebyshev
-from ..kernels.rows.lanes import TERMS
+from ..kernels.numerics.interpolation import Interpolation, chebyshev, powers_of_chebyshev, to_chebyshev
+from ..kernels.rows.simd_polynomial import TERMS
 
 #: limit of Newton's iteration for the inverse function
 _MAX_ITERATIONS = 20

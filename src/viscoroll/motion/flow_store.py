@@ -15,7 +15,7 @@ import numpy as np
 
 from ..core.files import seal, seal_holds
 from ..core.typed import Floats
-from ..kernels.compile.folder import cache_root, read_own, write_own
+from ..kernels.compile.folder import cache_root, read_private, write_private
 from ..materials.prony import Prony
 
 #: maps kept; the one that was used longest ago goes first
@@ -92,7 +92,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     ``parameters``.
     """
     try:
-        content = read_own(path)
+        content = read_private(path)
     except OSError:
         return None
     try:
@@ -127,7 +127,7 @@ def save(new_map: FlowMap, path: Path) -> None:
     try:
         content, numbers = io.BytesIO(), _numbers(new_map.parameters)
         np.savez(content, **(vars(new_map) | {"parameters": numbers}))
-        write_own(path, seal(content.getvalue()))
+        write_private(path, seal(content.getvalue()))
         oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
         for file in oldest[:-KEPT]:
             file.unlink()

@@ -31,10 +31,10 @@ FACTOR = 3.0
 @pytest.fixture(autouse=True)
 def _anew(monkeypatch):
     """Whatever is told once is told again; what fell back is forgotten."""
-    cache_module.note_trouble.cache_clear()
+    cache_module.warn_once.cache_clear()
     monkeypatch.setattr(deferred, "_deferring", True)
     yield
-    cache_module.note_trouble.cache_clear()
+    cache_module.warn_once.cache_clear()
 
 
 # --- deferred compiling ---
@@ -290,7 +290,7 @@ def test_a_group_of_one_is_no_others(cache, monkeypatch):
         found = SimpleNamespace(gr_name=name, gr_mem=members)
         monkeypatch.setattr(grp, "getgrgid", lambda group, found=found: found)
         monkeypatch.setattr(folder, "_SUPERUSERS", -1)
-        cache_module.note_trouble.cache_clear()
+        cache_module.warn_once.cache_clear()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             assert fresh() == hits
@@ -330,14 +330,14 @@ def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):
     assert fresh() == 0  # once is enough
 
 
-@pytest.mark.parametrize("name", ["rows/states.py", "bessel/ratios.npy", "compile/jit.py"])
+@pytest.mark.parametrize("name", ["rows/contact_states.py", "bessel/ratios.npy", "compile/jit.py"])
 def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, name):
     """numba's own cache would not notice a change in a function called from another module."""
     copy = tmp_path / "kernels"
-    shutil.copytree(cache_module.HERE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(cache_module.KERNELS, copy, ignore=shutil.ignore_patterns("__pycache__"))
     digest = cache_module.sources_digest.__wrapped__
     before = digest()
-    monkeypatch.setattr(cache_module, "HERE", copy)
+    monkeypatch.setattr(cache_module, "KERNELS", copy)
     assert digest() == before
     with (copy / name).open("ab") as file:
         file.write(b" ")
@@ -348,7 +348,7 @@ def test_bits_cannot_follow_the_history_of_the_cache():
     """No kernel is granted numerical freedom: what LLVM makes of that depends on what is compiled together."""
     kernels = [
         each
-        for path in cache_module.HERE.glob("*/[!_]*.py")
+        for path in cache_module.KERNELS.glob("*/[!_]*.py")
         for each in vars(importlib.import_module(f"viscoroll.kernels.{path.parent.name}.{path.stem}")).values()
         if hasattr(each, "targetoptions")
     ]
@@ -399,23 +399,23 @@ def test_who_waits_is_told_once_a_process(tmp_path):
 
 @pytest.fixture
 def untold(monkeypatch):
-    monkeypatch.setattr(notice, "told", False)
+    monkeypatch.setattr(notice, "announced", False)
     monkeypatch.delenv("VISCOROLL_QUIET", raising=False)
 
 
 def test_nothing_is_said_where_it_is_not_wanted(untold, capsys, monkeypatch):
     with monkeypatch.context() as quiet:
         quiet.setenv("VISCOROLL_QUIET", "1")
-        notice.tell()
+        notice.announce_compiling()
     with monkeypatch.context() as child:
         child.setattr(notice.multiprocessing, "parent_process", lambda: "this process has one")
-        notice.tell()
+        notice.announce_compiling()
     with monkeypatch.context() as worker:
         worker.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask"))
-        notice.tell()
+        notice.announce_compiling()
     with monkeypatch.context() as window:
         window.setattr(sys, "stderr", None)
-        notice.tell()
+        notice.announce_compiling()
     assert capsys.readouterr() == ("", "")
 
 
@@ -424,7 +424,7 @@ def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
         raise ValueError("No worker found")
 
     monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=get_worker))
-    notice.tell()
+    notice.announce_compiling()
     assert re.fullmatch(NOTICE, capsys.readouterr().err)
 
 

@@ -79,10 +79,10 @@ def _version(name: str) -> str | None:
 
 def _trouble_of(folder: Path) -> str:
     """Why the cache is not used, or cannot be written."""
-    from ...kernels.compile.folder import refuse_shared
+    from ...kernels.compile.folder import refuse_writable_by_others
 
     try:
-        refuse_shared(folder)
+        refuse_writable_by_others(folder)
     except PermissionError as error:
         return f"; it is NOT USED: {error.strerror}"
     there = next((path for path in (folder, *folder.parents) if path.exists()), folder)

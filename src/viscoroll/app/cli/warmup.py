@@ -27,7 +27,7 @@ def warm_up(given: Namespace) -> None:
     from ...kernels.compile import notice
     from ...kernels.compile.folder import cache_root
 
-    notice.told = True  # by the bar
+    notice.announced = True  # by the bar
     began = time.perf_counter()
     calls = dict(_calls())
     with tqdm(total=len(calls), leave=False) as bar:

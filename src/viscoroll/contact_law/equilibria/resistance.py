@@ -82,9 +82,9 @@ class Branches:
     @cached_property
     def curve(self) -> Any:
         """The nodes as the record that kernels take."""
-        from ...kernels.rows.steady import Curve
+        from ...kernels.rows.load_crossings import LoadCurve
 
-        return Curve(self.u, self.resistance, self.extremum, self.gain)
+        return LoadCurve(self.u, self.resistance, self.extremum, self.gain)
 
     @cached_property
     def maximum(self) -> tuple[float, float]:
@@ -100,9 +100,9 @@ class Branches:
         Returns (index of the load, node below the crossing), one entry for each crossing.  An extremum, and loads
         within rounding of it, belong to the branch that ends there.
         """
-        from ...kernels.rows.steady import SNAP
+        from ...kernels.rows.load_crossings import EXTREMUM_RTOL
 
-        which, nodes, near = [], [], SNAP * np.abs(load)
+        which, nodes, near = [], [], EXTREMUM_RTOL * np.abs(load)
         for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
             rise = self.resistance[first : last + 1]
             rises = rise[-1] > rise[0]

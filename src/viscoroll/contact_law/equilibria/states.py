@@ -164,7 +164,7 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 
     Returns (index of the load, sign of V, kappa |V|), one entry for each crossing.
     """
-    from ...kernels.rows.steady import crossing_loop
+    from ...kernels.rows.load_crossings import crossing_loop
 
     found = branches(law, gain)
     signed = np.concatenate([total, -total])

@@ -23,7 +23,7 @@ import numpy as np
 from ..compile.intrinsics import fma, septic
 from ..compile.jit import kernel
 from ..numerics.bins import bin_number, bin_offset
-from ..numerics.nodes import Interpolation, chebyshev, horner, in_many_digits
+from ..numerics.interpolation import Interpolation, chebyshev, horner, in_40_digits
 from . import layout
 
 TABLE = np.load(Path(__file__).with_name("ratios.npy"))
@@ -63,7 +63,7 @@ _NEAR, _FAR = 0.0625, 64.0
 K_LEAST = 2.0**-30
 
 
-@in_many_digits
+@in_40_digits
 def _tail(sign: int) -> np.ndarray:
     """x (1 - r) or z (1 - k) above 64 as a polynomial in the inverse: the asymptotic series at Chebyshev's nodes."""
     series = [-a for a in asymptotic_series(sign, 17)[1:]]

@@ -25,10 +25,10 @@ import numba
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
-from .folder import cache_root, make_own, read_own, write_own
+from .folder import cache_root, make_private_folder, read_private, write_private
 
 #: where all kernels lie
-HERE = Path(__file__).parents[1]
+KERNELS = Path(__file__).parents[1]
 #: settings of numba (environment: NUMBA_...) that its machine code follows, beside those of the processor
 _SETTINGS = (
     "BOUNDSCHECK", "OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DISABLE_INTEL_SVML", "DEBUGINFO_DEFAULT",
@@ -44,13 +44,13 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 def sources_digest() -> str:
     """Hash of the kernel sources, of their coefficients and of the versions of numba and llvmlite."""
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
-    for path in sorted((*HERE.rglob("*.py"), *HERE.rglob("*.npy"))):
-        digest.update(path.relative_to(HERE).as_posix().encode() + b"\0" + path.read_bytes())
+    for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
+        digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
 @lru_cache(maxsize=2)
-def note_trouble(trouble: str) -> None:
+def warn_once(trouble: str) -> None:
     """Once for each kind of trouble."""
     warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
 
@@ -77,7 +77,7 @@ class DiskCache:
 
         lock = FileLock(f"{path}.lock", timeout=PATIENCE)
         with suppress(OSError):  # also of the time being over
-            make_own(path.parent)
+            make_private_folder(path.parent)
             lock.acquire()
         try:
             yield
@@ -90,14 +90,14 @@ class DiskCache:
         """The machine code for this signature, or None."""
         target.refresh()
         try:
-            stored = read_own(self._path(signature, target.codegen()))
+            stored = read_private(self._path(signature, target.codegen()))
         except OSError:  # not there, not to be read or not ours alone: saving will say so
             return None
         digest, content = stored[:_DIGEST_SIZE], stored[_DIGEST_SIZE:]
         if hashlib.sha256(content).digest() == digest:
             with suppress(Exception):  # written by whatever calls itself the same numba
                 return CompileResult._rebuild(target, *pickle.loads(zlib.decompress(content)))
-        note_trouble(f"the cache of compiled kernels is damaged ({self._folder})")
+        warn_once(f"the cache of compiled kernels is damaged ({self._folder})")
         return None  # save_overload then replaces the file
 
     def save_overload(self, signature: Any, compiled: CompileResult) -> None:
@@ -106,9 +106,9 @@ class DiskCache:
             return  # addresses of this process
         content = zlib.compress(dumps(compiled._reduce()), 1)
         try:
-            write_own(self._path(signature, compiled.codegen), hashlib.sha256(content).digest() + content)
+            write_private(self._path(signature, compiled.codegen), hashlib.sha256(content).digest() + content)
         except OSError as error:
-            note_trouble(f"compiled kernels are not cached ({self._folder}: {error.strerror})")
+            warn_once(f"compiled kernels are not cached ({self._folder}: {error.strerror})")
 
     def flush(self) -> None:
         """``recompile`` of numba's dispatcher wants this: nothing is held in memory."""

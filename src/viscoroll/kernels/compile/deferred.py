@@ -22,7 +22,7 @@ import numba
 from numba.core import types
 from numba.core.compiler import Compiler
 
-from .notice import tell
+from .notice import announce_compiling
 
 _deferring = True
 #: passes of numba that look through all of a kernel for what kernels do not have: closures, overloads to be inlined
@@ -37,7 +37,7 @@ class EntryPipeline:
 
     def compile_extra(self, function: Callable) -> Any:
         """What numba makes of the function."""
-        tell()
+        announce_compiling()
         with _garbage_kept():
             return self._compiled(function)
 

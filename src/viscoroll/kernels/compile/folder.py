@@ -46,15 +46,15 @@ def _without_home() -> Path:
     return place
 
 
-def read_own(path: Path) -> bytes:
+def read_private(path: Path) -> bytes:
     """A file of the cache; raises OSError where it is not there, cannot be read, or others may have written it."""
-    refuse_shared(path)
+    refuse_writable_by_others(path)
     return path.read_bytes()
 
 
-def write_own(path: Path, content: bytes) -> None:
+def write_private(path: Path, content: bytes) -> None:
     """Keep a file in the cache, whole or not at all, for others to read alone; raises OSError."""
-    make_own(path.parent)
+    make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
     try:
         temporary.touch(mode=0o644, exist_ok=False)
@@ -65,15 +65,15 @@ def write_own(path: Path, content: bytes) -> None:
             temporary.unlink()
 
 
-def make_own(folder: Path) -> None:
+def make_private_folder(folder: Path) -> None:
     """Make a folder of the cache and those above it, where they are not there; raises OSError."""
-    refuse_shared(folder)
+    refuse_writable_by_others(folder)
     for each in reversed((folder, *folder.parents)):
         if not each.exists():
             each.mkdir(mode=0o755, exist_ok=True)
 
 
-def refuse_shared(path: Path) -> None:
+def refuse_writable_by_others(path: Path) -> None:
     """Raise PermissionError where others may write to a file or folder, or to one above it, as far as they are there.
 
     Sticky folders are as good as one's own: there nobody replaces what is another's.  On Windows, where the user's

@@ -7,15 +7,15 @@ import os
 import sys
 
 #: whether it has been said
-told = False
+announced = False
 
 
-def tell() -> None:
+def announce_compiling() -> None:
     """Say, once a process, that compiling begins: the first kernel does not know how many follow."""
-    global told
-    if told or is_quiet():
+    global announced
+    if announced or is_quiet():
         return
-    told = True
+    announced = True
     print(
         "viscoroll: compiling kernels, up to half a minute for each new kind of call, once for this machine; "
         "`viscoroll warmup` does it ahead",

@@ -1,7 +1,7 @@
 """Layout of a flow map: polynomials of 24 powers, one for each octave of their variable, as in the rows of the law.
 
 Times are tau = gamma t.  Motions are mirrored so that omega > V in full slip and V > 0 in partial slip.  All tables
-form one vector; pairs of functions are interleaved (:mod:`..rows.lanes`).
+form one vector; pairs of functions are interleaved (:mod:`..rows.simd_polynomial`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from ..rows.lanes import TERMS
+from ..rows.simd_polynomial import TERMS
 
 #: binary exponent of the lowest kappa V in the tables: below it the law equals its limit V -> 0 to 2e-11
 LOW = -36

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..compile.intrinsics import fma
 from ..compile.jit import kernel
-from ..numerics.four import LANES, fused, loads, parts, spread
-from ..numerics.nodes import gauss
-from ..rows import lanes
-from ..rows.law import octave
+from ..numerics.interpolation import gauss
+from ..numerics.simd4 import LANES, broadcast, fma4, make_load, unpack
+from ..rows.evaluate import locate_octave
+from ..rows.simd_polynomial import evaluate_one, evaluate_pair
 from . import layout
 from .layout import LAYER_TERMS, SHAPES, STARTS
 from .records import Asymptote
@@ -56,7 +56,7 @@ _LAYER_OCTAVES = SHAPES.layer[2]
 #: numbers of the polynomials of one octave of u
 _LAYER = SHAPES.layer[3] * SHAPES.layer[4]
 #: loads the twelve coefficients of the powers of t, that belong to one power of s, as three vectors of four
-_powers = loads(LAYER_TERMS // LANES)
+_powers = make_load(LAYER_TERMS // LANES)
 #: nodes and weights of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
 _GAUSS_X, _GAUSS_W = gauss(5)
 
@@ -70,22 +70,22 @@ def full_slip_integrals(V, level, flow):
     Returns (T with the sign of V, X, delta_star |V|).
     """
     speed = abs(V)
-    row, t, _ = octave(flow.kappa * speed, layout.LOW)
+    row, t, _ = locate_octave(flow.kappa * speed, layout.LOW)
     if row == 0:
         return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
     at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * _SLIDE
-    T, limit = lanes.pair(flow.table, at, t)[:2]
-    X = lanes.one(flow.table, at + layout.SLIDE_X, t)[0] if level >= PATH else 0.0
+    T, limit = evaluate_pair(flow.table, at, t)[:2]
+    X = evaluate_one(flow.table, at + layout.SLIDE_X, t)[0] if level >= PATH else 0.0
     return T if V > 0.0 else -T, X, limit
 
 
 @kernel(inline=True)
 def speed_at_slide_time(T, flow):
     """V in full slip at the time T since (or before) rest, in the mirrored frame."""
-    row, t, _ = octave(flow.kappa * flow.mu * abs(T), layout.LOW)
+    row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
         return flow.mu * T
-    V = lanes.one(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t)[0]
+    V = evaluate_one(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t)[0]
     return V if T > 0.0 else -V
 
 
@@ -117,10 +117,10 @@ def read_onset(I, level, flow):
     x = flow.kappa * abs(I) / (1.0 + flow.j)
     if not LOWEST <= x < HIGHEST:
         return 0.0, 0.0, 0.0
-    row, t, _ = octave(x, layout.LOW)
+    row, t, _ = locate_octave(x, layout.LOW)
     at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
-    V, T = lanes.pair(flow.table, at, t)[:2]
-    X = lanes.one(flow.table, at + layout.ONSET_X, t)[0] if level >= PATH else 0.0
+    V, T = evaluate_pair(flow.table, at, t)[:2]
+    X = evaluate_one(flow.table, at + layout.ONSET_X, t)[0] if level >= PATH else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
@@ -134,7 +134,7 @@ def _locate_on_manifold(slow_log):
     factor.
     """
     if slow_log >= 0.0:
-        row, t, _ = octave(1.0 + slow_log, 0)
+        row, t, _ = locate_octave(1.0 + slow_log, 0)
         return STARTS.slow + (layout.SLOW_BINS + row - 1) * _SLOW, t, 1.0
     share = 1.0
     if slow_log < _LOWEST_SLOW_LOG:
@@ -148,7 +148,7 @@ def _locate_on_manifold(slow_log):
 def manifold_speeds(slow_log, table):
     """(V, delta) on the slow manifold at a slow logarithm."""
     at, t, share = _locate_on_manifold(slow_log)
-    V, delta = lanes.pair(table, at, t)[:2]
+    V, delta = evaluate_pair(table, at, t)[:2]
     return share * V, share * delta
 
 
@@ -156,7 +156,7 @@ def manifold_speeds(slow_log, table):
 def _remaining_path(slow_log, table):
     """(distance, angle) that remain to rest on the slow manifold."""
     at, t, share = _locate_on_manifold(slow_log)
-    x, angle = lanes.pair(table, at + layout.SLOW_PATH, t)[:2]
+    x, angle = evaluate_pair(table, at + layout.SLOW_PATH, t)[:2]
     return share * x, share * angle
 
 
@@ -187,14 +187,14 @@ def manifold_path(start, span, rate, table):
 def remaining_slip_loss(slow_log, table):
     """Slip loss that remains to rest at a slow logarithm on the slow manifold; it falls as V^3 as V -> 0."""
     at, t, share = _locate_on_manifold(slow_log)
-    return share**3 * lanes.one(table, at + layout.SLOW_LOSS, t)[0]
+    return share**3 * evaluate_one(table, at + layout.SLOW_LOSS, t)[0]
 
 
 @kernel
 def manifold_at_speed(v, table):
     """(slow logarithm, delta) on the slow manifold at v = kappa V >= LOWEST."""
-    row, t, _ = octave(v, layout.LOW)
-    return lanes.pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
+    row, t, _ = locate_octave(v, layout.LOW)
+    return evaluate_pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
 
 
 @kernel
@@ -212,15 +212,15 @@ def read_asymptote(family, v, level, flow):
     Returns an :class:`Asymptote`; quantities beyond ``level`` are 0.
     """
     table = flow.table
-    row, t, _ = octave(v, flow.first)
+    row, t, _ = locate_octave(v, flow.first)
     at = STARTS.asymptote + (row - 1 + family * _ONSET_OCTAVES) * _ASYMPTOTE_SIZE
-    slow_log, rate = lanes.pair(table, at, t)[:2]
+    slow_log, rate = evaluate_pair(table, at, t)[:2]
     x = angle = loss = 0.0
     if level >= PATH:
-        x, angle = lanes.pair(table, at + layout.ASYMPTOTE_PATH, t)[:2]
+        x, angle = evaluate_pair(table, at + layout.ASYMPTOTE_PATH, t)[:2]
     if level >= LOSS:
-        loss = lanes.one(table, at + layout.ASYMPTOTE_LOSS, t)[0]
-    return Asymptote(slow_log, rate, lanes.one(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
+        loss = evaluate_one(table, at + layout.ASYMPTOTE_LOSS, t)[0]
+    return Asymptote(slow_log, rate, evaluate_one(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
 
 
 @kernel(inline=True)
@@ -234,8 +234,8 @@ def locate_in_layer(family, v, u, flow):
     """(position in the table, t, s) in the layer of a family at v = kappa V of the onset and at the layer coordinate
     u.
     """
-    row, t, _ = octave(v, flow.first)
-    part, s, _ = octave(u, layout.LAYER_LOW)
+    row, t, _ = locate_octave(v, flow.first)
+    part, s, _ = locate_octave(u, layout.LAYER_LOW)
     return STARTS.layer + (((row - 1 + family * _ONSET_OCTAVES) * _LAYER_OCTAVES) + part - 1) * _LAYER, t, s
 
 
@@ -243,8 +243,8 @@ def locate_in_layer(family, v, u, flow):
 def _evaluate_in_t(p, t):
     """Value at t of a polynomial whose twelve coefficients are three vectors of four."""
     square = t * t
-    per = spread(square * square)
-    a, b, c, d = parts(fused(fused(p[2], per, p[1]), per, p[0]))
+    per = broadcast(square * square)
+    a, b, c, d = unpack(fma4(fma4(p[2], per, p[1]), per, p[0]))
     return fma(square, fma(t, d, c), fma(t, b, a))
 
 
@@ -257,13 +257,13 @@ def layer_value_and_slopes(table, column, at, t, s):
     Returns (value, slope in t (speed at onset), slope in s (layer coordinate)).
     """
     at += column * layout.BLOCK
-    per, value = spread(s), _powers(table, at + layout.BLOCK - LAYER_TERMS)
+    per, value = broadcast(s), _powers(table, at + layout.BLOCK - LAYER_TERMS)
     rise = value
     for m in range(LAYER_TERMS - 2, 0, -1):
-        value = fused(value, per, _powers(table, at + m * LAYER_TERMS))
-        rise = fused(rise, per, value)
-    value = fused(value, per, _powers(table, at))
-    powers = (*parts(value[0]), *parts(value[1]), *parts(value[2]))
+        value = fma4(value, per, _powers(table, at + m * LAYER_TERMS))
+        rise = fma4(rise, per, value)
+    value = fma4(value, per, _powers(table, at))
+    powers = (*unpack(value[0]), *unpack(value[1]), *unpack(value[2]))
     slope = 11.0 * powers[11]
     for k in range(10, 0, -1):
         slope = fma(slope, t, k * powers[k])

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..motion.records import DONE, FULL, PARTIAL, REST, RESTED
-from ..rows.states import element
+from ..rows.contact_states import element
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .lookup import (
     HIGHEST,

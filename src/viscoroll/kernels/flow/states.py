@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..rows.law import place, press, speed
+from ..rows.evaluate import H_over_F2, length_and_moment, locate_row
 
 #: row of delta_star in the array of states
 DELTA_STAR = 0
@@ -26,11 +26,11 @@ def states(V, delta, kappa, mu, law, out):
     """
     for i in range(V.size):
         u = kappa * V[i]
-        found = speed(place(u, law), u, law)
+        found = length_and_moment(locate_row(u, law), u, law)
         edge = 0.5 * mu / kappa * found.L
         w = found.L * max(1.0 - abs(delta[i]) / edge, 1e-300)
         v = 2.0 * u / w
-        value, slope = press(place(v, law), v, law)
+        value, slope = H_over_F2(locate_row(v, law), v, law)
         out[DELTA_STAR, i], out[MOMENT, i] = edge, V[i] * found.scale * found.m
         out[TRACTION, i] = np.sign(delta[i]) * mu * (1.0 - w * w * value)
         out[STIFFNESS, i] = 4.0 * kappa * w * (value - 0.5 * v * slope)

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..compile.intrinsics import fma
 from ..compile.jit import kernel
-from ..numerics.four import LANES, fused, load, spread, store
-from ..numerics.nodes import Interpolation, radau
+from ..numerics.interpolation import Interpolation, radau
+from ..numerics.simd4 import LANES, broadcast, fma4, load, store
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
 N = 7
@@ -61,11 +61,11 @@ _OTHERS = 1.0 - _ONE
 @kernel(inline=True)
 def product(matrix, row, first, values, to, found):
     """Put the product of a matrix with the ``row`` of values, less ``first``, where ``to`` says."""
-    low = high = spread(0.0)
+    low = high = broadcast(0.0)
     for k in range(WIDE):
-        x = spread(values[row + k] - first)
-        low = fused(load(matrix, WIDE * k), x, low)
-        high = fused(load(matrix, WIDE * k + LANES), x, high)
+        x = broadcast(values[row + k] - first)
+        low = fma4(load(matrix, WIDE * k), x, low)
+        high = fma4(load(matrix, WIDE * k + LANES), x, high)
     store(found, to, low)
     store(found, to + LANES, high)
 
@@ -75,9 +75,9 @@ def weighted_slopes(weights, diagonal, nodes, matrix):
     """The matrix of the slopes, rows times ``weights``, less a ``diagonal``; row and column of node 0 are 0."""
     low, high = load(nodes, weights), load(nodes, weights + LANES)
     for k in range(1, WIDE):
-        at, less = WIDE * k, spread(-nodes[diagonal + k])
-        store(matrix, at, fused(less, load(_ONE, at), load(SLOPES, at) * low))
-        store(matrix, at + LANES, fused(less, load(_ONE, at + LANES), load(SLOPES, at + LANES) * high))
+        at, less = WIDE * k, broadcast(-nodes[diagonal + k])
+        store(matrix, at, fma4(less, load(_ONE, at), load(SLOPES, at) * low))
+        store(matrix, at + LANES, fma4(less, load(_ONE, at + LANES), load(SLOPES, at + LANES) * high))
 
 
 @kernel(inline=True)
@@ -88,15 +88,15 @@ def invert(matrix):
     """
     for i in range(1, WIDE):
         at = WIDE * i
-        pivot = spread(1.0 / matrix[at + i])
+        pivot = broadcast(1.0 / matrix[at + i])
         others, rest = load(_OTHERS, at), load(_OTHERS, at + LANES)
-        low = fused(load(_ONE, at), pivot, load(matrix, at) * others * pivot)
-        high = fused(load(_ONE, at + LANES), pivot, load(matrix, at + LANES) * rest * pivot)
+        low = fma4(load(_ONE, at), pivot, load(matrix, at) * others * pivot)
+        high = fma4(load(_ONE, at + LANES), pivot, load(matrix, at + LANES) * rest * pivot)
         for k in range(1, WIDE):
             if k != i:
-                less = spread(-matrix[WIDE * k + i])
-                store(matrix, WIDE * k, fused(less, low, load(matrix, WIDE * k) * others))
-                store(matrix, WIDE * k + LANES, fused(less, high, load(matrix, WIDE * k + LANES) * rest))
+                less = broadcast(-matrix[WIDE * k + i])
+                store(matrix, WIDE * k, fma4(less, low, load(matrix, WIDE * k) * others))
+                store(matrix, WIDE * k + LANES, fma4(less, high, load(matrix, WIDE * k + LANES) * rest))
         store(matrix, at, low)
         store(matrix, at + LANES, high)
 

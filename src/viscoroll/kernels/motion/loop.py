@@ -9,7 +9,7 @@ import numpy as np
 from ..compile.by_reference import data_pointer
 from ..compile.jit import kernel
 from ..numerics.arrays import copy, fill
-from ..rows.record import hold
+from ..rows.record import select_material
 from .collocation import WIDE
 from .integrate import integrate
 from .load import FIRST, RATE, SCALE, START, terms_of
@@ -66,7 +66,7 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
         for array in (nodes, matrix, second_matrix):
             fill(0.0, array)
         fill(1.0, nodes[ONES : ONES + WIDE])
-        hold(motions.law, i)
+        select_material(motions.law, i)
         kappa, mu = _own(motions.kappa, i), _own(motions.mu, i)
         gamma, j = _own(motions.gamma, i), _own(motions.j, i)
         for k in range(t.size):

@@ -18,8 +18,8 @@ import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.jit import kernel
-from ..rows.cover import of_cover
-from ..rows.law import creep_at_rest
+from ..rows.cover import is_cover
+from ..rows.evaluate import limits_at_rest
 from .load import brakes, constant, load_at, piece_end
 from .rates import inertia_at
 from .records import Frame, Load
@@ -42,9 +42,9 @@ def _pull(d, load, scene):
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.per_V * (Q + load.force) + load.V_rate
     omega_rate = load.per_omega * (load.torque - Q) + load.omega_rate
-    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, free = limits_at_rest(scene.kappa, by_value(scene.law))
     per = 2.0 * scene.kappa / scene.mu / L
-    tilt = d + free * per if of_cover(by_value(scene.law).free) else d
+    tilt = d + free * per if is_cover(by_value(scene.law).cover_rows) else d
     slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - tilt * load.per_V * Q_d
     return (omega_rate - V_rate) * per - tilt * V_rate, slope, V_rate
 
@@ -53,9 +53,9 @@ def _pull(d, load, scene):
 def _turning(scene):
     """d at which omega stays 0 as V grows from 0; in partial slip, above -1, only where mu > 2 kappa."""
     law = by_value(scene.law)
-    if law.free is None:
+    if law.cover_rows is None:
         return -2.0 * scene.kappa / scene.mu
-    L, free = creep_at_rest(scene.kappa, law)
+    L, free = limits_at_rest(scene.kappa, law)
     return -2.0 * scene.kappa / scene.mu / L * (1.0 + free)
 
 
@@ -124,7 +124,7 @@ def _crest(load, scene):
     float
         d there; -inf where the polynomial falls for all d.
     """
-    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, free = limits_at_rest(scene.kappa, by_value(scene.law))
     moved = (load.per_omega + load.per_V * (1.0 + free)) * 2.0 * scene.kappa / L
     first, second = -2.0 * moved - load.per_V * load.force - load.V_rate, -moved - 2.0 * scene.mu * load.per_V
     # the larger root of first + 2 second d - 3 mu per_V d^2, with second < 0
@@ -244,7 +244,7 @@ def depart(tau, piece, case):
 def _slide_off(when, piece, braked, band, case):
     """Full slip out of rest, of the sign that lasts: with omega - V beyond this share of V."""
     scene = case.scene
-    L, free_creep = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, free_creep = limits_at_rest(scene.kappa, by_value(scene.law))
     load = load_at(when, piece, Frame(True, 1.0, 1.0, 0.0, False), case)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.jit import kernel
-from ..rows.cover import of_cover
-from ..rows.law import creep_at_rest
+from ..rows.cover import is_cover
+from ..rows.evaluate import limits_at_rest
 from .collocation import WIDE, integral_at, integral_terms, rise_at
 from .load import load_at, needed, threshold
 from .nodes import (
@@ -168,7 +168,7 @@ def coast(state, frame, clock, case):
     """Outputs of the last decay, (1 + j + gamma N) V' = -rate V with delta/V constant: (status, clock)."""
     scene, direction = case.scene, frame.direction
     half_space, cylinder, force, torque = last_pulls(case)
-    L, free = creep_at_rest(scene.kappa, by_value(scene.law))
+    L, free = limits_at_rest(scene.kappa, by_value(scene.law))
     spin = 1.0 + free
     inertia = 1.0 + scene.j * spin + inertia_at(0.0, scene)[0]
     # V and omega fall together: Q = 4 kappa (delta - delta_0)/L takes what the moments differ by
@@ -180,7 +180,7 @@ def coast(state, frame, clock, case):
         end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)
     by_force, by_torque = force / rate, torque / rate
     energies = 0.0, 0.0, by_force, by_torque, 0.0, 0.0, 1.0 + scene.j + by_force + by_torque
-    if of_cover(by_value(scene.law).free):
+    if is_cover(by_value(scene.law).cover_rows):
         rolling, slipping = (half_space + cylinder * spin) / rate, free * pull / (inertia * rate)
         energies = 0.0, 0.0, by_force, by_torque * spin, 0.0, slipping, rolling
     for at in range(clock.at, case.tau.size):

@@ -32,9 +32,17 @@ import numpy as np
 from ..compile.by_reference import by_value
 from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
-from ..rows.added import added_mass
+from ..rows.added_mass import added_mass
 from ..rows.cover import free_kinematics
-from ..rows.law import bodies, creep_at_rest, place, press, press_secants, shift, speed
+from ..rows.evaluate import (
+    H_over_F2,
+    H_over_F2_secants,
+    body_moments,
+    free_creep_and_slopes,
+    length_and_moment,
+    limits_at_rest,
+    locate_row,
+)
 from .load import acting
 
 #: k over the least with which dp/dV may vanish at d = -1, from which on V is collocated
@@ -73,12 +81,12 @@ class Rates(NamedTuple):
 def moments_slopes(u, scene):
     """(L, L', L'', M/V of half-space and cylinder, d(u M/V)/du of these) at u = kappa |V|."""
     law = by_value(scene.law)
-    at = place(u, law)
-    found = speed(at, u, law)
-    m, rise = found.scale * found.m, found.rise
+    at = locate_row(u, law)
+    found = length_and_moment(at, u, law)
+    m, rise = found.scale * found.m, found.d_um
     if not scene.unlike:
         return found.L, found.dL, found.ddL, 0.5 * m, 0.5 * m, 0.5 * rise, 0.5 * rise
-    half_space, cylinder, half_space_rise, cylinder_rise = bodies(at, u, law)
+    half_space, cylinder, half_space_rise, cylinder_rise = body_moments(at, u, law)
     share = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or z in the fast limit
     return found.L, found.dL, found.ddL, share * half_space, share * cylinder, half_space_rise, cylinder_rise
 
@@ -88,7 +96,7 @@ def last_pulls(case):
     """(Moments of half-space and cylinder, force and torque by gains), over V = omega -> 0."""
     _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, case.scene)
     gains = case.drive.gains
-    free = creep_at_rest(case.scene.kappa, by_value(case.scene.law))[1]
+    free = limits_at_rest(case.scene.kappa, by_value(case.scene.law))[1]
     spin = 1.0 + free
     return half_space, cylinder, gains.force_V + gains.force_omega * spin, gains.torque_V + gains.torque_omega * spin
 
@@ -97,7 +105,7 @@ def last_pulls(case):
 def creep_limit(V, scene):
     """delta_star at V."""
     u, law = scene.kappa * abs(V), by_value(scene.law)
-    return 0.5 * scene.mu / scene.kappa * speed(place(u, law), u, law).L
+    return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
 
 
 @kernel(inline=True)
@@ -105,14 +113,18 @@ def creep_at(V, d, scene):
     """delta at V and d, |d| <= 1."""
     u, law = scene.kappa * abs(V), by_value(scene.law)
     delta = creep_limit(V, scene) * d
-    return delta if law.free is None else delta + 0.5 / scene.kappa * shift(u, law)[0]
+    return delta if law.cover_rows is None else delta + 0.5 / scene.kappa * free_creep_and_slopes(u, law)[0]
 
 
 @kernel(inline=True)
 def sliding(slip, V, scene):
     """The slip omega - V beyond that of free rolling."""
     law = by_value(scene.law)
-    return slip if law.free is None else slip - V * (0.5 / scene.kappa * shift(scene.kappa * abs(V), law)[0])
+    return (
+        slip
+        if law.cover_rows is None
+        else slip - V * (0.5 / scene.kappa * free_creep_and_slopes(scene.kappa * abs(V), law)[0])
+    )
 
 
 @kernel(inline=True)
@@ -164,17 +176,17 @@ def stick_rates(V, d, load, frame, scene):
     Q, Q_V, Q_d = sign * mu, 0.0, 0.0
     if w > 0.0:
         v = 2.0 * u / w
-        at = place(v, law)
-        value, slope = press(at, v, law)
+        at = locate_row(v, law)
+        value, slope = H_over_F2(at, v, law)
         A = value - 0.5 * v * slope
         Q *= 1.0 - w * w * value
         if unlikely(abs(d) < _SLIGHT):  # no digits cancel
             D = abs(d) * L
-            value, _, rise, _ = press_secants(at, place(2.0 * u / L, law), v, D / w, law)
+            value, _, rise, _ = H_over_F2_secants(at, locate_row(2.0 * u / L, law), v, D / w, law)
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * rise)
         Q_V, Q_d = -2.0 * sign * mu * w * (A * left * dL + slope) * turn, 2.0 * mu * w * L * A
     spread = L + u * dL
-    free = free_kinematics(place(u, law), u, scene.kappa, k, spread, law.free)
+    free = free_kinematics(locate_row(u, law), u, scene.kappa, k, spread, law.cover_rows)
     tilt = d + free.aside
     omega, omega_V, omega_d = V * (1.0 + k * L * d + free.creep), 1.0 + k * tilt * spread, k * V * L
     force, _, torque = acting(V, omega, load, frame)

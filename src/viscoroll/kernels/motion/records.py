@@ -21,7 +21,7 @@ DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, UNDECIDED, UNSTEADY = range(6)
 class Scene(NamedTuple):
     """What Eq. (22) asks of a scene.
 
-    law : its rows (:mod:`..rows.law`); gamma : scales time, and what N adds to the mass
+    law : its rows (:mod:`..rows.evaluate`); gamma : scales time, and what N adds to the mass
     unlike : whether half-space and cylinder do not take half of M each
     """
 

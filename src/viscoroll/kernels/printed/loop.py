@@ -1,20 +1,20 @@
-"""The contact law as printed, over arrays of states; rows and signs as in :mod:`..rows.states`."""
+"""The contact law as printed, over arrays of states; rows and signs as in :mod:`..rows.contact_states`."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..compile.jit import kernel
-from ..rows.states import element, put, slip_and_creep, state_of
+from ..rows.contact_states import element, read_state, slip_and_creepage, write_field
 from .law import OK, direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 
 @kernel
 def direct_state(alpha, n, asked):
     """What is asked for of state n; V = 0 is the limit of Sect. 3.4."""
-    state, to = state_of(asked.states, n), asked.to
+    state, to = read_state(asked.states, n), asked.to
     kappa, mu, speed = state.kappa, state.mu, abs(state.V)
-    slip, delta = slip_and_creep(state)
+    slip, delta = slip_and_creepage(state)
     status = stick_status = OK
     lam, zeta, epsilon, M = 1.0, np.inf, 0.0, 0.0
     if speed > 0.0:
@@ -28,15 +28,15 @@ def direct_state(alpha, n, asked):
     elif not full_slip:
         beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, alpha)
         Q = direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
-    put(to.lam, lam, n, asked)
-    put(to.zeta, zeta, n, asked)
-    put(to.epsilon, epsilon, n, asked)
-    put(to.delta_star, delta_star, n, asked)
-    put(to.delta, delta, n, asked)
-    put(to.full_slip, 1.0 if full_slip else 0.0, n, asked)
-    put(to.beta, beta, n, asked)
-    put(to.Q, np.sign(slip) * Q, n, asked)
-    put(to.M, M, n, asked)
+    write_field(to.lam, lam, n, asked)
+    write_field(to.zeta, zeta, n, asked)
+    write_field(to.epsilon, epsilon, n, asked)
+    write_field(to.delta_star, delta_star, n, asked)
+    write_field(to.delta, delta, n, asked)
+    write_field(to.full_slip, 1.0 if full_slip else 0.0, n, asked)
+    write_field(to.beta, beta, n, asked)
+    write_field(to.Q, np.sign(slip) * Q, n, asked)
+    write_field(to.M, M, n, asked)
     return max(status, stick_status)
 
 

@@ -11,29 +11,39 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from .contact_states import read_state, slip_and_creepage, write_field
 from .cover import keep_free, kept_free, sliding_creep, slope_over_speed
-from .law import bodies, lengths, place, press, press_secants, share, shift, speed, way_of
-from .record import hold
-from .states import put, slip_and_creep, state_of
+from .evaluate import (
+    H_over_F2,
+    H_over_F2_secants,
+    body_moments,
+    eta_over_F,
+    free_creep_and_slopes,
+    lam_and_epsilon,
+    length_and_moment,
+    locate_row,
+    moment_factor,
+)
+from .record import select_material
 
 #: share of L below which D is slight
-SLIGHT = 0.125
+SMALL_CREEP = 0.125
 
 
 @kernel(inline=True)
-def traction(u, L, D, law):
+def traction_over_mu(u, L, D, law):
     """|Q|/mu; in full slip D is infinite."""
     w = L - D
     if not w > 0.0:  # or delta_star is further than D by a rounding
         return 1.0
     v = 2.0 * u / w
-    at = place(v, law)
-    if D >= SLIGHT * L:
-        value, _ = press(at, v, law)
+    at = locate_row(v, law)
+    if D >= SMALL_CREEP * L:
+        value, _ = H_over_F2(at, v, law)
         part = 1.0 - w * w * value
         if not _cancels(part, D, L):
             return min(part, 1.0)
-    value, _, rise, _ = press_secants(at, place(2.0 * u / L, law), v, D / w, law)
+    value, _, rise, _ = H_over_F2_secants(at, locate_row(2.0 * u / L, law), v, D / w, law)
     return D * ((2.0 * L - D) * value - v * L * rise)
 
 
@@ -44,23 +54,23 @@ def _cancels(part, D, L):
 
 
 @kernel(inline=True)
-def grip(u, L, D, law):
+def friction_reserve(u, L, D, law):
     """1 - |Q|/mu, with all its digits where little is left."""
     w = L - D
     if not w > 0.0:
         return 0.0
     v = 2.0 * u / w
-    return min(w * w * press(place(v, law), v, law)[0], 1.0)
+    return min(w * w * H_over_F2(locate_row(v, law), v, law)[0], 1.0)
 
 
 @kernel(inline=True)
-def stick_share(u, lam, L, D, law):
+def stick_fraction(u, lam, L, D, law):
     """beta."""
     w = L - D
     if not w > 0.0:
         return 0.0
     v = 2.0 * u / w
-    return min(share(place(v, law), v, law) * w / lam, 1.0) if D > 0.0 else 1.0
+    return min(eta_over_F(locate_row(v, law), v, law) * w / lam, 1.0) if D > 0.0 else 1.0
 
 
 @kernel(inline=True)
@@ -70,12 +80,12 @@ def traction_slopes(u, L, dL, D, law):
     if not w > 0.0:
         return 0.0, 0.0
     v = 2.0 * u / w
-    at = place(v, law)
-    value, slope = press(at, v, law)
+    at = locate_row(v, law)
+    value, slope = H_over_F2(at, v, law)
     A = value - 0.5 * v * slope
-    if D < SLIGHT * L or _cancels(1.0 - w * w * value, D, L):
+    if D < SMALL_CREEP * L or _cancels(1.0 - w * w * value, D, L):
         x, v1 = D / w, 2.0 * u / L
-        _, _, rise, bend = press_secants(at, place(v1, law), v, x, law)
+        _, _, rise, bend = H_over_F2_secants(at, locate_row(v1, law), v, x, law)
         # with A = press - v press'/2, dL/du = -press'/A at v1, and the two terms below are neighbours
         step = v1 * x
         slope_1 = slope - bend * step
@@ -92,21 +102,21 @@ def _creep(L, free, state, law):
 
     ``free``: 2 kappa delta_0.
     """
-    slip, delta = slip_and_creep(state)
-    slip, delta = sliding_creep(slip, delta, free, state, law.free)
+    slip, delta = slip_and_creepage(state)
+    slip, delta = sliding_creep(slip, delta, free, state, law.cover_rows)
     full = abs(delta) >= 0.5 * state.mu / state.kappa * L
     return slip, delta, np.inf if full else 2.0 * state.kappa / state.mu * abs(delta)
 
 
 @kernel(inline=True)
-def traction_of(u, L, free, state, law):
+def signed_traction(u, L, free, state, law):
     """Q; ``free``: 2 kappa delta_0."""
     slip, _, D = _creep(L, free, state, law)
-    return np.copysign(state.mu * traction(u, L, D, law), slip)
+    return np.copysign(state.mu * traction_over_mu(u, L, D, law), slip)
 
 
 @kernel(inline=True)
-def slopes_of_Q(u, L, dL, free, state, law):
+def Q_slopes(u, L, dL, free, state, law):
     """Slopes of Q: over V at fixed delta or omega, whichever is given; over delta and over omega."""
     _, delta, D = _creep(L, free, state, law)
     if D == np.inf:
@@ -114,9 +124,9 @@ def slopes_of_Q(u, L, dL, free, state, law):
     over_u, over_D = traction_slopes(u, L, dL, D, law)
     over_delta = 2.0 * state.kappa * over_D
     over_V, over_omega = np.sign(delta) * state.mu * state.kappa * over_u, over_delta / abs(state.V)
-    over_V = slope_over_speed(over_V, over_delta, shift(u, law)[1], law.free)
+    over_V = slope_over_speed(over_V, over_delta, free_creep_and_slopes(u, law)[1], law.cover_rows)
     if state.creep_is_omega:
-        over_V -= over_omega * (1.0 + slip_and_creep(state)[1])
+        over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
 
 
@@ -124,7 +134,7 @@ def slopes_of_Q(u, L, dL, free, state, law):
 def _turn(k, asked):
     """(The state whose turn it is, its number, kappa |V|)."""
     n = asked.order[np.uint64(k)] if asked.order.size > 0 else k
-    state = state_of(asked.states, n)
+    state = read_state(asked.states, n)
     return state, n, state.kappa * abs(state.V)
 
 
@@ -138,51 +148,51 @@ def _of_Q(to):
 def _at_speed(k, at, room, law, asked):
     """What depends on the speed alone; L, lam and the slope of L into ``room``."""
     to, (state, n, u) = asked.to, _turn(k, asked)
-    here = place(u, law)
-    found = speed(here, u, law)
-    way = way_of(here, u, found.scale, state)
+    here = locate_row(u, law)
+    found = length_and_moment(here, u, law)
+    way = moment_factor(here, u, found.scale, state)
     room[0, at] = found.L
-    keep_free(room, at, here, u, law.free)
-    put(to.M, way * found.m, n, asked)
+    keep_free(room, at, here, u, law.cover_rows)
+    write_field(to.M, way * found.m, n, asked)
     if to.dM_dV >= 0 or _of_Q(to):  # read again: slopes at hand would be computed though not asked for
-        slopes = speed(here, u, law)
+        slopes = length_and_moment(here, u, law)
         room[2, at] = slopes.dL
-        put(to.dM_dV, slopes.rise, n, asked)
+        write_field(to.dM_dV, slopes.d_um, n, asked)
     if to.lam >= 0 or to.zeta >= 0 or to.epsilon >= 0 or to.beta >= 0:
-        lam, epsilon = lengths(here, u, law)
+        lam, epsilon = lam_and_epsilon(here, u, law)
         room[1, at] = lam
-        put(to.lam, lam, n, asked)
-        put(to.zeta, 0.5 * lam / u, n, asked)
-        put(to.epsilon, epsilon, n, asked)
+        write_field(to.lam, lam, n, asked)
+        write_field(to.zeta, 0.5 * lam / u, n, asked)
+        write_field(to.epsilon, epsilon, n, asked)
     if to.M_half_space >= 0 or to.M_cylinder >= 0 or to.dM_half_space_dV >= 0 or to.dM_cylinder_dV >= 0:
-        half_space, cylinder, half_space_rise, cylinder_rise = bodies(here, u, law)
-        put(to.M_half_space, way * half_space, n, asked)
-        put(to.M_cylinder, way * cylinder, n, asked)
-        put(to.dM_half_space_dV, half_space_rise, n, asked)
-        put(to.dM_cylinder_dV, cylinder_rise, n, asked)
+        half_space, cylinder, half_space_rise, cylinder_rise = body_moments(here, u, law)
+        write_field(to.M_half_space, way * half_space, n, asked)
+        write_field(to.M_cylinder, way * cylinder, n, asked)
+        write_field(to.dM_half_space_dV, half_space_rise, n, asked)
+        write_field(to.dM_cylinder_dV, cylinder_rise, n, asked)
 
 
 @kernel(inline=True)
 def _at_creep(k, at, room, law, asked):
     """What depends on the creep too."""
     to, (state, n, u) = asked.to, _turn(k, asked)
-    L, free = room[0, at], kept_free(room, at, law.free)
+    L, free = room[0, at], kept_free(room, at, law.cover_rows)
     _, _, D = _creep(L, free, state, law)
     if to.Q >= 0:
-        put(to.Q, traction_of(u, L, free, state, law), n, asked)
+        write_field(to.Q, signed_traction(u, L, free, state, law), n, asked)
     if to.beta >= 0:
-        put(to.beta, stick_share(u, room[1, at], L, D, law), n, asked)
+        write_field(to.beta, stick_fraction(u, room[1, at], L, D, law), n, asked)
     if to.grip >= 0:
-        put(to.grip, grip(u, L, D, law), n, asked)
-    put(to.delta_star, 0.5 * state.mu / state.kappa * L, n, asked)
-    put(to.delta, slip_and_creep(state)[1], n, asked)
-    put(to.delta_0, 0.5 * free / state.kappa, n, asked)
-    put(to.full_slip, 1.0 if D == np.inf else 0.0, n, asked)
+        write_field(to.grip, friction_reserve(u, L, D, law), n, asked)
+    write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, asked)
+    write_field(to.delta, slip_and_creepage(state)[1], n, asked)
+    write_field(to.delta_0, 0.5 * free / state.kappa, n, asked)
+    write_field(to.full_slip, 1.0 if D == np.inf else 0.0, n, asked)
     if _of_Q(to):
-        over_V, over_delta, over_omega = slopes_of_Q(u, L, room[2, at], free, state, law)
-        put(to.dQ_dV, over_V, n, asked)
-        put(to.dQ_ddelta, over_delta, n, asked)
-        put(to.dQ_domega, over_omega, n, asked)
+        over_V, over_delta, over_omega = Q_slopes(u, L, room[2, at], free, state, law)
+        write_field(to.dQ_dV, over_V, n, asked)
+        write_field(to.dQ_ddelta, over_delta, n, asked)
+        write_field(to.dQ_domega, over_omega, n, asked)
 
 
 @kernel
@@ -194,7 +204,7 @@ def contact_loop(law, asked, room, count):
     """
     for begin in range(0, count, room.shape[1]):
         end = min(begin + room.shape[1], count)
-        hold(law, _turn(begin, asked)[1])
+        select_material(law, _turn(begin, asked)[1])
         for k in range(begin, end):
             _at_speed(k, np.uint64(k - begin), room, law, asked)
         for k in range(begin, end):

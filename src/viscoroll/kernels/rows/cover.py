@@ -1,7 +1,8 @@
 """What the law of a cover of finite thickness has beside its rows: the creep of free rolling, and its own fast limit.
 
 ``free`` is None of half-spaces: then every function here returns what it was given or 0, and nothing of a cover is
-compiled.  Of a cover it holds numbers in front, then a row each of 2 kappa delta_0 over u = kappa |V| (:mod:`lanes`):
+compiled.  Of a cover it holds numbers in front, then a row each of 2 kappa delta_0 over u = kappa |V|
+(:mod:`simd_polynomial`):
 by itself, and twice as a pair, which has the second slope.
 """
 
@@ -12,13 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compile.jit import kernel
-from . import lanes
+from .simd_polynomial import TERMS, evaluate_one, evaluate_pair
 
 #: numbers in front: lam and 2 kappa delta_0 as u -> infinity, each with its factor of 1/u; epsilon u; M u^2/V times 2
 #: over L; eta/F as v -> infinity and its factor of 1/v
 _LAM, _LAM_SLOPE, _FREE, _FREE_SLOPE, _EPSILON, _MOMENT, _SHARE, _SHARE_SLOPE = range(8)
 #: how many these are, and how long a row is
-FRONT, ROW = 8, 3 * lanes.TERMS
+COVER_FRONT_SIZE, COVER_ROW_SIZE = 8, 3 * TERMS
 
 
 @kernel(inline=True)
@@ -46,15 +47,15 @@ def fast_share(share, v, free):
 
 
 @kernel(inline=True)
-def free_creep(at, u, free):
+def free_creep_at(at, u, free):
     """(2 kappa delta_0 at u, its slope over u, and the slope of that)."""
     if free is None:
         return 0.0, 0.0, 0.0
     if at.row < 0:
         fall = free[_FREE_SLOPE] / u
         return free[_FREE] + fall, -fall / u, 2.0 * fall / (u * u)
-    value, _, slope, _, bend, _ = lanes.pair(free, FRONT + ROW * at.row + lanes.TERMS, at.t)
-    return value, slope * at.per, bend * at.per * at.per
+    value, _, slope, _, bend, _ = evaluate_pair(free, COVER_FRONT_SIZE + COVER_ROW_SIZE * at.row + TERMS, at.t)
+    return value, slope * at.dt_dx, bend * at.dt_dx * at.dt_dx
 
 
 @kernel(inline=True)
@@ -79,13 +80,13 @@ def slope_over_speed(over_V, over_delta, rise, free):
 
 
 @kernel(inline=True)
-def free_value(at, u, free):
+def free_creep_value(at, u, free):
     """2 kappa delta_0 at u; 0 of half-spaces."""
     if free is None:
         return 0.0
     if at.row < 0:
         return free[_FREE] + free[_FREE_SLOPE] / u
-    return lanes.one(free, FRONT + ROW * at.row, at.t)[0]
+    return evaluate_one(free, COVER_FRONT_SIZE + COVER_ROW_SIZE * at.row, at.t)[0]
 
 
 class FreeCreep(NamedTuple):
@@ -106,13 +107,13 @@ def free_kinematics(at, u, kappa, k, spread, free):
     """:class:`FreeCreep` at u; ``spread``: d(u L)/du.  Of half-spaces -0.0, which a compiler leaves out of sums."""
     if free is None:
         return FreeCreep(-0.0, -0.0, -0.0)
-    value, slope, bend = free_creep(at, u, free)
+    value, slope, bend = free_creep_at(at, u, free)
     per = 0.5 / kappa
     return FreeCreep(per * value, per * (value + u * slope) / (k * spread), per * (2.0 * slope + u * bend) / k)
 
 
 @kernel(inline=True)
-def of_cover(free):
+def is_cover(free):
     """Whether the law is that of a cover."""
     return free is not None
 
@@ -121,7 +122,7 @@ def of_cover(free):
 def keep_free(room, at, place, u, free):
     """Put 2 kappa delta_0 at u where ``room`` has its place."""
     if free is not None:
-        room[3, at] = free_value(place, u, free)
+        room[3, at] = free_creep_value(place, u, free)
 
 
 @kernel(inline=True)

@@ -17,9 +17,9 @@ import numpy as np
 
 from ..bessel.ratios import asymptotic_series, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 from ..compile.jit import kernel
-from ..numerics.four import LANES, four, parts, store
-from .series import FUNCTIONS, inverse, values
-from .states import element
+from ..numerics.simd4 import LANES, pack, store, unpack
+from .contact_states import element
+from .series import FUNCTIONS, evaluate_functions, reciprocal
 
 #: from here on r and k by their asymptotic series, whose slopes keep their digits
 _FAR = 64.0
@@ -43,7 +43,7 @@ def _far(terms, x):
 def _jet(rate, z, function):
     """Jet of a function of x = (rate - s) z from its value and derivatives over x."""
     value, slope, bend = function
-    return four(value, rate * slope, -z * slope, -slope - rate * z * bend)
+    return pack(value, rate * slope, -z * slope, -slope - rate * z * bend)
 
 
 @kernel
@@ -70,7 +70,7 @@ def _ratios(z, series, work):
         ddk = 2.0 * k * dk + (dk - k / x) / x
         if x >= _FAR:
             k, dk, ddk = _far(_SERIES_K, x)
-        store(work.per_r, LANES * i, inverse(True, _jet(a, z, (r, dr, ddr))))
+        store(work.per_r, LANES * i, reciprocal(True, _jet(a, z, (r, dr, ddr))))
         store(work.i2, LANES * i, _jet(a, z, (i2, di2, ddi2)))
         store(work.k, LANES * i, _jet(b, z, (k, dk, ddk)))
 
@@ -86,7 +86,7 @@ def _unsteady(z, series, of_g, of_h, of_y):
         return -relaxed
     if z * series.a[series.a.size - 1] < _FAST:
         return 0.25 * strength * z * z
-    (g, dg, g_s, dg_s), (h, dh, h_s, dh_s), (y, dy, y_s, dy_s) = parts(of_g), parts(of_h), parts(of_y)
+    (g, dg, g_s, dg_s), (h, dh, h_s, dh_s), (y, dy, y_s, dy_s) = unpack(of_g), unpack(of_h), unpack(of_y)
     H, dH, H_s, dH_s = z * (z + 2.0 * h), 2.0 * (z + h + z * dh), 2.0 * z * h_s, 2.0 * (h_s + z * dh_s)
     y_s, dy_s = y_s + T_mean * g, dy_s + T_mean * dg
     W = H * g - 2.0 * z * (h - z * dh) * g - z * H * dg + z * z * (y - z * dy)
@@ -97,7 +97,7 @@ def _unsteady(z, series, of_g, of_h, of_y):
 
 
 @kernel(inline=True)
-def set_alpha(n, alpha, series):
+def set_alpha_of_state(n, alpha, series):
     """Make a series of one mode that of state n; ``alpha``: none, or one, or one each."""
     if alpha.size > 0:
         own = element(alpha, n)
@@ -112,9 +112,9 @@ def modes_loop(series, alpha, work, z, out):
     ``alpha``: none, or one each, of which ``series`` is then the one mode.
     """
     for n in range(z.size):
-        set_alpha(n, alpha, series)
+        set_alpha_of_state(n, alpha, series)
         _ratios(z[n], series, work)
-        g, h, y = values(True, four(z[n], 1.0, 0.0, 0.0), series, work)
+        g, h, y = evaluate_functions(True, pack(z[n], 1.0, 0.0, 0.0), series, work)
         for row in range(FUNCTIONS):
             out[row, n], out[FUNCTIONS + row, n] = work.found[LANES * row], -z[n] * work.found[LANES * row + 1]
         out[2 * FUNCTIONS, n] = _unsteady(z[n], series, g, h, y)

@@ -1,7 +1,7 @@
 """The record of a law that every reader takes, and where its numbers stand.
 
 Rows of one material all stand there; of one of many materials a part of a row is made where it is met.  Readers do not
-know which (:mod:`law`).
+know which (:mod:`evaluate`).
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ import numpy as np
 
 from ..compile.intrinsics import call_address, unlikely
 from ..compile.jit import kernel
-from .lanes import TERMS
+from .simd_polynomial import TERMS
 
 #: where the functions of a row begin: pairs over u = kappa |V|, then what is over v = 1/F(eta), and how long a row is
-SPEED, LENGTHS, BODIES, PRESS, SHARE, WIDTH = 0, 48, 96, 144, 168, 192
+LENGTH_MOMENT, LAM_EPSILON, BODY_MOMENTS, H_OVER_F2, ETA_OVER_F, ROW_SIZE = 0, 48, 96, 144, 168, 192
 #: parts of a row, each with a mark of its own
-PART = TERMS
-PARTS = WIDTH // PART
+PART_SIZE = TERMS
+PARTS_PER_ROW = ROW_SIZE // PART_SIZE
 #: numbers in front of the rows: instantaneous over long-time modulus and its root's inverse; of the fast limit
 #: W = sum J_j/T_j and then C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all and of either body; what the maker keeps
-ALPHA, LOW, WHOLE, HALF_SPACE, CYLINDER, OWN = 0, 1, 2, 4, 6, 8
+ALPHA, LAM_FAST, FAST_TOTAL, FAST_HALF_SPACE, FAST_CYLINDER, MAKER_NUMBERS = 0, 1, 2, 4, 6, 8
 #: marks in front: that of the material that is held, how many rows it has, the exponent of the first; then the maker's
-STAMP, COUNT, E0, OWN_MARKS = range(4)
+VERSION, ROW_COUNT, E0, MAKER_MARKS = range(4)
 
 
 class Law(NamedTuple):
@@ -41,24 +41,24 @@ class Law(NamedTuple):
 
     rows: Any
     marks: Any
-    added: Any
-    hold: int
-    make: int
+    N_rows: Any
+    selector: int
+    maker: int
     source: int
-    free: Any = None
+    cover_rows: Any = None
 
 
 @kernel(inline=True)
-def hold(law, n):
+def select_material(law, n):
     """Have the law be that of state or motion n: nothing where all have one, or n the one that is held."""
-    if law.hold != 0:
-        call_address(law.hold, n, law.source)
+    if law.selector != 0:
+        call_address(law.selector, n, law.source)
 
 
 @kernel(inline=True)
-def ready(part, row, law):
+def ensure_part(part, row, law):
     """Where a part of a row begins, made if it was not."""
-    start = (row + 1) * WIDTH + part
-    if unlikely(law.marks[np.uint64((row + 1) * PARTS + part // PART)] != law.marks[STAMP]):
-        call_address(law.make, start, law.source)
+    start = (row + 1) * ROW_SIZE + part
+    if unlikely(law.marks[np.uint64((row + 1) * PARTS_PER_ROW + part // PART_SIZE)] != law.marks[VERSION]):
+        call_address(law.maker, start, law.source)
     return start

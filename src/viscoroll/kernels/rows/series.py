@@ -26,10 +26,10 @@ import numpy as np
 
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r
 from ..compile.jit import kernel
-from ..numerics.four import LANES, four, fused, load, parts, spread, store
+from ..numerics.simd4 import LANES, broadcast, fma4, load, pack, store, unpack
 
 #: functions of z that rows are made of: g/z, h/z, m of the half-space and of the cylinder
-SHIFT, RISE, HALF_SPACE, CYLINDER = range(4)
+G_OVER_Z, H_OVER_Z, M_HALF_SPACE, M_CYLINDER = range(4)
 FUNCTIONS = 4
 
 
@@ -47,7 +47,7 @@ class Series(NamedTuple):
     Q: Any
 
 
-class Room(NamedTuple):
+class Workspace(NamedTuple):
     """What an evaluation keeps, four numbers each, of every mode: 1/r, k, i2, y and then X, k f; a right side.
 
     matrix : 1/r + Q^T k Q.  found : four numbers a function.
@@ -63,43 +63,43 @@ class Room(NamedTuple):
     found: Any
 
 
-_VECTORS = len(Room._fields) - 2
+_VECTORS = len(Workspace._fields) - 2
 _FOUND = LANES * FUNCTIONS
 
 
-def packed_size(modes: int) -> int:
+def series_size(modes: int) -> int:
     """How many numbers a series has, packed: its vectors, then Q."""
     return modes * (len(Series._fields) - 1 + modes)
 
 
-def room_size(modes: int) -> int:
+def workspace_size(modes: int) -> int:
     """How many numbers its room has, likewise."""
     return LANES * modes * (_VECTORS + modes) + _FOUND
 
 
 @kernel(inline=True)
-def unpacked(numbers, n, unlike):
+def unpack_series(numbers, n, unlike):
     """A series of n modes."""
     row = numbers[: (5 + n) * n].reshape(5 + n, n)
     return Series(row[0], row[1], row[2], row[3], row[4, : n if unlike else 0], row[5:])
 
 
 @kernel(inline=True)
-def room_in(work, modes):
+def split_workspace(work, modes):
     """Room for the evaluations of one."""
     n = LANES * modes
     end = (_VECTORS + modes) * n
     row, matrix = work[: _VECTORS * n].reshape(_VECTORS, n), work[_VECTORS * n : end]
-    return Room(row[0], row[1], row[2], row[3], row[4], row[5], matrix, work[end:])
+    return Workspace(row[0], row[1], row[2], row[3], row[4], row[5], matrix, work[end:])
 
 
-def room_of(modes: int) -> Room:
+def new_workspace(modes: int) -> Workspace:
     """Room for the evaluations of a series of so many modes."""
-    return room_in.py_func(np.empty(room_size(modes)), modes)
+    return split_workspace.py_func(np.empty(workspace_size(modes)), modes)
 
 
 @kernel(inline=True)
-def ratios(places, series, work):
+def evaluate_ratios(places, series, work):
     """The ratios of every mode at four places."""
     for at in range(LANES * series.a.size):
         i, z = at // LANES, places[at % LANES]
@@ -112,36 +112,36 @@ def ratios(places, series, work):
 
 
 @kernel(inline=True)
-def times(jets, p, q):
+def multiply(jets, p, q):
     """The product."""
     if not jets:
         return p * q
-    p0, p1, p2, p3 = parts(p)
-    q0, q1, q2, q3 = parts(q)
-    return four(p0 * q0, p1 * q0 + p0 * q1, p2 * q0 + p0 * q2, p3 * q0 + p1 * q2 + p2 * q1 + p0 * q3)
+    p0, p1, p2, p3 = unpack(p)
+    q0, q1, q2, q3 = unpack(q)
+    return pack(p0 * q0, p1 * q0 + p0 * q1, p2 * q0 + p0 * q2, p3 * q0 + p1 * q2 + p2 * q1 + p0 * q3)
 
 
 @kernel(inline=True)
-def inverse(jets, p):
+def reciprocal(jets, p):
     """1/p."""
     per = 1.0 / p
     if not jets:
         return per
-    w, _, _, _ = parts(per)
-    _, dz, ds, dzds = parts(p)
-    return four(w, -w * w * dz, -w * w * ds, w * w * (2.0 * w * dz * ds - dzds))
+    w, _, _, _ = unpack(per)
+    _, dz, ds, dzds = unpack(p)
+    return pack(w, -w * w * dz, -w * w * ds, w * w * (2.0 * w * dz * ds - dzds))
 
 
 @kernel(inline=True)
 def _strength(jets, strength, rate):
     """e_i or t_j."""
-    return four(strength, 0.0, strength / rate, 0.0) if jets else spread(strength)
+    return pack(strength, 0.0, strength / rate, 0.0) if jets else broadcast(strength)
 
 
 @kernel(inline=True)
 def _value(jets, p):
     """Of a jet, its value four times."""
-    return spread(parts(p)[0]) if jets else p
+    return broadcast(unpack(p)[0]) if jets else p
 
 
 @kernel(inline=True)
@@ -155,7 +155,7 @@ def _factorize(matrix, count):
             share = load(matrix, row * count + i) * (0.0 - per)
             for column in range(i + LANES, row + LANES, LANES):
                 at = row * count + column
-                store(matrix, at, fused(share, load(matrix, column * count + i), load(matrix, at)))
+                store(matrix, at, fma4(share, load(matrix, column * count + i), load(matrix, at)))
 
 
 @kernel(inline=True)
@@ -174,7 +174,7 @@ def _substitute(matrix, right, count):
 
 
 @kernel(inline=True)
-def solve(jets, series, work):
+def solve_modes(jets, series, work):
     """y and k f, from the ratios.
 
     A jet takes the factors of the matrix's value for those of all of it, which leaves an error with d/dz or d/ds as a
@@ -186,45 +186,45 @@ def solve(jets, series, work):
             store(work.kf, LANES * j, series.Q[j, i] * load(work.k, LANES * j))
         for n in range(0, i + 1, 2):  # two sums that do not wait for one another
             other, at = min(n + 1, i), LANES * i * count
-            one = two = spread(0.0)
+            one = two = broadcast(0.0)
             for j in range(count):
                 x = load(work.kf, LANES * j)
-                one, two = fused(spread(series.Q[j, n]), x, one), fused(spread(series.Q[j, other]), x, two)
+                one, two = fma4(broadcast(series.Q[j, n]), x, one), fma4(broadcast(series.Q[j, other]), x, two)
             store(matrix, at + LANES * n, _value(jets, one))
             store(matrix, at + LANES * other, _value(jets, two))
         at = LANES * i * (count + 1)
         store(matrix, at, load(matrix, at) + _value(jets, load(work.per_r, LANES * i)))
         store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]))
-        store(work.y, LANES * i, spread(0.0))
+        store(work.y, LANES * i, broadcast(0.0))
     _factorize(matrix, count)
     for turn in range(3 if jets else 1):
         if turn > 0:
             for i in range(count):
-                total = times(jets, load(work.per_r, LANES * i), load(work.y, LANES * i))
+                total = multiply(jets, load(work.per_r, LANES * i), load(work.y, LANES * i))
                 for j in range(count):
-                    total = fused(spread(series.Q[j, i]), load(work.kf, LANES * j), total)
+                    total = fma4(broadcast(series.Q[j, i]), load(work.kf, LANES * j), total)
                 store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]) - total)
         _substitute(matrix, work.right, count)
         for at in range(0, LANES * count, LANES):
             store(work.y, at, load(work.y, at) + load(work.right, at))
         for j in range(count):
-            f = spread(0.0)
+            f = broadcast(0.0)
             for i in range(count):
-                f = fused(spread(series.Q[j, i]), load(work.y, LANES * i), f)
-            store(work.kf, LANES * j, times(jets, load(work.k, LANES * j), f))
+                f = fma4(broadcast(series.Q[j, i]), load(work.y, LANES * i), f)
+            store(work.kf, LANES * j, multiply(jets, load(work.k, LANES * j), f))
 
 
 @kernel
 def _shares(jets, lam2, series, work):
     """(Of the half-space, of the cylinder): their creep modes' parts of m; no slopes over s."""
-    count, half_space, cylinder = series.a.size, spread(0.0), spread(0.0)
+    count, half_space, cylinder = series.a.size, broadcast(0.0), broadcast(0.0)
     for i in range(count):
         own, a = load(work.i2, LANES * i), series.a[i]
         u = load(work.i2, LANES * i)
         for n in range(count):
             weight = a * series.a[n] / (a + series.a[n])
-            u += weight * times(jets, load(work.y, LANES * n), own - load(work.i2, LANES * n))
-        pressed = times(jets, times(jets, load(work.y, LANES * i), u), lam2)
+            u += weight * multiply(jets, load(work.y, LANES * n), own - load(work.i2, LANES * n))
+        pressed = multiply(jets, multiply(jets, load(work.y, LANES * i), u), lam2)
         store(work.right, LANES * i, (1.0 / series.e[i]) * pressed)
     for j in range(count):
         share = load(work.kf, LANES * j)
@@ -236,32 +236,32 @@ def _shares(jets, lam2, series, work):
 
 
 @kernel(inline=True)
-def values(jets, z, series, work):
+def evaluate_functions(jets, z, series, work):
     """(g, h, sum X_i i2_i) at z > 0, from the ratios there; ``found``.
 
     What the two bodies together differ from m by, roundings of alpha times the size of one, they take in proportion.
     """
-    solve(jets, series, work)
-    one = four(1.0, 0.0, 0.0, 0.0) if jets else spread(1.0)
-    g, h, pressed = spread(0.0), spread(0.0), spread(0.0)
+    solve_modes(jets, series, work)
+    one = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)
+    g, h, pressed = broadcast(0.0), broadcast(0.0), broadcast(0.0)
     for i in range(series.a.size):
         at = LANES * i
         e, t = _strength(jets, series.e[i], series.a[i]), _strength(jets, series.t[i], series.b[i])
-        ey = times(jets, e, load(work.y, at))
-        X = times(jets, ey, load(work.per_r, at))
+        ey = multiply(jets, e, load(work.y, at))
+        X = multiply(jets, ey, load(work.per_r, at))
         store(work.y, at, X)
-        h, g, pressed = h + ey, g + times(jets, t, load(work.kf, at)), pressed + times(jets, X, load(work.i2, at))
-    per_z = inverse(jets, z)
-    rise = times(jets, h, per_z)
-    lam2 = inverse(jets, one + 2.0 * rise)
-    m = g + times(jets, lam2, pressed)
+        h, g, pressed = h + ey, g + multiply(jets, t, load(work.kf, at)), pressed + multiply(jets, X, load(work.i2, at))
+    per_z = reciprocal(jets, z)
+    rise = multiply(jets, h, per_z)
+    lam2 = reciprocal(jets, one + 2.0 * rise)
+    m = g + multiply(jets, lam2, pressed)
     half_space = cylinder = 0.5 * m
     if series.weights.size > 0:
         half_space, cylinder = _shares(jets, lam2, series, work)
-        whole = times(jets, m, inverse(jets, half_space + cylinder))
-        half_space, cylinder = times(jets, half_space, whole), times(jets, cylinder, whole)
-    store(work.found, LANES * SHIFT, times(jets, g, per_z))
-    store(work.found, LANES * RISE, rise)
-    store(work.found, LANES * HALF_SPACE, half_space)
-    store(work.found, LANES * CYLINDER, cylinder)
+        whole = multiply(jets, m, reciprocal(jets, half_space + cylinder))
+        half_space, cylinder = multiply(jets, half_space, whole), multiply(jets, cylinder, whole)
+    store(work.found, LANES * G_OVER_Z, multiply(jets, g, per_z))
+    store(work.found, LANES * H_OVER_Z, rise)
+    store(work.found, LANES * M_HALF_SPACE, half_space)
+    store(work.found, LANES * M_CYLINDER, cylinder)
     return g, h, pressed

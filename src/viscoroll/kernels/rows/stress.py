@@ -26,11 +26,11 @@ import numpy as np
 
 from ..bessel.ratios import ratio_r
 from ..compile.jit import kernel
-from ..numerics.four import LANES, spread
-from ..numerics.nodes import gauss
-from .modes import set_alpha
-from .series import ratios, room_of, values
-from .states import element
+from ..numerics.interpolation import gauss
+from ..numerics.simd4 import LANES, broadcast
+from .contact_states import element
+from .modes import set_alpha_of_state
+from .series import evaluate_functions, evaluate_ratios, new_workspace
 
 _NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
@@ -66,7 +66,7 @@ def _memory(u, w, a, r_complement):
     return sign * span * total
 
 
-class Memories(NamedTuple):
+class MemoryWeights(NamedTuple):
     """Of a series at z, those of its modes: the weight a X and 1 - r of each; z; room."""
 
     weight: Any
@@ -75,10 +75,10 @@ class Memories(NamedTuple):
     room: Any
 
 
-def memories(series: Any) -> Memories:
+def new_memory_weights(series: Any) -> MemoryWeights:
     """Those of no z yet."""
     n = series.a.size
-    return Memories(np.empty(n), np.empty(n), np.full(1, np.nan), room_of(n))
+    return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))
 
 
 @kernel
@@ -87,8 +87,8 @@ def _remember(z, series, known):
     if known.z[0] == z:
         return
     known.z[0] = z
-    ratios((z, z, z, z), series, known.room)
-    values(False, spread(z), series, known.room)
+    evaluate_ratios((z, z, z, z), series, known.room)
+    evaluate_functions(False, broadcast(z), series, known.room)
     for i in range(series.a.size):
         known.weight[i] = series.a[i] * known.room.y[LANES * i]
         _, known.complement[i] = ratio_r(series.a[i] * z)
@@ -153,5 +153,5 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:
             whole.z[0] = stick.z[0] = np.nan
-        set_alpha(i, alpha, series)
+        set_alpha_of_state(i, alpha, series)
         p[i], tau[i] = _stress(i, points, series, whole, stick)

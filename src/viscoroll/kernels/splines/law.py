@@ -1,4 +1,4 @@
-"""The law of a grid at one alpha as a C function, like :mod:`..rows.bound`: splines in ln |V| and delta.
+"""The law of a grid at one alpha as a C function, like :mod:`..rows.c_function`: splines in ln |V| and delta.
 
 ``int law(double V, double omega, double out[8], void *grid)``; ``grid`` is its user data, a :data:`GRID`.
 Below the slowest speed of the grid Q is that of the slowest at the same creep, and M is in proportion to V.  Beyond
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ..compile.intrinsics import floats_at, function_address, record_at
 from ..compile.jit import kernel
-from ..rows import jitted
-from ..rows.bound import OUT
+from ..rows import jitted_law
+from ..rows.c_function import RESULTS
 from .spline import HIGH, evaluate
 
 #: Fields of the law, each a spline.
@@ -32,7 +32,7 @@ GRID = np.dtype(
 
 @kernel(allocates=True)
 def _loads(speed_of_axis, spin, to, grids):
-    out, grid = carray(to, OUT), record_at(grids)
+    out, grid = carray(to, RESULTS), record_at(grids)
     Q = floats_at(grid.Q, grid.Q_size)
     turn, slip = (1.0 if speed_of_axis >= 0.0 else -1.0), spin * grid.R - speed_of_axis
     speed = abs(speed_of_axis)
@@ -42,7 +42,7 @@ def _loads(speed_of_axis, spin, to, grids):
     other = evaluate(floats_at(grid.M_cylinder, grid.M_cylinder_size), V, 0.0, 0.0)
     beyond = not grid.low <= delta <= grid.high
     if not (abs(slip) < np.inf and speed < np.inf and half.value == half.value) or (beyond and not grid.slips):
-        for n in range(OUT):
+        for n in range(RESULTS):
             out[n] = np.nan
         return 1
     slow, part = speed < grid.slowest, speed / V
@@ -58,7 +58,7 @@ def _loads(speed_of_axis, spin, to, grids):
     return 0
 
 
-class JittedGrid(jitted.Jitted):
+class JittedGrid(jitted_law.Jitted):
     """The law of a grid for jitted code: a :class:`Jitted` with the function and the user data of this module.
 
     splines : those of the :data:`FIELDS`, which it keeps.
@@ -74,4 +74,4 @@ class JittedGrid(jitted.Jitted):
             self._scenes[name] = number
         self._scenes["slopes"] = 0, 1
         self.plain, self.address = (int(self._scenes[n:].ctypes.data) for n in (0, 1))
-        self.function = ctypes.PYFUNCTYPE(*jitted._C[:3], ctypes.c_void_p, ctypes.c_void_p)(self.function_address)
+        self.function = ctypes.PYFUNCTYPE(*jitted_law._C[:3], ctypes.c_void_p, ctypes.c_void_p)(self.function_address)

@@ -108,6 +108,6 @@ def alpha_terms(values: Floats) -> Floats:
 @lru_cache(maxsize=1)
 def _nodes() -> tuple[Floats, Floats]:
     """Nodes of an octave in [-1, 1], and the matrix from values there to terms."""
-    from ...kernels.numerics.nodes import chebyshev, rounded, to_chebyshev
+    from ...kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
 
-    return rounded(chebyshev(TERMS_OF_ALPHA)), to_chebyshev(TERMS_OF_ALPHA)
+    return to_doubles(chebyshev(TERMS_OF_ALPHA)), to_chebyshev(TERMS_OF_ALPHA)

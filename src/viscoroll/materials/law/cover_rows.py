@@ -16,7 +16,7 @@ import numpy as np
 
 from ...core.errors import ParameterError
 from ...core.typed import Floats
-from ...kernels.numerics.nodes import chebyshev, rounded
+from ...kernels.numerics.interpolation import chebyshev, to_doubles
 from ..cover import Cover
 from .cover_solve import MOST_THETA, CoverModes, CoverState, local_strain, modes_of, solve
 from .fit import FUNCTIONS, TERMS, Rows, row_range
@@ -244,7 +244,7 @@ def _interpolation() -> tuple[Floats, Floats]:
     count = PER_OCTAVE + 2 * _ASIDE + 1
     nodes = (np.arange(count) - _ASIDE) / PER_OCTAVE
     weights = np.array([(-1.0) ** k * math.comb(count - 1, k) for k in range(count)])
-    places = np.log2(0.5 * (rounded(chebyshev(TERMS)) + 3.0))
+    places = np.log2(0.5 * (to_doubles(chebyshev(TERMS)) + 3.0))
     per = 1.0 / (places - nodes[:, None])
     terms = weights[:, None] * per
     basis = terms / terms.sum(axis=0)

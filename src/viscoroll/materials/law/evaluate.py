@@ -59,11 +59,11 @@ class ModesValues(NamedTuple):
 def evaluate_by_modes(given: Any, z: Floats) -> ModesValues:
     """By no table, at every z = zeta > 0; ``given``: a series, a pair, or alphas, one or one each."""
     from ...kernels.rows.modes import modes_loop
-    from ...kernels.rows.series import FUNCTIONS, room_of
+    from ...kernels.rows.series import FUNCTIONS, new_workspace
 
     series, alpha = series_record(given)
     found, z = np.zeros((2 * FUNCTIONS + 1, z.size)), z.view()
     z.flags.writeable = False  # as all that a kernel reads, see ``blocks.elements``
     if series.a.size:
-        modes_loop(series, alpha, room_of(series.a.size), z, found)
+        modes_loop(series, alpha, new_workspace(series.a.size), z, found)
     return ModesValues(found[:FUNCTIONS], found[FUNCTIONS:-1], found[-1])

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from ...core.typed import Floats
-from ...kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
+from ...kernels.numerics.interpolation import chebyshev, powers_of_chebyshev, to_chebyshev, to_doubles
 from .evaluate import ModesValues
 
 TERMS = 24
@@ -33,7 +33,7 @@ _STEPS = 2
 #: octaves from that of the slowest rate of creep down to the first row
 _SLOW = 5
 
-_NODES = rounded(chebyshev(TERMS))
+_NODES = to_doubles(chebyshev(TERMS))
 _TO_CHEBYSHEV = np.ascontiguousarray(to_chebyshev(TERMS).T)
 
 
@@ -162,10 +162,10 @@ def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
 
     So far behind the shortest time the fast limit is good to rounding.
     """
-    from ...kernels.rows.grid import FAST
+    from ...kernels.rows.z_grid import FAST_LIMIT_OCTAVES
 
     e0 = np.frexp(slowest)[1] - _SLOW
-    return e0, np.frexp(fastest)[1] + FAST - e0 + 1
+    return e0, np.frexp(fastest)[1] + FAST_LIMIT_OCTAVES - e0 + 1
 
 
 def fit_rows(evaluate: Callable[[Floats], ModesValues], rows: Rows, alpha: float, means: Floats) -> Floats:
@@ -219,8 +219,8 @@ def pack_unsteady(N: Floats, e0: int, alpha: float) -> Floats:
 
 
 def pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, given: Floats | None = None) -> Floats:
-    """The rows that kernels read (:mod:`...kernels.rows.law`): functions side by side, and L = lam (1 + epsilon), or
-    the rows ``given`` of L = 2 kappa delta_star/mu.
+    """The rows that kernels read (:mod:`...kernels.rows.evaluate`): functions side by side, and L = lam (1 + epsilon),
+    or the rows ``given`` of L = 2 kappa delta_star/mu.
 
     ``fast``: W and C of the fast limit.  L^2 press(2 u/L) = 1, which Q loses digits by, holds to rounding.
     """

@@ -21,8 +21,8 @@ from .fit import row_range
 from .table import make_table
 
 _lock = threading.Lock()
-#: the axis: what was met of each octave of alpha in this process (:mod:`...kernels.rows.axis`), never dropped again,
-#: and its address and how many rows it has, 0: not met
+#: the axis: what was met of each octave of alpha in this process (:mod:`...kernels.rows.alpha_axis`), never dropped
+#: again, and its address and how many rows it has, 0: not met
 _octaves: dict[int, Floats] = {}
 _known = np.zeros((OCTAVES, 2), np.int64)
 
@@ -32,7 +32,7 @@ def record_of_alphas(alpha: Floats) -> Any:
 
     It holds the law of one of them at a time (:func:`...kernels.rows.record.hold`).
     """
-    from ...kernels.rows.axis import E0_OF_ALPHA, SOURCE, hold, make
+    from ...kernels.rows.alpha_axis import ALPHA_E0, SOURCE, make_part, select_alpha
     from ...kernels.rows.record import E0
 
     alpha = np.ascontiguousarray(alpha, dtype=np.float64)
@@ -43,8 +43,10 @@ def record_of_alphas(alpha: Floats) -> Any:
                 _octaves[octave], count = _octave(octave)
                 _known[octave] = _octaves[octave].ctypes.data, count
     rows, marks = _room(int(_known[met, 1].max()))
-    marks[E0] = E0_OF_ALPHA
-    return _record(hold, make, SOURCE, rows=rows, marks=marks, alpha=alpha, count=alpha.size, octaves=_known)
+    marks[E0] = ALPHA_E0
+    return _record(
+        select_alpha, make_part, SOURCE, rows=rows, marks=marks, alpha=alpha, state_count=alpha.size, octaves=_known
+    )
 
 
 def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
@@ -58,17 +60,17 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
 
 def _room(count: int) -> tuple[Floats, Integers]:
     """Of so many rows, numbers and marks, with those in front."""
-    from ...kernels.rows.record import PARTS, WIDTH
+    from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE
 
-    return np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
+    return np.zeros((count + 1) * ROW_SIZE), np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
 
 
-def _record(hold: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> Any:
+def _record(select: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> Any:
     """The record of a law by its kernels and what these know: numbers, and arrays by their addresses.
 
     ``free``: room for what a cover has beside its rows, which its kernels know too.
     """
-    known |= {} if free is None else {"free": free}
+    known |= {} if free is None else {"cover_rows": free}
     from ...kernels.compile.intrinsics import function_address
     from ...kernels.rows.record import Law
 
@@ -77,23 +79,24 @@ def _record(hold: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> 
         source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
     # the marks keep alive all that the kernels have the addresses of
     held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
-    addresses = function_address(hold, kind), function_address(make, kind), int(source.ctypes.data)
+    addresses = function_address(select, kind), function_address(make, kind), int(source.ctypes.data)
     rows, marks, added = map(read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
     return Law(rows, marks, added, *addresses, None if free is None else read_only(free.view()))
 
 
 def _octave(octave: int) -> tuple[Floats, int]:
     """(numbers, rows) of an octave of alpha."""
-    from ...kernels.rows.axis import PIECES
-    from ...kernels.rows.record import BODIES, PART, PRESS, WIDTH
+    from ...kernels.rows.alpha_axis import ALPHA_PARTS
+    from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
 
     tables = tables_of_octave(octave)
     rows, c = len(tables[0].given_coefficients), np.array([table.T_mean for table in tables])
-    values = np.array([table.record.rows[WIDTH:].reshape(rows, WIDTH) for table in tables])
-    pairs = values[..., :BODIES].reshape(len(tables), rows, -1, 2, 2)  # two powers of one function, then of the other
+    values = np.array([table.record.rows[ROW_SIZE:].reshape(rows, ROW_SIZE) for table in tables])
+    # two powers of one function, then of the other
+    pairs = values[..., :BODY_MOMENTS].reshape(len(tables), rows, -1, 2, 2)
     pairs[..., 1, :] /= c[:, None, None, None]  # M/V and epsilon
-    values = np.concatenate([values[..., :BODIES], values[..., PRESS:]], axis=-1)
-    found = alpha_terms(values.reshape(len(tables), rows, PIECES, PART))
+    values = np.concatenate([values[..., :BODY_MOMENTS], values[..., H_OVER_F2:]], axis=-1)
+    found = alpha_terms(values.reshape(len(tables), rows, ALPHA_PARTS, PART_SIZE))
     return read_only(np.moveaxis(found, 0, 2)), rows
 
 
@@ -104,32 +107,42 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     """
     if isinstance(materials, Cover):
         return _law_of_covers(materials, which)
-    from ...kernels.rows.grid import FRONT, HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
-    from ...kernels.rows.series import LANES, packed_size, room_size
+    from ...kernels.rows.series import LANES, series_size, workspace_size
+    from ...kernels.rows.z_grid import (
+        FIRST_EXPONENT,
+        SELECTED,
+        SERIES_START,
+        SOURCE,
+        grid_size,
+        make_part,
+        select_series,
+        work_size,
+    )
 
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
     most = max((block.modes.a.shape[-1] for block in blocks), default=0)
-    numbers = np.zeros((some.size, FRONT + packed_size(most)))
+    numbers = np.zeros((some.size, SERIES_START + series_size(most)))
     for block in blocks:
         if block.modes.a.shape[-1]:
             refuse_distant_times(block.modes.b.min(), block.modes.a.max())
         found = _numbers(block)
         numbers[block.rows, : found.shape[1]] = found
-    count = int(numbers[:, LIMITS + 1].max(initial=1.0))
-    nodes, working = grid_size(count, float(numbers[:, 0].max(initial=1.0))), room_size(most)
+    count = int(numbers[:, FIRST_EXPONENT + 1].max(initial=1.0))
+    nodes, working = grid_size(count, float(numbers[:, 0].max(initial=1.0))), workspace_size(most)
     rows, marks = _room(count)
-    marks[HELD] = -1
+    marks[SELECTED] = -1
     return _record(
-        hold, make, SOURCE, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
-        materials=numbers, columns=numbers.shape[1], numbers=np.empty(numbers_size(nodes)), nodes=nodes,
-        made=np.zeros(nodes // LANES, np.int64), room=np.empty(working), working=working,
+        select_series, make_part, SOURCE, rows=rows, marks=marks,
+        material_index=np.ascontiguousarray(of, dtype=np.int64), state_count=of.size, materials=numbers,
+        material_size=numbers.shape[1], numbers=np.empty(work_size(nodes)), node_count=nodes,
+        node_versions=np.zeros(nodes // LANES, np.int64), workspace=np.empty(working), workspace_size=working,
         unlike=any(block.weights is not None for block in blocks),
     )  # fmt: skip
 
 
 def _numbers(block: Block) -> Floats:
-    """What the kernels take of materials, a row each (:mod:`...kernels.rows.grid`)."""
+    """What the kernels take of materials, a row each (:mod:`...kernels.rows.z_grid`)."""
     modes, count = block.modes, block.rows.size
     weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights
     alpha, fast = np.broadcast_to(modes.alpha, count), modes.J * modes.b
@@ -146,22 +159,23 @@ def _numbers(block: Block) -> Floats:
 
 def _law_of_covers(covers: Cover, which: Integers) -> Any:
     """The record of states or motions that have the covers ``which``, for one thread."""
-    from ...kernels.numerics.nodes import to_chebyshev as to_terms
-    from ...kernels.rows.cover_axis import HELD, NODES, SOURCE, hold, make
+    from ...kernels.numerics.interpolation import to_chebyshev as to_terms
     from ...kernels.rows.record import E0
+    from ...kernels.rows.thickness_axis import NODES, SELECTED, SOURCE, make_part, select_cover
 
     some, of = np.unique(which, return_inverse=True)
     octave, place = np.floor(np.log2(covers.thickness[some])), np.log2(covers.thickness[some])
     laws = {each: _octave_of_covers(covers.of_thickness(2.0**each)) for each in np.unique(octave).tolist()}
     weights = np.polynomial.chebyshev.chebvander(2.0 * (place - octave) - 1.0, NODES - 1) @ to_terms(NODES)
-    row_range = np.array([(laws[each].numbers.ctypes.data, laws[each].rows) for each in octave.tolist()], np.int64)
+    octaves = np.array([(laws[each].numbers.ctypes.data, laws[each].rows) for each in octave.tolist()], np.int64)
     most = max(law.rows for law in laws.values())
     rows, marks = _room(most)
-    marks[HELD], marks[E0] = -1, next(iter(laws.values())).e0
+    marks[SELECTED], marks[E0] = -1, next(iter(laws.values())).e0
     free = np.zeros(max(law.beside for law in laws.values()))
     return _record(
-        hold, make, SOURCE, free, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
-        weights=np.ascontiguousarray(weights), octaves=row_range, covers=some.size,
+        select_cover, make_part, SOURCE, free, rows=rows, marks=marks,
+        cover_index=np.ascontiguousarray(of, dtype=np.int64), state_count=of.size,
+        weights=np.ascontiguousarray(weights), octaves=octaves, cover_count=some.size,
     )  # fmt: skip
 
 
@@ -186,13 +200,13 @@ def _octave_of_covers(thinnest: Cover) -> _CoverLaws:
 
 @lru_cache(maxsize=32)
 def _made_octave_of_covers(thinnest: Cover) -> _CoverLaws:
-    from ...kernels.numerics.nodes import chebyshev, rounded
-    from ...kernels.rows.cover_axis import NODES
-    from ...kernels.rows.record import E0, WIDTH
+    from ...kernels.numerics.interpolation import chebyshev, to_doubles
+    from ...kernels.rows.record import E0, ROW_SIZE
+    from ...kernels.rows.thickness_axis import NODES
 
     numbers = []
-    for place in rounded(chebyshev(NODES)).tolist():
+    for place in to_doubles(chebyshev(NODES)).tolist():
         cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * place))
         law = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
-        numbers.append(np.concatenate([law.rows, law.free]))
-    return _CoverLaws(np.array(numbers), law.rows.size // WIDTH - 1, int(law.marks[E0]), law.free.size)
+        numbers.append(np.concatenate([law.rows, law.cover_rows]))
+    return _CoverLaws(np.array(numbers), law.rows.size // ROW_SIZE - 1, int(law.marks[E0]), law.cover_rows.size)

@@ -93,7 +93,7 @@ class LawTable:
     @cached_property
     def record(self) -> Any:
         """What kernels take, derived from this table and from nothing else."""
-        from ...kernels.rows.record import COUNT, E0, PARTS, WIDTH, Law
+        from ...kernels.rows.record import E0, PARTS_PER_ROW, ROW_COUNT, ROW_SIZE, Law
 
         count, front = (
             len(self.given_coefficients),
@@ -102,17 +102,17 @@ class LawTable:
         lengths = free = None
         if self.cover is not None:
             front, free, lengths = pack_cover_front(self.cover), read_only(pack_cover(self.cover)), self.cover.creep[0]
-        rows, marks = np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
+        rows, marks = np.zeros((count + 1) * ROW_SIZE), np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
         rows[:8] = front
-        rows[WIDTH:] = pack_rows(self.given_coefficients, self.e0, front[0], front[2:4], lengths).ravel()
-        marks[[COUNT, E0]] = count, self.e0
+        rows[ROW_SIZE:] = pack_rows(self.given_coefficients, self.e0, front[0], front[2:4], lengths).ravel()
+        marks[[ROW_COUNT, E0]] = count, self.e0
         return Law(read_only(rows), read_only(marks), read_only(np.empty(0)), 0, 0, 0, free)
 
     @cached_property
     def unsteady_record(self) -> Any:
         """As :attr:`record`, with N."""
         N = self.coefficients[:, :, FUNCTIONS.index("N")]
-        return self.record._replace(added=read_only(pack_unsteady(N, self.e0, self.alpha)))
+        return self.record._replace(N_rows=read_only(pack_unsteady(N, self.e0, self.alpha)))
 
 
 def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
@@ -188,12 +188,12 @@ def pack_cover_front(cover: CoverRows) -> Floats:
 
 def pack_cover(cover: CoverRows) -> Floats:
     """What kernels read of a cover beside its rows (:mod:`...kernels.rows.cover`)."""
-    from ...kernels.rows.cover import FRONT
+    from ...kernels.rows.cover import COVER_FRONT_SIZE
 
     L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
     share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
     front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
-    assert len(front) == FRONT
+    assert len(front) == COVER_FRONT_SIZE
     own = cover.creep[1]
     return np.append(front, np.concatenate([own, interleave_pairs(own, own)], axis=1))
 

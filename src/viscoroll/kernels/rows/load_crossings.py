@@ -11,16 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.jit import kernel
-from .law import place, speed
+from .evaluate import length_and_moment, locate_row
 
 #: a load this close to an extremum, relative, is at it
-SNAP = 1e-15
+EXTREMUM_RTOL = 1e-15
 _MAX_STEPS = 40
 #: a step of Newton's iteration of this size in ln u, over the distance from an extremum, leaves its square
 _SQUARED = 1e-8
 
 
-class Curve(NamedTuple):
+class LoadCurve(NamedTuple):
     """Nodes of kappa (M - gain V) by rising speed: u, value, whether it is an extremum; gain."""
 
     u: Any
@@ -32,8 +32,8 @@ class Curve(NamedTuple):
 @kernel
 def _on_curve(u, gain, law):
     """(kappa (M - gain V), its slope over ln u) at u."""
-    found = speed(place(u, law), u, law)
-    return u * found.scale * found.m - u * gain, u * (found.rise - gain)
+    found = length_and_moment(locate_row(u, law), u, law)
+    return u * found.scale * found.m - u * gain, u * (found.d_um - gain)
 
 
 @kernel
@@ -44,7 +44,7 @@ def _crossing(load, n, curve, law):
     load, measured.
     """
     low, high = curve.u[n], curve.u[n + 1]
-    if curve.flat[n + 1] and abs(load - curve.rise[n + 1]) <= SNAP * abs(load):
+    if curve.flat[n + 1] and abs(load - curve.rise[n + 1]) <= EXTREMUM_RTOL * abs(load):
         return high
     part = (load - curve.rise[n]) / (curve.rise[n + 1] - curve.rise[n])
     top = 0.0

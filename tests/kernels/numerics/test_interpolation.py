@@ -4,7 +4,7 @@ import decimal
 
 import numpy as np
 
-from viscoroll.kernels.numerics.nodes import Interpolation, gauss, radau, to_chebyshev
+from viscoroll.kernels.numerics.interpolation import Interpolation, gauss, radau, to_chebyshev
 
 
 def test_digits_do_not_depend_on_the_caller():

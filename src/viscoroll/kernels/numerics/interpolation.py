@@ -21,7 +21,7 @@ _DIGITS = 40
 _Floats = NDArray[np.float64]
 
 
-def in_many_digits(function: Callable) -> Callable:
+def in_40_digits(function: Callable) -> Callable:
     """``function`` with so many digits of its Decimals, whatever the caller's context."""
 
     @wraps(function)
@@ -35,40 +35,40 @@ def in_many_digits(function: Callable) -> Callable:
 class Interpolation:
     """Polynomials through values at ``nodes``, of which a matrix wants these in its columns."""
 
-    @in_many_digits
+    @in_40_digits
     def __init__(self, nodes: Sequence[Decimal]) -> None:
         self.exact = tuple(nodes)
-        self.nodes = rounded(nodes)
+        self.nodes = to_doubles(nodes)
         self._basis = [_lagrange(self.exact, i) for i in range(len(self.exact))]
 
-    @in_many_digits
+    @in_40_digits
     def powers(self) -> _Floats:
         """To the coefficients of the powers of x, the constant first."""
-        return rounded([*zip(*self._basis)])
+        return to_doubles([*zip(*self._basis)])
 
-    @in_many_digits
+    @in_40_digits
     def values(self, points: Iterable[Decimal]) -> _Floats:
         """To the values at these points."""
         return _table(self._basis, points)
 
-    @in_many_digits
+    @in_40_digits
     def slopes(self, points: Iterable[Decimal]) -> _Floats:
         """To the slopes at these points."""
         return _table([[k * c for k, c in enumerate(p)][1:] for p in self._basis], points)
 
-    @in_many_digits
+    @in_40_digits
     def integrals(self, points: Iterable[Decimal]) -> _Floats:
         """To the integrals from -1 to these points."""
         whole = [[Decimal(0), *(c / (k + 1) for k, c in enumerate(p))] for p in self._basis]
         return _table([[-horner(p, Decimal(-1)), *p[1:]] for p in whole], points)
 
-    @in_many_digits
+    @in_40_digits
     def coefficients(self, values: Sequence[Decimal]) -> _Floats:
         """Of the powers of x, for these values at the nodes."""
-        return rounded([sum(v * c for v, c in zip(values, row)) for row in zip(*self._basis)])
+        return to_doubles([sum(v * c for v, c in zip(values, row)) for row in zip(*self._basis)])
 
 
-@in_many_digits
+@in_40_digits
 def radau(n: int, side: int) -> list[Decimal]:
     """Nodes of Radau's rule on [-1, 1]: the end ``side`` (-1 or 1) and n - 1 inside, upward."""
 
@@ -76,21 +76,21 @@ def radau(n: int, side: int) -> list[Decimal]:
     return sorted([Decimal(side), *(-side * x for x in inner)])
 
 
-@in_many_digits
+@in_40_digits
 def gauss(n: int) -> tuple[_Floats, _Floats]:
     """Nodes and weights of Gauss's and Legendre's rule on [0, 1]."""
     nodes = _symmetric(n, _legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n // 2 + 1)])
     weights = [1 / ((1 - x * x) * _legendre(n, x)[1] ** 2) for x in nodes]
-    return rounded([(1 + x) / 2 for x in nodes]), rounded(weights)
+    return to_doubles([(1 + x) / 2 for x in nodes]), to_doubles(weights)
 
 
-@in_many_digits
+@in_40_digits
 def chebyshev(n: int) -> list[Decimal]:
     """Zeros of T_n, upward."""
     return _symmetric(n, _chebyshev, [(k - 0.5) / n for k in range(1, n // 2 + 1)])
 
 
-@in_many_digits
+@in_40_digits
 def to_chebyshev(n: int) -> _Floats:
     """From values at the zeros of T_n to the coefficients of T_0 ... T_(n-1)."""
     columns = []
@@ -99,7 +99,7 @@ def to_chebyshev(n: int) -> _Floats:
         for _ in range(n - 2):
             values.append(2 * x * values[-1] - values[-2])
         columns.append([values[0] / n, *(2 * value / n for value in values[1:n])])
-    return rounded(columns).T.copy()
+    return to_doubles(columns).T.copy()
 
 
 def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
@@ -112,7 +112,7 @@ def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
     return found
 
 
-def rounded(values: Any) -> _Floats:
+def to_doubles(values: Any) -> _Floats:
     """The nearest doubles."""
     return np.array(values, dtype=np.float64)
 
@@ -173,4 +173,4 @@ def horner(polynomial: Sequence[Decimal], x: Decimal) -> Decimal:
 
 def _table(polynomials: Sequence[Sequence[Decimal]], points: Iterable[Decimal]) -> _Floats:
     """Values [point, polynomial]."""
-    return rounded([[horner(p, x) for p in polynomials] for x in points])
+    return to_doubles([[horner(p, x) for p in polynomials] for x in points])

@@ -1,4 +1,5 @@
-"""A bound scene for jitted code: a value that is called, with the function of :mod:`bound` and the scene behind it.
+"""A bound scene for jitted code: a value that is called, with the function of :mod:`c_function` and the scene behind
+it.
 
 All scenes have one numba type, so that a user's function that is given a law is compiled once for all of them.
 """
@@ -17,12 +18,12 @@ from numba.core.imputils import lower_constant
 from numba.core.typing import signature
 from numba.extending import NativeValue, lower_builtin, models, register_model, unbox
 
-from .bound import OUT, bind, function
+from .c_function import RESULTS, law_address, pack_scenes
 from .loads import LoadsAndSlopes
 from .record import Law
 
 #: room for what the function finds
-Room = ctypes.c_double * OUT
+ResultBuffer = ctypes.c_double * RESULTS
 _C = ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p
 _WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
 _DOUBLES = _DOUBLE.as_pointer()
@@ -46,7 +47,7 @@ class LawType(types.Callable):
             return None
         if not all(isinstance(types.unliteral(kind), types.Integer | types.Float) for kind in given):
             return None
-        found = types.NamedUniTuple(types.float64, OUT, LoadsAndSlopes)
+        found = types.NamedUniTuple(types.float64, RESULTS, LoadsAndSlopes)
         return signature(found, types.float64, types.float64, recvr=self).replace(pysig=_CALL)
 
     def get_call_signatures(self) -> tuple[list[Any], bool]:
@@ -65,14 +66,14 @@ class Jitted:
 
     def __init__(self, law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> None:
         self._law = law  # whose rows the scenes point to
-        self._scenes = bind(law, unlike, kappa, mu, scale)
+        self._scenes = pack_scenes(law, unlike, kappa, mu, scale)
         self.plain, self.address = (int(self._scenes[n:].ctypes.data) for n in (0, 1))
         # with the GIL: to release it takes longer than the law
-        self.function_address = function(law.free is not None)
+        self.function_address = law_address(law.cover_rows is not None)
         self.function = ctypes.PYFUNCTYPE(_C[0], *_C[1:3], ctypes.c_void_p, _C[4])(self.function_address)
 
     def __call__(self, V: float, omega: float) -> LoadsAndSlopes:
-        out = Room()
+        out = ResultBuffer()
         self.function(V, omega, out, self.address)
         return LoadsAndSlopes(*out)
 
@@ -114,8 +115,8 @@ def _constant(context: Any, builder: Any, kind: Any, law: Any) -> Any:
 def _call(context: Any, builder: Any, kinds: Any, given: Any) -> Any:
     law, V, omega = given
     numbers = builder.inttoptr(law, _DOUBLES)
-    function = builder.load(builder.bitcast(numbers, _FUNCTION.as_pointer().as_pointer()))
-    out = cgutils.alloca_once(builder, _DOUBLE, size=_WORD(OUT))
-    builder.call(function, [V, omega, out, numbers])
-    found = [builder.load(builder.gep(out, [_WORD(n)])) for n in range(OUT)]
+    law_address = builder.load(builder.bitcast(numbers, _FUNCTION.as_pointer().as_pointer()))
+    out = cgutils.alloca_once(builder, _DOUBLE, size=_WORD(RESULTS))
+    builder.call(law_address, [V, omega, out, numbers])
+    found = [builder.load(builder.gep(out, [_WORD(n)])) for n in range(RESULTS)]
     return context.make_tuple(builder, kinds.return_type, found)

@@ -1,6 +1,6 @@
 """Four numbers at once: one instruction of the processor adds, multiplies or divides them all, by ``+ - * /``.
 
-Each of the four is rounded as it would be alone; of :func:`fused`, product and sum together.
+Each of the four is rounded as it would be alone; of :func:`fma4`, product and sum together.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ class _FourModel(models.PrimitiveModel):
         super().__init__(manager, kind, VECTOR)
 
 
-def shuffled(builder: Any, a: Any, b: Any, order: Any) -> Any:
+def shuffle(builder: Any, a: Any, b: Any, order: Any) -> Any:
     """Instructions that take four of the eight numbers of two vectors."""
     return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
 
 
-def spread_over(builder: Any, x: Any) -> Any:
+def broadcast_value(builder: Any, x: Any) -> Any:
     """Instructions that make a vector of one number, four times."""
     one = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), x, _INT(0))
-    return shuffled(builder, one, one, [0] * LANES)
+    return shuffle(builder, one, one, [0] * LANES)
 
 
-def fused_by(builder: Any, *given: Any) -> Any:
-    """The instruction of :func:`fused`."""
+def fma_vectors(builder: Any, *given: Any) -> Any:
+    """The instruction of :func:`fma4`."""
     return call_llvm(builder, "llvm.fma.v4f64", given)
 
 
-def pointers(context: Any, builder: Any, kind: Any, array: Any, at: Any, count: int) -> list:
+def vector_pointers(context: Any, builder: Any, kind: Any, array: Any, at: Any, count: int) -> list:
     """Where vectors of an array or behind a pointer stand, the first of their numbers being number ``at``."""
     data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
     first = builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
@@ -65,7 +65,7 @@ def _operator(function: Callable, name: str) -> None:
 
     def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         each = zip(given, signature.args, strict=True)
-        return getattr(builder, name)(*(x if kind is FOUR else spread_over(builder, x) for x, kind in each))
+        return getattr(builder, name)(*(x if kind is FOUR else broadcast_value(builder, x) for x, kind in each))
 
     type_callable(function)(typed)
     for kinds in ((FOUR, FOUR), (FOUR, types.float64), (types.float64, FOUR)):
@@ -93,15 +93,15 @@ def _whole(context, builder, kind, found):
 def _fused(context, builder, signature, given):
     kind = signature.return_type
     columns = (_every(builder, own, x, getattr(kind, "count", 1)) for own, x in zip(signature.args, given))
-    return _whole(context, builder, kind, [fused_by(builder, *each) for each in zip(*columns, strict=True)])
+    return _whole(context, builder, kind, [fma_vectors(builder, *each) for each in zip(*columns, strict=True)])
 
 
 def _slide(context, builder, signature, given):
-    return shuffled(builder, *given, range(LANES - 1, 2 * LANES - 1))
+    return shuffle(builder, *given, range(LANES - 1, 2 * LANES - 1))
 
 
 def _spread(context, builder, signature, given):
-    return spread_over(builder, *given)
+    return broadcast_value(builder, *given)
 
 
 def _four(context, builder, signature, given):
@@ -118,27 +118,27 @@ def _parts(context, builder, signature, given):
 
 def _load(context, builder, signature, given):
     kind = signature.return_type
-    places = pointers(context, builder, signature.args[0], *given, getattr(kind, "count", 1))
+    places = vector_pointers(context, builder, signature.args[0], *given, getattr(kind, "count", 1))
     return _whole(context, builder, kind, [builder.load(place, align=8) for place in places])
 
 
 def _store(context, builder, signature, given):
     numbers = _every(builder, signature.args[2], given[2], 1)
-    for place, each in zip(pointers(context, builder, signature.args[0], *given[:2], len(numbers)), numbers):
+    for place, each in zip(vector_pointers(context, builder, signature.args[0], *given[:2], len(numbers)), numbers):
         builder.store(each, place, align=8)
     return context.get_dummy_value()
 
 
 #: four numbers as one
-four = make_intrinsic(_four, FOUR, *[types.float64] * LANES)
+pack = make_intrinsic(_four, FOUR, *[types.float64] * LANES)
 #: the last of one before the first three of another: a load across two stores would wait for both
-slide = make_intrinsic(_slide, FOUR, FOUR, FOUR)
+shift_in = make_intrinsic(_slide, FOUR, FOUR, FOUR)
 #: a b + c of fours, or of tuples of them and what all of these have in common
-fused = make_intrinsic(_fused, _widest, None, None, None)
+fma4 = make_intrinsic(_fused, _widest, None, None, None)
 #: and back
-parts = make_intrinsic(_parts, types.UniTuple(types.float64, LANES), FOUR)
+unpack = make_intrinsic(_parts, types.UniTuple(types.float64, LANES), FOUR)
 #: a number, four times
-spread = make_intrinsic(_spread, FOUR, types.float64)
+broadcast = make_intrinsic(_spread, FOUR, types.float64)
 #: (array, at) -> its numbers at, at + 1, ...; (array, at, four) puts them there.  Arrays are contiguous vectors
 load, store = (
     make_intrinsic(_load, FOUR, None, types.int64),
@@ -146,6 +146,6 @@ load, store = (
 )
 
 
-def loads(count: int) -> Any:
+def make_load(count: int) -> Any:
     """A :func:`load` of so many fours, as a tuple."""
     return make_intrinsic(_load, types.UniTuple(FOUR, count), None, types.int64)

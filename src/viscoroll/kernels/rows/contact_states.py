@@ -53,7 +53,7 @@ class States(NamedTuple):
     creep_is_omega: bool
 
 
-class Asked(NamedTuple):
+class Request(NamedTuple):
     """States, in an order or, where that is empty, in theirs, and what is asked of them: its rows in ``out``.
 
     first : the column of state 0
@@ -73,7 +73,7 @@ def element(values, n):
 
 
 @kernel(inline=True)
-def state_of(states, n):
+def read_state(states, n):
     """State number n."""
     return State(
         element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
@@ -82,14 +82,14 @@ def state_of(states, n):
 
 
 @kernel(inline=True)
-def put(row, value, n, asked):
+def write_field(row, value, n, asked):
     """A quantity of state n into its row, if it has one."""
     if row >= 0:
         asked.out[np.uint64(row), np.uint64(n + asked.first)] = value
 
 
 @kernel(inline=True)
-def slip_and_creep(state):
+def slip_and_creepage(state):
     """(a number with the sign of omega - V, creep ratio); V = 0 counts as V -> 0+."""
     V, creep = state.V, state.creep
     if not state.creep_is_omega:
