@@ -21,7 +21,7 @@ from viscoroll.app.identification.file import read_measurements
 from viscoroll.contact_law.steadiness import Steadiness
 from viscoroll.core import errors
 from viscoroll.core.scale import Scale
-from viscoroll.io.config import read_bodies, read_body
+from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.runs import read_run
 from viscoroll.io.sampling import sample
 from viscoroll.materials.law.netcdf import law_table_of
@@ -47,7 +47,7 @@ NAMES = vars(experiments) | {
     "SERIES": vr.Prony([2.0, 6.0], [1.0, 1e-4]), "MANY": vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
-    "read_body": read_body, "read_bodies": read_bodies, "read_materials": read_materials, "sample": sample,
+    "read_roller": read_roller, "read_law_source": read_law_source, "read_materials": read_materials, "sample": sample,
     "Steadiness": Steadiness, "Scale": Scale,
     "law_table": law_table, "table_of": law_table_of,
     "SOFT": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0),

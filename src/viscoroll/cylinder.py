@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike
 
 from .contact_law.assumptions import WAVE_LIMIT, Validity
 from .contact_law.known import Known, say
-from .core.checks import broadcast_shape, checked, frozen, one_name
-from .core.drive import slope_factor
-from .core.errors import ParameterError, one_of
-from .core.results import Row, Shown, short
+from .core.checks import broadcast_shape, check_array, check_choice, read_only
+from .core.drive import slope_tan_cos
+from .core.errors import ParameterError, exactly_one_error
+from .core.results import Result, SummaryRow, format_value
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
 from .materials.law.table import LawTable
@@ -95,19 +95,19 @@ class Cylinder(Methods):
         }  # fmt: skip
         solid = [name for name in _SOLID if given[name] is not None]
         if material is not None and solid:
-            raise one_of("material", ", ".join(solid), both=True)
+            raise exactly_one_error("material", ", ".join(solid), both=True)
         if material is None and len(solid) < len(_SOLID):
             missing = ", ".join(name for name in _SOLID if name not in solid)
             sentence = f"give material=, or all of E, nu, T_epsilon and T_sigma: {missing} not given"
             raise ParameterError(missing, None, "given, or material", sentence)
         for name in ("R", "m", "mu", "j", "g", *(() if material is not None else _SOLID)):
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
-            given[name] = frozen(checked(name, given[name], unit=SI, low=low, strict=True, high=high))
+            given[name] = read_only(check_array(name, given[name], unit=SI, low=low, strict=True, high=high))
         if given["pressed"] is not None:
-            given["pressed"] = frozen(checked("load", given["pressed"], unit=SI, low=0.0, strict=True))
+            given["pressed"] = read_only(check_array("load", given["pressed"], unit=SI, low=0.0, strict=True))
         numbers = {name: given[name] for name in _NUMBERS if given[name] is not None}
         broadcast_shape(**{name: np.asarray(value) for name, value in numbers.items()})
-        one_name("plane", plane, "strain", "stress")
+        check_choice("plane", plane, "strain", "stress")
         for name, value in given.items():
             object.__setattr__(self, name, value)
         if material is None:
@@ -170,17 +170,17 @@ class Cylinder(Methods):
         return {name: value for name, value in given.items() if value is not None}
 
     def tilted(self, slope: Any) -> Cylinder:
-        return self.replace(load=self.load * slope_factor(slope)[1])
+        return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         given = self.numbers | {"load": self.load, "plane": self.plane}
-        rows = [Row(name, short(value), UNITS.get(name, "")) for name, value in given.items()]
+        rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in given.items()]
         for name in ("material", "base"):
             if (body := getattr(self, name)) is not None:
-                rows.append(Row(name, getattr(body, "name", "") or repr(body)))
+                rows.append(SummaryRow(name, getattr(body, "name", "") or repr(body)))
         return "Cylinder, SI units, per m of length", rows
 
-    __repr__, _repr_html_ = Shown.__repr__, Shown._repr_html_
+    __repr__, _repr_html_ = Result.__repr__, Result._repr_html_
 
     @property
     def load(self) -> Any:
@@ -231,7 +231,9 @@ class Cylinder(Methods):
         own = self.pair.cover(self.l0)
         if own.shape or abs(own.thickness / given.thickness - 1.0) > _SAME_THICKNESS:
             found = f"the law of a layer of {given.thickness:.6g} l0"
-            raise ParameterError("material", found, f"that of {short(own.thickness)} l0, as the load and R have it")
+            raise ParameterError(
+                "material", found, f"that of {format_value(own.thickness)} l0, as the load and R have it"
+            )
 
     @cached_property
     def _known(self) -> Known:

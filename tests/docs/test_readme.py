@@ -104,11 +104,11 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys):
 
 
 def test_howto_scene_files_are_read(tmp_path):
-    from viscoroll.io.config import read_body
+    from viscoroll.io.config import read_roller
 
     for text in (text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")):
         (tmp_path / "scene.toml").write_text(text)
-        assert read_body(tmp_path / "scene.toml").scene()
+        assert read_roller(tmp_path / "scene.toml").scene()
 
 
 def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from viscoroll.core.scale import DIMENSIONS, si_unit
-from viscoroll.core.symbols import SYMBOLS, meaning
+from viscoroll.core.symbols import SYMBOLS, describe_quantity
 
 from ..results import Results, rows_of, table
 from . import house, identification
@@ -265,7 +265,7 @@ def symbols(_: Results) -> Iterator[Row]:
     """Every symbol of a result: what it is, in which unit a scene and a cylinder give it, its range and equation."""
     for name, symbol in SYMBOLS.items():
         unit = si_unit(name).translate(_POWERS) if name in DIMENSIONS else ""
-        said = {"meaning": meaning(name), "range": symbol.range, "equation": symbol.equation}
+        said = {"meaning": describe_quantity(name), "range": symbol.range, "equation": symbol.equation}
         yield said | {"name": name, "greek": greek(name), "unit": unit}
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from viscoroll import ViscorollError, tables
 from viscoroll.core.errors import FileError
-from viscoroll.core.files import seal_holds
+from viscoroll.core.files import seal_matches
 from viscoroll.presets import RUBBER_CYLINDER
 
 from ... import offline
@@ -98,7 +98,7 @@ def hashes(folder: Path) -> dict[str, str] | None:
 
 def whole(path: Path) -> Any:
     """A table whose seal holds."""
-    if not seal_holds(path.read_bytes()):
+    if not seal_matches(path.read_bytes()):
         raise FileError(path, "has no seal that holds")
     return tables.load(path)
 

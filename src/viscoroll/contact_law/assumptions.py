@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.results import Row, as_html, as_text
+from ..core.results import SummaryRow, as_html, as_text
 from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.measured import Measured
 from ..materials.prony import Prony
@@ -98,15 +98,15 @@ class Validity(NamedTuple):
         """Names of the assumptions that do not hold, of arrays somewhere; empty where none is known to fail."""
         return tuple(name for name, each in self._asdict().items() if each.word == "no")
 
-    def _card(self) -> tuple[str, list[Row]]:
-        rows = [Row(name, f"{each.word:<4} {each.sentence}") for name, each in self._asdict().items()]
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        rows = [SummaryRow(name, f"{each.word:<4} {each.sentence}") for name, each in self._asdict().items()]
         return "What the model assumes, and whether it holds", rows
 
     def __repr__(self) -> str:
-        return as_text(*self._card())
+        return as_text(*self._summary())
 
     def _repr_html_(self) -> str:
-        return as_html(*self._card())
+        return as_html(*self._summary())
 
 
 #: where no number can tell

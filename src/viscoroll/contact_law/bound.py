@@ -9,9 +9,9 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from ..core.checks import checked, yes_or_no
+from ..core.array_types import Floats, Numbers
+from ..core.checks import check_array, check_bool
 from ..core.errors import ParameterError
-from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from ..materials.law.grid import LawGrid
 from .contact import contact
@@ -84,7 +84,7 @@ class Law:
             NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
         """
         if slopes is not False:
-            slopes = yes_or_no("slopes", slopes)
+            slopes = check_bool("slopes", slopes)
         if type(V) in _NUMBERS and type(omega) in _NUMBERS:
             out = self._room()
             try:
@@ -92,7 +92,7 @@ class Law:
             except ctypes.ArgumentError:  # an integer beyond the doubles
                 status = 1
             if status:
-                self._refuse(checked("V", V), checked("omega", omega))
+                self._refuse(check_array("V", V), check_array("omega", omega))
             return _loads_and_slopes(out) if slopes else _loads(out[:4])
         return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
 
@@ -156,7 +156,7 @@ class _LawOfGrid(Law):
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         each = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
-        return kind(*each(checked("V", V), checked("omega", omega))[: len(kind._fields)])
+        return kind(*each(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
         self.roller.refuse_outside(V, omega)

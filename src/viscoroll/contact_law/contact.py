@@ -13,18 +13,18 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import broadcast_shape, checked, checked_extent, yes_or_no
-from ..core.errors import ParameterError, one_of
-from ..core.labels import unlabelled
+from ..core.array_types import Numbers
+from ..core.checks import broadcast_shape, check_array, check_array_extent, check_bool
+from ..core.errors import ParameterError, exactly_one_error
+from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
-from ..core.typed import Numbers
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.law.table import LawTable
 from ..materials.prony import Prony
 from .contact_fields import FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
-from .contact_table import FASTEST, refuse_overflow, states_of
+from .contact_table import FASTEST, evaluate_law, refuse_overflow
 from .parameters import Parameters, Rolls, framed
 
 #: of bodies that are alike, half of each
@@ -130,16 +130,16 @@ def contact(
     """
     _, scene, scale = framed(roller, "contact")
     if (delta is None) == (omega is None):
-        raise one_of("delta", "omega", both=delta is not None)
+        raise exactly_one_error("delta", "omega", both=delta is not None)
     if slopes is not False:
-        slopes = yes_or_no("slopes", slopes)
+        slopes = check_bool("slopes", slopes)
     names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
     if type(scene.material) is Cover:
         names = _of_cover(names, fields is None)
     creep_name = "omega" if delta is None else "delta"
-    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta}, scale)
-    speed, ends = checked_extent("V", given["V"])
-    creep = checked(creep_name, given[creep_name])
+    given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
+    speed, ends = check_array_extent("V", given["V"])
+    creep = check_array(creep_name, given[creep_name])
     given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
@@ -147,13 +147,13 @@ def contact(
         about = roller.about
         speed = speed / scale["V"]
         creep = creep / scale["omega"] if delta is None else creep
-    found = states(scene, speed, creep, delta is None, names, method)
+    found = evaluate_contact(scene, speed, creep, delta is None, names, method)
     if scale.si:
         found = {name: value * scale[name] if name in DIMENSIONS else value for name, value in found.items()}
     return Values(found, given, si=scale.si, labels=labels, about=about)
 
 
-def states(
+def evaluate_contact(
     scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
 ) -> dict[str, Any]:
     """Fields without dimension, at checked speeds, and creeps or angular velocities."""
@@ -178,7 +178,7 @@ def states(
     unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, Bodies)
     solved = _solved(names, unlike)
     broadcast = [*arrays.values()], shape, creep_is_omega, solved
-    found = states_of(one, *broadcast, method == "direct")
+    found = evaluate_law(one, *broadcast, method == "direct")
     rows: dict[str, Any] = dict(zip(solved, found if shape else found[:, 0].tolist(), strict=True))
     if solved != names:
         rows |= {name: 0.5 * rows[of] for name, of in _HALVES.items() if name in names and name not in rows}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..core.checks import one_name
-from ..core.errors import ParameterError, refuse_unknown
+from ..core.checks import check_choice
+from ..core.errors import ParameterError, check_names
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
@@ -34,8 +34,8 @@ def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool
     ParameterError
         A name or a method that there is not, or one that the other does not give.
     """
-    one_name("method", method, "table", "direct")
-    names = DEFAULT[like, si] if fields is None else refuse_unknown("fields", fields, KNOWN, "a field")
+    check_choice("method", method, "table", "direct")
+    names = DEFAULT[like, si] if fields is None else check_names("fields", fields, KNOWN, "a field")
     if slopes:
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.blocks import elements, run_blocks
+from ..core.blocks import block_reader, run_blocks
 from ..core.checks import extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
@@ -28,7 +28,7 @@ _NO_ORDER = np.empty(0, np.int64)
 FASTEST = 1e300
 
 
-def states_of(
+def evaluate_law(
     given: LawTable | Prony | Bodies | None,
     arrays: list[Any],
     shape: tuple[int, ...],
@@ -81,18 +81,18 @@ def states_of(
         for row, array in zip(states, arrays, strict=True):
             row[...] = array
         states = states.reshape(len(arrays), count)
-        states.flags.writeable = False  # as all that a kernel reads, see elements
+        states.flags.writeable = False  # as all that a kernel reads, see block_reader
         fill(0, count, *states)
         return out
-    parts = [elements(np.asarray(array), shape) for array in arrays]
+    parts = [block_reader(np.asarray(array), shape) for array in arrays]
     block = _BLOCK_EACH if isinstance(given, Prony | Bodies) else _BLOCK
     run_blocks(lambda start, stop: fill(start, stop, *(part(start, stop) for part in parts)), count, block)
     return out
 
 
-def rolling(law: LawTable, u: NDArray, *names: str) -> NDArray:
+def pure_rolling_fields(law: LawTable, u: NDArray, *names: str) -> NDArray:
     """Fields in pure rolling at kappa |V| = u, a row each; kappa = mu = 1."""
-    return states_of(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
+    return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
 
 
 @lru_cache(maxsize=64)

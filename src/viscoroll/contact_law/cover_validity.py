@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .assumptions import Assumption
-from .contact import states
+from .contact import evaluate_contact
 from .free_rolling import Strained
 from .parameters import Parameters
 
@@ -41,7 +41,7 @@ def layer(scene: Parameters, V: Any) -> tuple[Strained, Assumption]:
     """
     cover = scene.cover
     assert cover is not None
-    found = states(scene, np.abs(V), np.zeros(()), False, ("lam", "epsilon"))
+    found = evaluate_contact(scene, np.abs(V), np.zeros(()), False, ("lam", "epsilon"))
     lam, epsilon = found["lam"], found["epsilon"]
     theta = 0.5 * lam / cover.thickness
     most, thickness = float(np.interp(cover.nu, _NU, _MOST_THETA)), float(np.min(cover.thickness))

@@ -17,13 +17,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.array_types import Booleans, Floats, Integers
 from ..core.scale import Scale
-from ..core.typed import Booleans, Floats, Integers
 from ..materials.bodies import total_series
 from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.law.table import law_table
 from ..materials.prony import Prony
-from .contact_table import rolling
+from .contact_table import pure_rolling_fields
 
 #: ln u in steps of a sixteenth of an octave, to 20 octaves beyond the times of a material, where it is in its limits
 #: to 1e-6
@@ -204,7 +204,7 @@ class Free:
         """Lengths of the contact."""
         out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
         for material, part in self._groups():
-            out[:, part] = rolling(law_table(material), u[part], "lam", "epsilon")
+            out[:, part] = pure_rolling_fields(law_table(material), u[part], "lam", "epsilon")
         lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
         return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import broadcast_shape, checked
-from ..core.typed import Numbers
+from ..core.array_types import Numbers
+from ..core.checks import broadcast_shape, check_array
 from .assumptions import UNKNOWN, UNKNOWN_OF_COVERS, Validity, place, smallness, unlike_speeds
-from .contact import states
+from .contact import evaluate_contact
 from .cover_validity import layer
 from .parameters import Rolls, framed
 from .steadiness import Steadiness
@@ -42,7 +42,7 @@ def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density
     """
     _, scene, scale = framed(roller, "validity")
     speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
-    given = {name: checked(name, each, unit=scale) for name, each in speeds.items()}
+    given = {name: check_array(name, each, unit=scale) for name, each in speeds.items()}
     with np.errstate(over="ignore"):
         speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
@@ -61,6 +61,6 @@ def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
         full: Any = np.abs(delta) >= scene.mu * np.asarray(found.reach)
         if scene.cover is not None:
-            full = states(scene, speed, spin, True, ("full_slip",))["full_slip"]
+            full = evaluate_contact(scene, speed, spin, True, ("full_slip",))["full_slip"]
         judged = judged._replace(creep=unlike_speeds(delta, full))
     return roller.known(judged, found.lam, given["V"], given.get("omega"), density)

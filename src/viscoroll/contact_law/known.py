@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import number
-from ..core.errors import ModelWarning, outside
+from ..core.checks import check_number
+from ..core.errors import ModelWarning, caller_level
 from ..core.scale import SI
 from ..kernels.compile.notice import is_worker
 from ..materials.law.table import law_table
@@ -31,7 +31,7 @@ from .assumptions import (
     measurement,
     passage,
 )  # fmt: skip
-from .contact_table import rolling
+from .contact_table import pure_rolling_fields
 from .parameters import Parameters
 
 #: of the compliance, a part below which a body may be as thin and as little known as it likes
@@ -83,7 +83,7 @@ class Known:
         low, high = (rate * self.T_ref for rate in ends)
         if self.scene.cover is not None:
             u = np.exp2(_OCTAVES_OF_SPEED)
-            (lam,) = rolling(law_table(self.scene.cover), u, "lam")
+            (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
             low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
         else:
             low, high = held_speeds(series, low, high)
@@ -107,7 +107,7 @@ class Known:
     def judge(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None, plane: str) -> Validity:
         """What is added to the validity of a state, of which ``lam`` is."""
         if density is not None:
-            density = number("density", density, unit=SI, low=0.0, strict=True)
+            density = check_number("density", density, unit=SI, low=0.0, strict=True)
         fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
         pair, length = self.pair, lam * self.l0
         long = "a long cylinder, or one held between walls (plane strain)"
@@ -160,12 +160,14 @@ class Known:
         _told.update(self.measured.values())
         sentence = measurement(passage(np.array(rates), self._lam(np.array(rates))), self.measured).sentence
         text = f"M and the contact length are not backed by measurements here: {sentence}"
-        warnings.warn(f"{text}; validity(V).measured tells at which V they are", ModelWarning, stacklevel=outside())
+        warnings.warn(
+            f"{text}; validity(V).measured tells at which V they are", ModelWarning, stacklevel=caller_level()
+        )
 
     def _lam(self, rate: Any) -> Any:
         """Contact length over that at rest, of |V|/l0 in 1/s, for the one material."""
         material, unit = self.scene.in_own_time()
-        (lam,) = rolling(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
+        (lam,) = pure_rolling_fields(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
         return lam
 
     def _slowness(self, speed: Any, density: float | None) -> tuple[Any, list[str]]:
@@ -197,7 +199,7 @@ def say(faults: list[str], of: str, where: str) -> None:
     """
     if faults and not is_worker():
         text = f"the model is not good for this {of}: {'; '.join(faults)}.  See {where}"
-        warnings.warn(text, ModelWarning, stacklevel=outside())
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
 
 
 def warn_of_share(share: float, records: Iterable[Measured]) -> bool:
@@ -215,7 +217,7 @@ def warn_of_share(share: float, records: Iterable[Measured]) -> bool:
     said = "; ".join(map(str, known))
     text = f"for {share:.1%} of the motions the material is not known as measured at the start (measured from {said}, "
     warnings.warn(
-        f"{text}at the medians of the inputs): M is a guess of the fit there", ModelWarning, stacklevel=outside()
+        f"{text}at the medians of the inputs): M is a guess of the fit there", ModelWarning, stacklevel=caller_level()
     )
     return True
 

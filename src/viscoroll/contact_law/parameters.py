@@ -8,12 +8,12 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from ..core.checks import broadcast_shape, checked, checked_extent, frozen
-from ..core.drive import slope_factor
-from ..core.errors import ParameterError, one_of
-from ..core.results import short
+from ..core.array_types import Floats, Integers
+from ..core.checks import broadcast_shape, check_array, check_array_extent, read_only
+from ..core.drive import slope_tan_cos
+from ..core.errors import ParameterError, exactly_one_error
+from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
-from ..core.typed import Floats, Integers
 from ..materials.bodies import Bodies, total_series
 from ..materials.cover import Cover
 from ..materials.law.grid import LawGrid
@@ -135,7 +135,7 @@ class Parameters(Rolls):
         given: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
         if (material is None) == (given["alpha"] is None):
-            raise one_of("alpha", "material", both=material is not None)
+            raise exactly_one_error("alpha", "material", both=material is not None)
         if isinstance(material, LawTable):
             object.__setattr__(self, "_law", material)
             material = material.material
@@ -145,11 +145,11 @@ class Parameters(Rolls):
             if not isinstance(material, Prony | Bodies):
                 raise ParameterError("material", f"{material!r:.60}", "a Prony series, or Bodies of two")
             given["alpha"] = material.alpha
-        arrays = {"alpha": checked("alpha", given.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
+        arrays = {"alpha": check_array("alpha", given.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
         for name, value in given.items():
             if name != "gamma" or value is not None:
-                arrays[name], extents[name] = checked_extent(name, value, low=0.0, strict=True)
+                arrays[name], extents[name] = check_array_extent(name, value, low=0.0, strict=True)
         object.__setattr__(self, "shape", broadcast_shape(**arrays))
         object.__setattr__(self, "material", material)
         if arrays["mu"].size and arrays["kappa"].size:
@@ -158,7 +158,7 @@ class Parameters(Rolls):
             if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
                 _refuse_ratio(arrays["mu"], arrays["kappa"])
         for name, array in arrays.items():
-            object.__setattr__(self, name, frozen(array))
+            object.__setattr__(self, name, read_only(array))
 
     @property
     def table(self) -> LawTable | None:
@@ -223,7 +223,7 @@ class Parameters(Rolls):
         return not isinstance(self.material, Bodies) or self.material.like
 
     def tilted(self, slope: Any) -> Self:
-        cosine = slope_factor(slope)[1]
+        cosine = slope_tan_cos(slope)[1]
         more = {}
         if self.cover is not None:  # over the l0 of the load that is left
             more = {"material": self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))}
@@ -259,7 +259,7 @@ class Parameters(Rolls):
         return {"material": self.material} | {name: each for name, each in self.numbers.items() if name != "alpha"}
 
     def __repr__(self) -> str:
-        return f"Scene({', '.join(f'{name}={short(value)}' for name, value in self._given.items())})"
+        return f"Scene({', '.join(f'{name}={format_value(value)}' for name, value in self._given.items())})"
 
 
 def scale_of(given: Any) -> Scale:
@@ -292,7 +292,7 @@ def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> 
 def refuse_cover(scene: Parameters, why: str) -> None:
     """Raise ParameterError where a body is a layer of finite thickness; ``why``: what is not known of it."""
     if scene.cover is not None:
-        sentence = f"thickness = {short(scene.cover.thickness)} (over l0): of a layer of finite thickness {why}"
+        sentence = f"thickness = {format_value(scene.cover.thickness)} (over l0): of a layer of finite thickness {why}"
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
 
 

@@ -7,15 +7,15 @@ from typing import Any, overload
 
 import numpy as np
 
-from ..core.blocks import elements, run_blocks
-from ..core.checks import broadcast_shape, checked
-from ..core.errors import one_of
-from ..core.labels import unlabelled
+from ..core.array_types import Floats, Numbers
+from ..core.blocks import block_reader, run_blocks
+from ..core.checks import broadcast_shape, check_array
+from ..core.errors import exactly_one_error
+from ..core.labels import strip_labels
 from ..core.results import Values
-from ..core.typed import Floats, Numbers
 from ..materials.bodies import total_series
 from ..materials.law.evaluate import series_record
-from .contact import states
+from .contact import evaluate_contact
 from .parameters import Parameters, Rolls, framed, refuse_cover
 
 _BLOCK = 1 << 15
@@ -59,16 +59,16 @@ def stress(
     _, scene, scale = framed(roller, "stress")
     refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
-        raise one_of("delta", "omega", both=delta is not None)
+        raise exactly_one_error("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
-    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
-    at, speed, creep = (checked(*given) for given in places.items())
+    places, labels = strip_labels({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
+    at, speed, creep = (check_array(*given) for given in places.items())
     places = dict(zip(places, (at, speed, creep), strict=True))
     if scale.si:
         roller.look(speed)
         with np.errstate(over="ignore"):  # a place so far away has no stress, such a speed is refused
             at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
-    state = states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
+    state = evaluate_contact(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(speed < 0.0, -1.0, 1.0)
     many = scene.each
@@ -78,13 +78,13 @@ def stress(
     given |= {"mirror": mirror, "sign": np.sign(state["delta"]) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
-    x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
+    x_of, *others, alpha_of, mirror_of, sign_of = (block_reader(array, shape) for array in arrays.values())
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
 
     def work(start: int, stop: int) -> None:
         mirrored = mirror_of(start, stop) * x_of(start, stop)
-        mirrored.flags.writeable = False  # as all that a kernel reads, see elements
+        mirrored.flags.writeable = False  # as all that a kernel reads, see block_reader
         points = Points(mirrored, *(part(start, stop) for part in others))
         _fill(scene, alpha_of(start, stop), points, p[start:stop], tau[start:stop])
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0

@@ -19,15 +19,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import whole
+from .array_types import Floats
+from .checks import check_integer
 from .errors import ParameterError
-from .typed import Floats
 
 #: blocks in hand, a worker
 _WAITING = 8
 
 
-def elements(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
+def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
     """(start, stop) -> those elements of ``array`` broadcast to ``shape``, as a vector; a single value stays one.
 
     A view where they lie so in memory, else a copy of these elements alone.  Read-only whatever was
@@ -51,7 +51,7 @@ def elements(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floa
     return gathered
 
 
-def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
+def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
     """One value, or one for each element of ``shape``, as a contiguous vector.
 
     Read-only whatever was given: a kernel is compiled anew for every kind of array that it sees.
@@ -70,7 +70,9 @@ def thread_count(threads: int | None = None) -> int:
     ParameterError
         Where either is no whole number >= 1.
     """
-    return whole("threads", threads, 1) if threads is not None else _threads_of_environment() or cores()
+    return (
+        check_integer("threads", threads, 1) if threads is not None else _threads_of_environment() or available_cores()
+    )
 
 
 def _threads_of_environment() -> int | None:
@@ -83,7 +85,7 @@ def _threads_of_environment() -> int | None:
     raise ParameterError("VISCOROLL_THREADS", repr(given), "a whole number >= 1, or not set")
 
 
-def cores() -> int:
+def available_cores() -> int:
     """Cores that this process may use, as far as the system tells."""
     if hasattr(os, "process_cpu_count"):  # Python 3.13
         return os.process_cpu_count() or 1
@@ -95,7 +97,7 @@ def cores() -> int:
 _heeded = threading.local()
 
 
-def heed(event: threading.Event) -> None:
+def cancel_with(event: threading.Event) -> None:
     """From now on :func:`run_blocks` of this thread ends with CancelledError where the event is set."""
     _heeded.event = event
 

@@ -12,33 +12,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import ParameterError, described
-from .quantities import in_unit, is_plain, is_real
+from .array_types import Booleans, Floats
+from .errors import ParameterError, describe_value
+from .quantities import has_no_unit, is_real, to_unit
 from .scale import Units
-from .typed import Booleans, Floats
 
 #: bytes of a double
 _DOUBLE = 8
 
 
-def checked(name: str, value: ArrayLike, **bounds: Any) -> Floats:
+def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     """``value`` as float64, finite, >= ``low`` (> if ``strict``) and <= ``high``, which may be given.
 
-    ``unit`` : what the argument is counted in, as of :func:`checked_extent`.
+    ``unit`` : what the argument is counted in, as of :func:`check_array_extent`.
 
     Raises
     ------
     ParameterError
         If it is not numeric, not finite, below ``low`` or above ``high``, or carries another unit.
     """
-    return checked_extent(name, value, **bounds)[0]
+    return check_array_extent(name, value, **bounds)[0]
 
 
-def checked_extent(
+def check_array_extent(
     name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, strict: bool = False,
     high: float = math.inf,
 ) -> tuple[Floats, tuple[float, float]]:  # fmt: skip
-    """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array.
+    """As :func:`check_array`, with the least and the largest element; (0, 0) of an empty array.
 
     Parameters
     ----------
@@ -66,8 +66,8 @@ def _allowed(low: float, strict: bool, high: float) -> str:
 def _numbers(name: str, value: Any, unit: Units, bounds: tuple[float, bool, float]) -> Floats:
     """``value`` as float64 in ``unit``; raises ParameterError for what is no number, with its ``bounds`` in words."""
     plain = value
-    if not is_plain(value):
-        plain = in_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
+    if not has_no_unit(value):
+        plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
             raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
     try:
@@ -78,7 +78,7 @@ def _numbers(name: str, value: Any, unit: Units, bounds: tuple[float, bool, floa
         given = np.asarray(None)
     if given.dtype.kind not in "iuf":
         allowed = _allowed(*bounds)
-        raise ParameterError(name, described(value), f"a number, {allowed}" if allowed else "a finite number")
+        raise ParameterError(name, describe_value(value), f"a number, {allowed}" if allowed else "a finite number")
     if given.dtype.itemsize <= _DOUBLE:
         return given.astype(np.float64, copy=False)
     with np.errstate(over="ignore"):  # of long doubles, which are infinite then
@@ -102,11 +102,11 @@ def extent(array: Floats) -> tuple[float, float]:
     return float(array.min()), float(array.max())
 
 
-def number(
+def check_number(
     name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, strict: bool = False,
     high: float = math.inf,
 ) -> float:  # fmt: skip
-    """As :func:`checked`, and a single number.
+    """As :func:`check_array`, and a single number.
 
     Raises
     ------
@@ -115,9 +115,9 @@ def number(
     """
     if type(value) is float and low < value < high:
         return value
-    array = checked(name, value, unit=unit, low=low, strict=strict, high=high)
+    array = check_array(name, value, unit=unit, low=low, strict=strict, high=high)
     if array.ndim:
-        raise ParameterError(name, described(value), "a single number")
+        raise ParameterError(name, describe_value(value), "a single number")
     return float(array)
 
 
@@ -137,7 +137,7 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
         raise ParameterError("shapes", shapes, "broadcastable against each other") from None
 
 
-def frozen(array: Floats) -> float | Floats:
+def read_only(array: Floats) -> float | Floats:
     """A number, or a copy that nobody can write to."""
     if array.ndim == 0:
         return float(array)
@@ -146,7 +146,7 @@ def frozen(array: Floats) -> float | Floats:
     return array
 
 
-def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
+def check_integer(name: str, value: Any, least: int, most: float = math.inf) -> int:
     """``value`` as a whole number from ``least`` to ``most``.
 
     Raises
@@ -158,18 +158,18 @@ def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
         return value
     if isinstance(value, bool) or not (isinstance(value, int | np.integer) and least <= value <= most):
         allowed = f"a whole number >= {least}" if most == math.inf else f"a whole number in [{least}, {most}]"
-        raise ParameterError(name, described(value), allowed)
+        raise ParameterError(name, describe_value(value), allowed)
     return int(value)
 
 
-def one_name(name: str, value: Any, *allowed: str) -> None:
+def check_choice(name: str, value: Any, *allowed: str) -> None:
     """Raise ParameterError where ``value`` is none of the ``allowed`` texts, the last of which stands behind "or"."""
     if not (isinstance(value, str) and value in allowed):
         *most, last = map(repr, allowed)
-        raise ParameterError(name, described(value), f"{', '.join(most)} or {last}")
+        raise ParameterError(name, describe_value(value), f"{', '.join(most)} or {last}")
 
 
-def yes_or_no(name: str, value: Any) -> bool:
+def check_bool(name: str, value: Any) -> bool:
     """``value`` as True or False.
 
     Raises
@@ -179,4 +179,4 @@ def yes_or_no(name: str, value: Any) -> bool:
     """
     if isinstance(value, bool | np.bool_):
         return bool(value)
-    raise ParameterError(name, described(value), "True or False")
+    raise ParameterError(name, describe_value(value), "True or False")

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .checks import checked, frozen
+from .checks import check_array, read_only
 from .errors import ParameterError
-from .quantities import converted, in_unit, without_unit
+from .quantities import convert, split_unit, to_unit
 from .scale import HasUnits, Scale
 
 #: of what acts, the quantities whose units its gains on V and omega have
@@ -95,13 +95,13 @@ class Feedback:
 
 def _keep(given: Schedule | Feedback, name: str, low: float) -> None:
     """Check the numbers of a part of what drives, and keep them and their unit; raises ParameterError."""
-    plain, unit = without_unit(name, getattr(given, name))
-    object.__setattr__(given, name, frozen(checked(name, plain, low=low)))
+    plain, unit = split_unit(name, getattr(given, name))
+    object.__setattr__(given, name, read_only(check_array(name, plain, low=low)))
     if unit is not None:
         given.units[name] = unit
 
 
-def in_units_of(name: str, given: Any, units: HasUnits) -> Any:
+def convert_argument(name: str, given: Any, units: HasUnits) -> Any:
     """What a caller gave for an argument, in the unit of that: numbers, and what drives over time or with the speeds.
 
     Raises
@@ -112,13 +112,13 @@ def in_units_of(name: str, given: Any, units: HasUnits) -> Any:
     if isinstance(given, Schedule):
         return _converted(name, given, {"times": units.unit("t"), "values": units.unit(name)})
     if not isinstance(given, Feedback):
-        return in_unit(name, given, units.unit(name))
+        return to_unit(name, given, units.unit(name))
     if name not in _GAINS:
         sentence = f"{name} is a Feedback, which acts as force= or torque= alone: give its gains there"
         raise ParameterError(name, "a Feedback", "no Feedback", sentence)
     wanted = dict(zip(("value", "V", "omega"), map(units.unit, (name, *_GAINS[name])), strict=True))
     given = _converted(name, given, wanted)
-    value = in_units_of(name, given.value, units) if isinstance(given.value, Schedule) else given.value
+    value = convert_argument(name, given.value, units) if isinstance(given.value, Schedule) else given.value
     return given if value is given.value else replace(given, value=value)
 
 
@@ -127,13 +127,13 @@ def _converted(name: str, given: Any, wanted: dict[str, str]) -> Any:
     if not given.units:
         return given
     parts = {
-        part: converted(f"{part} of {name}", getattr(given, part), unit, wanted[part])
+        part: convert(f"{part} of {name}", getattr(given, part), unit, wanted[part])
         for part, unit in given.units.items()
     }
     return replace(given, **parts)
 
 
-def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:
+def require_time_argument(name: str, function: Callable[..., Any]) -> None:
     """Raise ParameterError for a function that cannot be called with a time alone."""
     try:
         takes = signature(function)
@@ -149,7 +149,7 @@ def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:
         raise ParameterError(name, function, "a function of t", sentence) from None
 
 
-def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
+def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
     """(tan(theta), cos(theta)) of a slope in rad; (0, 1) without.
 
     Raises
@@ -159,7 +159,7 @@ def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
     """
     if slope is None:
         return 0.0, 1.0
-    theta = checked("slope", slope, unit="rad")
+    theta = check_array("slope", slope, unit="rad")
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
         allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2), as np.radians(degrees) gives"
@@ -167,7 +167,7 @@ def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
     return np.tan(theta), np.cos(theta)
 
 
-def over(name: str, given: Any, scale: Scale) -> Any:
+def make_dimensionless(name: str, given: Any, scale: Scale) -> Any:
     """A number, an array, a schedule, a function of time or a feedback, over its unit and that of time.
 
     Raises
@@ -182,14 +182,14 @@ def over(name: str, given: Any, scale: Scale) -> Any:
         return given / unit
     if isinstance(given, Feedback):
         gains = given.V * scale["V"] / unit, given.omega * scale["omega"] / unit
-        return Feedback(over(name, given.value, scale), *gains)
+        return Feedback(make_dimensionless(name, given.value, scale), *gains)
     if callable(given):
         if np.ndim(unit):
             raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
-        refuse_more_than_t(name, given)
-        return lambda t: checked(f"{name}(t)", given(t * scale["t"]), unit=scale.unit(name), low=low) / unit
+        require_time_argument(name, given)
+        return lambda t: check_array(f"{name}(t)", given(t * scale["t"]), unit=scale.unit(name), low=low) / unit
     if isinstance(given, Schedule):
-        values = checked(f"values of {name}", given.values, low=low)
+        values = check_array(f"values of {name}", given.values, low=low)
         return Schedule(given.times / scale["t"], values / (unit[:, np.newaxis] if np.ndim(unit) else unit))
-    value = checked(name, given, unit=scale, low=low) / unit
+    value = check_array(name, given, unit=scale, low=low) / unit
     return value if value.ndim else float(value)

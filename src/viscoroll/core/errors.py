@@ -55,7 +55,7 @@ _KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
 )
 
 
-def described(value: Any) -> str:
+def describe_value(value: Any) -> str:
     """What a caller gave, for a message: its text in one line, cut at 60 characters, and its kind but of numbers."""
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
@@ -70,27 +70,27 @@ def described(value: Any) -> str:
     return f"{text} ({kind})"
 
 
-def one_of(first: str, second: str, both: bool) -> ParameterError:
+def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     """The error where both or neither of two names were given."""
     sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
     return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
 
 
-def unknown(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
+def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
     """The error where ``value`` is none of the ``known`` names; ``kind``: what they are names of, with its article."""
     names = ", ".join(known)
     return ParameterError(name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}")
 
 
-def refuse_unknown(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
-    """The names in ``values``, one or several; raises :func:`unknown` for the first that is none of the ``known``."""
+def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
+    """The names in ``values``, one or several; raises ParameterError for the first that is none of ``known``."""
     try:
         names = (values,) if isinstance(values, str) else tuple(values)
     except TypeError:  # not several
         names = (values,)
     for value in names:
         if not (isinstance(value, str) and value in known):
-            raise unknown(name, value, known, kind)
+            raise unknown_name_error(name, value, known, kind)
     return names
 
 
@@ -163,7 +163,7 @@ _MESSAGES = (
 )
 
 
-def outside() -> int:
+def caller_level() -> int:
     """Frames up to the first one that is not of this package: the ``stacklevel`` of a warning."""
     import sys
 

@@ -8,7 +8,7 @@ from typing import Any
 from .errors import MissingDependencyError
 
 
-def imported(module: str, package: str, extra: str) -> Any:
+def import_extra(module: str, package: str, extra: str) -> Any:
     """A module of ``package``, which ``pip install 'viscoroll[EXTRA]'`` brings along.
 
     Raises

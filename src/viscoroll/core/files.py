@@ -26,7 +26,7 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
 @contextmanager
-def replacing(path: str | PathLike[str]) -> Iterator[Path]:
+def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     """A temporary path beside ``path``, put in its place when the body ends well.
 
     The file and its folder are synced to disk; after any failure ``path`` is as it was and
@@ -84,13 +84,13 @@ def seal(content: bytes) -> bytes:
     return content + _seal_of(content)
 
 
-def seal_holds(content: bytes) -> bool | None:
+def seal_matches(content: bytes) -> bool | None:
     """Whether the bytes of a file are those that were sealed; None where there is no seal."""
     end = content[-_SEAL_SIZE:]
     return end == _seal_of(memoryview(content)[:-_SEAL_SIZE]) if end.startswith(_SEAL) else None
 
 
-def sealed_content(path: str | PathLike[str], most: int, what: str, remedy: str) -> bytes:
+def read_sealed(path: str | PathLike[str], most: int, what: str, remedy: str) -> bytes:
     """The bytes of a file, at ``most`` so many, compared with the seal at their end where there is one.
 
     ``what`` the file should be, and the ``remedy`` where it is not, in words.  Raises FileError.
@@ -102,7 +102,7 @@ def sealed_content(path: str | PathLike[str], most: int, what: str, remedy: str)
         content = place.read_bytes()
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error}): it must be a {what}") from error
-    if seal_holds(content) is False:
+    if seal_matches(content) is False:
         raise FileError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
     return content
 
@@ -113,7 +113,7 @@ def _seal_of(content: bytes | memoryview) -> bytes:
 
 def write_bytes(path: str | PathLike[str], content: bytes) -> None:
     """Write a file, whole or not at all; raises FileError."""
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         temporary.write_bytes(content)
 
 

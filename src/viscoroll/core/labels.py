@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .drive import Schedule, in_units_of
+from .drive import Schedule, convert_argument
 from .errors import ParameterError
-from .quantities import is_plain
+from .quantities import has_no_unit
 from .scale import HasUnits
 
 
@@ -51,10 +51,10 @@ class Labels(NamedTuple):
 
 
 #: types that bear neither labels nor units
-BARE = frozenset((float, int, np.float64, type(None)))
+UNLABELLED_TYPES = frozenset((float, int, np.float64, type(None)))
 
 
-def unlabelled(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
+def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
     """Plain arrays in place of labelled ones, and what gives a result their labels; None where nothing has any.
 
     What carries a unit is converted to that of the argument.
@@ -70,9 +70,9 @@ def unlabelled(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], 
         A unit of another dimension, arrays of xarray beside plain ones, series of pandas with unlike indices, both
         kinds at once.
     """
-    if BARE.issuperset(map(type, given.values())) or all(map(is_plain, given.values())):
+    if UNLABELLED_TYPES.issuperset(map(type, given.values())) or all(map(has_no_unit, given.values())):
         return given, None
-    given = {name: in_units_of(name, value, units) for name, value in given.items()}
+    given = {name: convert_argument(name, value, units) for name, value in given.items()}
     xarray, pandas = sys.modules.get("xarray"), sys.modules.get("pandas")
     arrays = {name: value for name, value in given.items() if xarray and isinstance(value, xarray.DataArray)}
     series = {name: value for name, value in given.items() if pandas and isinstance(value, pandas.Series)}

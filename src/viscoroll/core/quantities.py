@@ -1,6 +1,6 @@
 """Units that inputs carry: quantities of pint, ``units`` attributes of xarray, durations of pandas and numpy.
 
-:func:`in_unit` converts what carries a unit to the unit of the argument, or refuses it.  What carries none, and labels
+:func:`to_unit` converts what carries a unit to the unit of the argument, or refuses it.  What carries none, and labels
 of xarray and pandas, pass as they are.
 """
 
@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from .errors import ParameterError, described
-from .units import factor, spelled
+from .errors import ParameterError, describe_value
+from .units import conversion_factor, pint_spelling
 
 #: types that carry no unit
 _BARE = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
@@ -35,7 +35,7 @@ _COLUMN = re.compile(r"\[([^\[\]]+)\]\s*$")
 _TEMPERATURE = "degC"
 
 
-def is_plain(value: Any) -> bool:
+def has_no_unit(value: Any) -> bool:
     """Whether it carries no unit, to be seen from its type: a number, an array or a list of numbers."""
     kind = type(value)
     if kind is np.ndarray:
@@ -43,7 +43,7 @@ def is_plain(value: Any) -> bool:
     return kind in _BARE or ((kind is list or kind is tuple) and _NUMBERS.issuperset(map(type, value)))
 
 
-def in_unit(name: str, value: Any, wanted: str) -> Any:
+def to_unit(name: str, value: Any, wanted: str) -> Any:
     """``value`` without its unit, in the unit that the argument has.
 
     Parameters
@@ -61,18 +61,18 @@ def in_unit(name: str, value: Any, wanted: str) -> Any:
     ParameterError
         A unit of another dimension, or one that is not known.
     """
-    if is_plain(value):
+    if has_no_unit(value):
         return value
     if _is_quantity(value) and not hasattr(value, "units"):
         try:
-            return value.to(spelled(wanted)).magnitude
+            return value.to(pint_spelling(wanted)).magnitude
         except Exception as error:  # whatever its library raises
-            raise refuse_unit(name, f"another unit ({value!s:.40})", wanted) from error
-    plain, unit = without_unit(name, value)
-    return plain if unit is None else converted(name, plain, unit, wanted)
+            raise unit_error(name, f"another unit ({value!s:.40})", wanted) from error
+    plain, unit = split_unit(name, value)
+    return plain if unit is None else convert(name, plain, unit, wanted)
 
 
-def without_unit(name: str, value: Any) -> tuple[Any, str | None]:
+def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     """(``value`` without its unit, that unit; None where it carries none).
 
     Labels of xarray and pandas stay.  Of lists and arrays of objects all elements have the unit of the first.
@@ -82,7 +82,7 @@ def without_unit(name: str, value: Any) -> tuple[Any, str | None]:
     ParameterError
         A list of numbers with and without units, or with truth values; a duration in months or years.
     """
-    if is_plain(value):
+    if has_no_unit(value):
         return value, None
     if type(value) is list or type(value) is tuple:
         return _of_elements(name, value)
@@ -105,23 +105,23 @@ def without_unit(name: str, value: Any) -> tuple[Any, str | None]:
     return value, None
 
 
-def converted(name: str, value: Any, unit: str, wanted: str) -> Any:
-    """Numbers in ``unit`` as numbers in ``wanted``; arguments and errors of :func:`in_unit`."""
+def convert(name: str, value: Any, unit: str, wanted: str) -> Any:
+    """Numbers in ``unit`` as numbers in ``wanted``; arguments and errors of :func:`to_unit`."""
     if unit == wanted or (wanted == "1" and unit.strip() in _NO_UNIT):
         return value
     if unit.strip() in _NO_UNIT and wanted != "rad":
-        raise refuse_unit(name, "units of 1, without dimension", wanted)
+        raise unit_error(name, "units of 1, without dimension", wanted)
     cycles = wanted != "rad s-1" and _HERTZ.search(unit)
     if cycles or (wanted == "rad" and _SHARE.search(unit)) or (wanted == _TEMPERATURE and "delta" in unit):
-        raise refuse_unit(name, unit, wanted)
+        raise unit_error(name, unit, wanted)
     try:
-        times, zero = factor(unit, wanted)
+        times, zero = conversion_factor(unit, wanted)
     except ParameterError as error:
-        raise refuse_unit(name, unit, wanted, known="pint knows" not in error.allowed) from None
+        raise unit_error(name, unit, wanted, known="pint knows" not in error.allowed) from None
     if zero and wanted != _TEMPERATURE:
-        raise refuse_unit(name, unit, wanted)
+        raise unit_error(name, unit, wanted)
     if isinstance(value, list):
-        return [converted(name, each, unit, wanted) for each in value]
+        return [convert(name, each, unit, wanted) for each in value]
     number = _as_floats(name, value)
     return number * times + zero if zero else number * times
 
@@ -136,7 +136,7 @@ def _as_floats(name: str, value: Any) -> Any:
             return float(value)
     except OverflowError:  # an integer beyond the doubles
         pass
-    raise ParameterError(name, described(value), "a finite number")
+    raise ParameterError(name, describe_value(value), "a finite number")
 
 
 def is_real(value: Any) -> bool:
@@ -144,7 +144,7 @@ def is_real(value: Any) -> bool:
     return isinstance(value, Real | Decimal) and not isinstance(value, bool)
 
 
-def refuse_unit(name: str, unit: str, wanted: str, known: bool = True) -> ParameterError:
+def unit_error(name: str, unit: str, wanted: str, known: bool = True) -> ParameterError:
     """The error where an argument that is counted in ``wanted`` is given in a ``unit`` that does not become it."""
     must = "a number without dimension" if wanted == "1" else f"in {wanted}, or in a unit of that dimension"
     which = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
@@ -158,7 +158,7 @@ def _is_quantity(value: Any) -> bool:
 
 def _of_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     """The elements of a list without their units, all in that of the first."""
-    parts = [without_unit(name, each) for each in values]
+    parts = [split_unit(name, each) for each in values]
     units = list(dict.fromkeys(unit for _, unit in parts))
     if any(isinstance(plain, bool | np.bool_) for plain, _ in parts):
         raise ParameterError(name, f"{values!r:.60}", "numbers, no truth values")
@@ -167,7 +167,7 @@ def _of_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     if len(units) <= 1:
         return [plain for plain, _ in parts], units[0] if units else None
     first: Any = units[0]
-    return [converted(name, plain, str(unit), first) for plain, unit in parts], first
+    return [convert(name, plain, str(unit), first) for plain, unit in parts], first
 
 
 def _of_labelled(name: str, value: Any) -> tuple[Any, str | None]:
@@ -177,12 +177,12 @@ def _of_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     """
     of_xarray = hasattr(value, "dims")
     data = value.data if of_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
-    plain, own = without_unit(name, data)
+    plain, own = split_unit(name, data)
     said = getattr(value, "attrs", {}).get("units", _of_column(getattr(value, "name", None)))
     if said is None and plain is data:
         return value, None
     if said is not None and own is not None:
-        plain = converted(name, plain, own, str(said))
+        plain = convert(name, plain, own, str(said))
     unit = own if said is None else str(said)
     if not of_xarray:
         return type(value)(plain, index=value.index, name=value.name) if hasattr(value, "index") else plain, unit
@@ -197,7 +197,7 @@ def _of_column(title: Any) -> str | None:
     if found is None or found[1].strip() in _NO_UNIT:
         return None
     try:
-        factor(found[1], found[1])
+        conversion_factor(found[1], found[1])
     except ParameterError:
         return None
     return found[1]

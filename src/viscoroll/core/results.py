@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _MOST_ROWS = 40
 
 
-class Row(NamedTuple):
+class SummaryRow(NamedTuple):
     """A line of a result: a name, what it holds, its unit ("" without)."""
 
     name: str
@@ -31,10 +31,10 @@ class Row(NamedTuple):
     unit: str = ""
 
 
-class Shown:
-    """A result that shows itself; a subclass says its :meth:`_card`, and gives :meth:`to_xarray`."""
+class Result:
+    """A result that shows itself; a subclass says its :meth:`_summary`, and gives :meth:`to_xarray`."""
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """A title and a line for each thing worth a look."""
         raise NotImplementedError
 
@@ -52,7 +52,7 @@ class Shown:
         over = max((each.dims for each in data.values()), key=len)
         data = data[[name for name, each in data.items() if set(each.dims) <= set(over)]]
         data = data if over else data.expand_dims("state")
-        names = {name: column(str(name), unit_of(data[name].attrs)) for name in data.variables}
+        names = {name: column_name(str(name), unit_of(data[name].attrs)) for name in data.variables}
         return data.to_dataframe().rename(columns=names).rename_axis(index=names)
 
     def plot(self: Any, path: str | PathLike[str] | None = None) -> Figure:
@@ -92,19 +92,19 @@ class Shown:
         return getattr(self, name)
 
     def __repr__(self) -> str:
-        return as_text(*self._card())
+        return as_text(*self._summary())
 
     def _repr_html_(self) -> str:
-        return as_html(*self._card())
+        return as_html(*self._summary())
 
 
-def as_text(title: str, rows: list[Row]) -> str:
+def as_text(title: str, rows: list[SummaryRow]) -> str:
     """A card for a terminal."""
     width = max((len(row.name) for row in rows), default=0)
     return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
 
 
-def as_html(title: str, rows: list[Row]) -> str:
+def as_html(title: str, rows: list[SummaryRow]) -> str:
     """A card for a notebook."""
     cells = "".join(
         "<tr>" + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) + "</tr>"
@@ -119,12 +119,12 @@ def unit_of(described: Mapping[Any, Any]) -> str:
     return "" if unit == "1" else unit
 
 
-def column(name: str, unit: str) -> str:
+def column_name(name: str, unit: str) -> str:
     """The name of a column: what stands in it, and its unit if it has one."""
     return f"{name} [{unit}]" if unit else name
 
 
-def short(value: Any) -> str:
+def format_value(value: Any) -> str:
     """A number, or what an array holds, in few words."""
     if not isinstance(value, np.ndarray):
         return f"{value:.12g}" if isinstance(value, float) else str(value)
@@ -137,7 +137,7 @@ def short(value: Any) -> str:
     return text + (f", {value.size - finite.size} not finite" if finite.size < value.size else "")
 
 
-class Values(Shown):
+class Values(Result):
     """Named results of one call; a name that was not asked for is an AttributeError.
 
     given : the arguments over which they were computed, by name.
@@ -183,10 +183,13 @@ class Values(Shown):
     def keys(self) -> Iterable[str]:
         return self._values.keys()
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
         title = self._title + (f", {shape}" if shape else "")
-        return title, [Row(name, short(value), unit_of(self._attributes(name))) for name, value in self._values.items()]
+        return title, [
+            SummaryRow(name, format_value(value), unit_of(self._attributes(name)))
+            for name, value in self._values.items()
+        ]
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over the arguments that vary, with names and units.

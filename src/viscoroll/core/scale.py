@@ -42,7 +42,7 @@ DIMENSIONS = {
     **dict.fromkeys(("rate_fast", "rate_slow"), "P T/m R"),
 }
 #: dimension -> its SI unit, and the words for a number without dimension
-KINDS = {
+DIMENSION_UNITS = {
     "T": ("s", " over T_epsilon"),
     "R/T": ("m s-1", " times T_epsilon/R"),
     "rad/T": ("rad s-1", " times T_epsilon"),
@@ -68,7 +68,7 @@ KINDS = {
 }
 
 
-def powers(dimension: str) -> dict[str, int]:
+def dimension_powers(dimension: str) -> dict[str, int]:
     """Powers of what a dimension, or a unit as "N m/m" or "N m m-1", is made of."""
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
@@ -78,9 +78,9 @@ def powers(dimension: str) -> dict[str, int]:
 
 
 #: what each dimension is made of
-_PARTS = {dimension: powers(dimension) for dimension in KINDS}
+_PARTS = {dimension: dimension_powers(dimension) for dimension in DIMENSION_UNITS}
 #: quantity -> the power of time in it
-OF_TIME = {name: power for name, dimension in DIMENSIONS.items() if (power := _PARTS[dimension].get("T", 0))}
+TIME_POWERS = {name: power for name, dimension in DIMENSIONS.items() if (power := _PARTS[dimension].get("T", 0))}
 
 
 class Scale(dict[str, Any]):
@@ -145,4 +145,4 @@ SI = Scale()
 
 def si_unit(name: str) -> str:
     """The SI unit of a quantity, as "m s-1"; "1" of a ratio."""
-    return KINDS[DIMENSIONS[name]][0] if name in DIMENSIONS else "1"
+    return DIMENSION_UNITS[DIMENSIONS[name]][0] if name in DIMENSIONS else "1"

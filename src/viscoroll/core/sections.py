@@ -29,7 +29,7 @@ _WORDS = {
 }  # fmt: skip
 
 
-def read(path: str | PathLike[str]) -> dict[str, Any]:
+def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     """The content of a TOML file; raises FileError."""
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
@@ -53,7 +53,7 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
             value = value[int(key)] if isinstance(value, list) else value[key]
         words = [key for key in keys if not key.isdecimal()]
         if missing := _MISSING.fullmatch(problem):
-            raise fault(path, ".".join((name, *words)), "", f"needs {missing[1]}") from error
+            raise section_error(path, ".".join((name, *words)), "", f"needs {missing[1]}") from error
         if expected := _EXPECTED.fullmatch(problem):
             kinds = " or ".join(_WORDS[kind] for kind in expected[1].split(" | ") if kind != "null")
             problem = f"{'.'.join(words)} = {value!r:.40}: must be {kinds}"
@@ -63,7 +63,7 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
             problem = f"{words[-1]} = {value!r:.40}: must be one of {choices}"
         elif words and not isinstance(value, dict):
             problem = f"{words[-1]} = {value!r:.40}: {problem}"
-        raise fault(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error
+        raise section_error(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error
 
 
 def _choices(kind: Any, words: list[str]) -> str:
@@ -77,7 +77,7 @@ def _choices(kind: Any, words: list[str]) -> str:
 def _refuse_unknown_within(path: Any, name: str, content: Any, kind: Any) -> None:
     """Refuse keys that are unknown in a section, or in any section within it."""
     hints = get_type_hints(kind)
-    refuse_unknown(path, name, content, hints)
+    check_keys(path, name, content, hints)
     for key, value in content.items():
         kinds = hints[key], *get_args(hints[key])
         parts = [each for each in kinds if is_dataclass(each) or hasattr(each, "__struct_fields__")]
@@ -85,26 +85,28 @@ def _refuse_unknown_within(path: Any, name: str, content: Any, kind: Any) -> Non
             _refuse_unknown_within(path, f"{name}.{key}", value, parts[0])
 
 
-def refuse_unknown(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
+def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
     """Raise FileError, with the nearest allowed key, where a section has a key that is none."""
     if not isinstance(content, dict):
-        raise fault(path, "", name, f"{name} = {content!r:.40}: must be a section [{name}]")
+        raise section_error(path, "", name, f"{name} = {content!r:.40}: must be a section [{name}]")
     known = list(allowed)
     for key in content:
         if key not in known:
-            raise fault(path, name, key, f"unknown key {key!r}: must be one of {', '.join(known)}{hint(key, known)}")
+            raise section_error(
+                path, name, key, f"unknown key {key!r}: must be one of {', '.join(known)}{suggestion(key, known)}"
+            )
 
 
-def fault(path: Any, name: str, key: str, problem: str) -> FileError:
+def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
     """The error to raise for ``key`` of section ``name`` ("": the top), with its line if that is found."""
     line = None
     with suppress(OSError, UnicodeDecodeError):
-        line = line_of(Path(path).read_text(encoding="utf-8-sig"), name, key)
+        line = find_line(Path(path).read_text(encoding="utf-8-sig"), name, key)
     at = "" if line is None else f"line {line}: "
     return FileError(path, f"{at}[{name}] {problem}" if name else f"{at}{problem}")
 
 
-def line_of(text: str, name: str, key: str) -> int | None:
+def find_line(text: str, name: str, key: str) -> int | None:
     """Number of the line that sets ``key`` in section ``name``, else of the section's header, else None."""
     full = f"{name}.{key}" if name else key
     plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")
@@ -120,11 +122,11 @@ def line_of(text: str, name: str, key: str) -> int | None:
         elif (header == name and plain.match(line)) or (header == "" and dotted.match(line)):
             return number
     if of_section is None and "." in name:  # an inline table: the line of its name
-        return line_of(text, *name.rsplit(".", 1))
+        return find_line(text, *name.rsplit(".", 1))
     return of_section
 
 
-def hint(name: str, candidates: Iterable[str]) -> str:
+def suggestion(name: str, candidates: Iterable[str]) -> str:
     """A question for the nearest of ``candidates``, or nothing."""
     near = difflib.get_close_matches(name, list(candidates), n=1, cutoff=0.5)
     return f"; did you mean {near[0]!r}?" if near else ""

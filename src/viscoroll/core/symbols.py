@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .scale import DIMENSIONS, KINDS, si_unit
+from .scale import DIMENSION_UNITS, DIMENSIONS, si_unit
 
 PAPER = (
     "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic half-space, "
@@ -85,13 +85,13 @@ _MEANINGS = {
 
 def attributes(name: str, si: bool = False) -> dict[str, str]:
     """long_name, units, symbol and equation of a quantity, without dimension or in SI units."""
-    found = {"long_name": meaning(name, si), "units": si_unit(name) if si else "1"}
+    found = {"long_name": describe_quantity(name, si), "units": si_unit(name) if si else "1"}
     if name in SYMBOLS and not (si and name in DIMENSIONS):
         found |= {"symbol": SYMBOLS[name].latex, "equation": SYMBOLS[name].equation}
     return found
 
 
-def meaning(name: str, si: bool = False) -> str:
+def describe_quantity(name: str, si: bool = False) -> str:
     """What a quantity is, in words."""
     if name in SYMBOLS:
         text = SYMBOLS[name].long_name
@@ -102,5 +102,5 @@ def meaning(name: str, si: bool = False) -> str:
         text = _MEANINGS.get(name, "")
     if not text or name not in DIMENSIONS:
         return text
-    unit, over = KINDS[DIMENSIONS[name]]
+    unit, over = DIMENSION_UNITS[DIMENSIONS[name]]
     return text + (", per length of the cylinder" * unit.endswith(" m-1") if si else over)

@@ -37,7 +37,7 @@ def registry() -> Any:
 
 
 @lru_cache(maxsize=256)
-def factor(unit: str, wanted: str) -> tuple[float, float]:
+def conversion_factor(unit: str, wanted: str) -> tuple[float, float]:
     """Factor and offset that convert a number in ``unit`` to ``wanted``: wanted = factor * number + offset.
 
     Parameters
@@ -57,7 +57,9 @@ def factor(unit: str, wanted: str) -> tuple[float, float]:
 
     units = registry()
     try:
-        zero, one = (units.Quantity(value, spelled(unit)).to(spelled(wanted)).magnitude for value in (0.0, 1.0))
+        zero, one = (
+            units.Quantity(value, pint_spelling(unit)).to(pint_spelling(wanted)).magnitude for value in (0.0, 1.0)
+        )
     except pint.DimensionalityError:
         raise ParameterError("unit", unit, f"a unit of the dimension of {wanted}") from None
     except Exception as error:  # pint raises errors of its parser and of Python's
@@ -72,13 +74,13 @@ def factor(unit: str, wanted: str) -> tuple[float, float]:
 def is_unit(text: str) -> bool:
     """Whether pint reads a text as a unit of whatever dimension; degrees Celsius as "C" are coulombs to it."""
     try:
-        registry().parse_units(spelled(text))
+        registry().parse_units(pint_spelling(text))
     except Exception:  # pint raises errors of its parser and of Python's
         return False
     return True
 
 
-def spelled(unit: str) -> str:
+def pint_spelling(unit: str) -> str:
     """A unit in pint's spelling: signs as words, and powers with ``**``."""
     text = unit.strip()
     for sign, word in _SIGNS.items():

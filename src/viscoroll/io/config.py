@@ -13,8 +13,8 @@ from typing import Any, Literal
 
 import msgspec
 
-from ..core.errors import FileError, ParameterError, unknown
-from ..core.sections import as_struct, fault, read, refuse_unknown
+from ..core.errors import FileError, ParameterError, unknown_name_error
+from ..core.sections import as_struct, check_keys, read_toml, section_error
 from ..cylinder import Cylinder
 from ..materials.material_toml import (
     SECTIONS,
@@ -75,11 +75,11 @@ def preset(name: str) -> Scene:
         An unknown name.
     """
     if not isinstance(name, str) or name not in PRESETS:
-        raise unknown("preset", name, PRESETS, "a preset")
+        raise unknown_name_error("preset", name, PRESETS, "a preset")
     return PRESETS[name]
 
 
-def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene | Cylinder:
+def read_roller(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene | Cylinder:
     """Scene or cylinder of a TOML file: of its ``preset``, its [scene], which may change a preset, or its [cylinder].
 
     ``preset`` names a scene of :mod:`presets`, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
@@ -93,13 +93,13 @@ def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene 
         A file that cannot be read, is not TOML, holds none of the three or a cylinder beside a scene, a
         misspelt or missing key, a value of the wrong type or out of its range.
     """
-    content = read(path)
+    content = read_toml(path)
     check_sections(path, content, dict.fromkeys(beside))
     try:
-        body = body_of(path, content, parse_materials(path, content))
+        body = make_roller(path, content, parse_materials(path, content))
         body.scene()  # refuses what leaves the range of doubles
     except ParameterError as error:
-        raise located(path, content, error) from error
+        raise locate_error(path, content, error) from error
     return body
 
 
@@ -108,21 +108,21 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
 
     ``more`` : other sections that the file may have, by their schema, or None where they are checked elsewhere.
     """
-    refuse_unknown(path, "", content, (*SCENES, *SECTIONS, *more))
+    check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
-        raise fault(path, "", "", "one of preset, [scene] and [cylinder] is needed")
+        raise section_error(path, "", "", "one of preset, [scene] and [cylinder] is needed")
     scenes = [name for name in ("preset", "scene") if name in content]
     if "cylinder" in content and scenes:
-        raise fault(path, "", "cylinder", f"[cylinder] stands alone: without {' and '.join(scenes)}")
+        raise section_error(path, "", "cylinder", f"[cylinder] stands alone: without {' and '.join(scenes)}")
     for name in SECTIONS:
         if name in content and "cylinder" not in content:
-            raise fault(path, "", name, f"[{name}] goes with [cylinder]")
+            raise section_error(path, "", name, f"[{name}] goes with [cylinder]")
     for name, kind in {**SCHEMA, **more}.items():
         if name in content and kind is not None:
             as_struct(path, name, content[name], kind)
 
 
-def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
+def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
     """What rolls by checked sections, whose numbers may be arrays; raises ParameterError, of a series FileError."""
     if "cylinder" in content:
         return Cylinder(**content["cylinder"], **materials)
@@ -138,14 +138,14 @@ def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any])
     return Scene(**given)
 
 
-def located(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
+def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
     """A refusal with the section and the line of what it names."""
     own = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
     section = "" if error.name in content else next(own, next((name for name in SCHEMA if name in content), ""))
-    return fault(path, section, error.name, str(error))
+    return section_error(path, section, error.name, str(error))
 
 
-def read_bodies(path: str | PathLike[str]) -> Any:
+def read_law_source(path: str | PathLike[str]) -> Any:
     """The pair, the series or bodies, or the alpha of a file: what has a contact law; of a layer the cylinder.
 
     ``path`` : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
@@ -153,11 +153,11 @@ def read_bodies(path: str | PathLike[str]) -> Any:
     Raises
     ------
     FileError
-        As :func:`read_materials` and :func:`read_body`.
+        As :func:`read_materials` and :func:`read_roller`.
     """
-    content = {} if Path(path).suffix == SUFFIX else read(path)
+    content = {} if Path(path).suffix == SUFFIX else read_toml(path)
     if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):
-        body = read_body(path)
+        body = read_roller(path)
         if isinstance(body, Cylinder):
             return body.pair if body.pair.covered is None else body
         return body.alpha if body.material is None else body.material
@@ -167,5 +167,5 @@ def read_bodies(path: str | PathLike[str]) -> Any:
     try:
         pair = Pair(found["material"], found.get("base"))
     except ParameterError as error:
-        raise fault(path, "base", error.name, str(error)) from error
-    return read_body(path) if pair.covered is not None and "cylinder" in content else pair
+        raise section_error(path, "base", error.name, str(error)) from error
+    return read_roller(path) if pair.covered is not None and "cylinder" in content else pair

@@ -21,9 +21,9 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import checked, number, whole
-from ..core.errors import ParameterError, one_of, unknown
-from ..core.typed import Floats
+from ..core.array_types import Floats
+from ..core.checks import check_array, check_integer, check_number
+from ..core.errors import ParameterError, exactly_one_error, unknown_name_error
 
 __all__ = ["Sample", "sample"]
 
@@ -72,19 +72,21 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     strata of every quantity, for "sobol" where n is a power of two (``tests/test_sampling.py``).
     """
     if (seed is None) == (rng is None):
-        raise one_of("seed", "rng", both=rng is not None)
+        raise exactly_one_error("seed", "rng", both=rng is not None)
     if seed is None:
         seed = int(np.random.default_rng(rng).integers(2**63))
-    n, seed = whole("n", n, 1, 10**12), whole("seed", seed, 0, 2**63 - 1)
+    n, seed = check_integer("n", n, 1, 10**12), check_integer("seed", seed, 0, 2**63 - 1)
     if design not in get_args(Design):
-        raise unknown("design", design, get_args(Design), "a design")
+        raise unknown_name_error("design", design, get_args(Design), "a design")
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]
     rows = points(design, seed, n, len(random), 0, n, 0)
     with np.errstate(all="ignore"):  # what overflows is infinite, and refused
-        drawn = {name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)}
+        drawn = {
+            name: check_array(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)
+        }
     found = Sample()
     for name, value in quantities.items():
-        found[name] = drawn[name] if name in drawn else np.full(n, number(name, value))
+        found[name] = drawn[name] if name in drawn else np.full(n, check_number(name, value))
     found.seed, found.design = seed, design
     return found
 
@@ -94,7 +96,7 @@ def _is_distribution(name: str, value: Any) -> bool:
     """Whether it is a distribution, else a number; raises ParameterError where it is neither."""
     random = hasattr(value, "ppf")
     try:
-        number(name, value.ppf(0.5) if random else value)
+        check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
         allowed = "a finite number or a frozen scipy.stats distribution"
         raise ParameterError(name, f"{value!s:.60}", allowed) from None

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters, Rolls, scale_of
-from ..core.blocks import flattened, run_blocks, thread_count
-from ..core.checks import broadcast_shape, extent, number, one_name, yes_or_no
-from ..core.drive import Feedback, Schedule, over
-from ..core.errors import MotionStatus, ParameterError, refuse_unknown
-from ..core.scale import OF_TIME
-from ..core.typed import Booleans, Floats, Integers, Numbers
+from ..core.array_types import Booleans, Floats, Integers, Numbers
+from ..core.blocks import broadcast_vector, run_blocks, thread_count
+from ..core.checks import broadcast_shape, check_bool, check_choice, check_number, extent
+from ..core.drive import Feedback, Schedule, make_dimensionless
+from ..core.errors import MotionStatus, ParameterError, check_names
+from ..core.scale import TIME_POWERS
 from ..materials.bodies import Bodies
 from ..materials.law.per_element import record_of_alphas, record_of_materials
 from ..materials.law.table import law_table
@@ -111,12 +111,12 @@ def ensemble(
     motions (``tests/test_invariance.py``).
     """
     units = scale_of(roller)
-    times, names = output_times(t, units), refuse_unknown("fields", fields, FIELDS, "a field")
-    one_name("method", method, "auto", "flow", "integrate")
+    times, names = output_times(t, units), check_names("fields", fields, FIELDS, "a field")
+    check_choice("method", method, "auto", "flow", "integrate")
     starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
-    progress = yes_or_no("progress", progress)
+    progress = check_bool("progress", progress)
     if speed is not None:
-        speed = number("speed", speed, unit=units, low=0.0, strict=True)
+        speed = check_number("speed", speed, unit=units, low=0.0, strict=True)
     asked = Asked(rtol, rest, max_steps, resolve)
     begun = begin(roller, starts, given, times[-1], asked, unsteady=unsteady, rested=rested)
     begun.roller.look_at_starts(*starts)
@@ -129,7 +129,7 @@ def ensemble(
         thread_count(threads), "motions" if progress else None,
     )  # fmt: skip
     try:
-        answer, found = _answer(many, method, over("speed", speed, scale))
+        answer, found = _answer(many, method, make_dimensionless("speed", speed, scale))
     except ParameterError as error:
         raise in_words(error, scale) from error
     rows: dict[str, Any] = {name: np.zeros((count, times.size)) for name in names}
@@ -189,7 +189,7 @@ def _answer(many: _Many, method: str, speed: float | None) -> tuple[FlowResult, 
             answer = look_up_ensemble(chosen, *given, of, threads=many.threads, progress=many.bar)
             if unit != 1.0:
                 for n, name in enumerate(rows):
-                    answer.out[n] *= unit ** OF_TIME.get(name, 0)
+                    answer.out[n] *= unit ** TIME_POWERS.get(name, 0)
                 answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
     if answer is None:
         answer = FlowResult.empty(len(rows), count, times.size)
@@ -213,7 +213,7 @@ def _inputs(begun: Begun, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
     count = shape[0] if shape else 1
-    return {name: flattened(array, (count,)) for name, array in arrays.items()}, count
+    return {name: broadcast_vector(array, (count,)) for name, array in arrays.items()}, count
 
 
 def _map_of(
@@ -237,7 +237,7 @@ def _integrate_others(answer: FlowResult, many: _Many) -> Integers:
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
-        alpha, *own = (flattened(array[left], left.shape) if array.size > 1 else array for array in inputs)
+        alpha, *own = (broadcast_vector(array[left], left.shape) if array.size > 1 else array for array in inputs)
         batch, drive = (*law(alpha, left), *own), begun.ready.for_kernel(left)
         answer.out[:, left], info = integrate(left.size, batch, drive, many.times, begun.limits, rows)
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T

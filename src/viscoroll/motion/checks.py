@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import broadcast_shape, checked, extent, number, whole
+from ..core.array_types import Floats
+from ..core.checks import broadcast_shape, check_array, check_integer, check_number, extent
 from ..core.errors import ParameterError
 from ..core.scale import Scale, Units
-from ..core.typed import Floats
 
 RTOL_RANGE = (1e-12, 1e-2)
 SPEED_RANGE = (1e-300, 1e100)
@@ -28,7 +28,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     ParameterError
         Otherwise.
     """
-    times = np.array(checked("t", t, unit=units, low=0.0), ndmin=1)  # contiguous, and the result's own
+    times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous, and the result's own
     if times.ndim != 1 or times.size == 0:
         raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
     backward = times[1:] < times[:-1]
@@ -70,10 +70,10 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
         rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
     low, high = RTOL_RANGE
-    if not low <= number("rtol", rtol) <= high:
+    if not low <= check_number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = 0.0 if rest is None else number("rest", rest, low=0.0, strict=True)
-    return float(rtol), threshold, whole("max_steps", max_steps, 1, MOST_STEPS)
+    threshold = 0.0 if rest is None else check_number("rest", rest, low=0.0, strict=True)
+    return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
@@ -91,7 +91,7 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     if type(V0) is float and type(omega0) is float and -high <= V0 <= high and -high <= omega0 <= high:
         if abs(V0) >= low or abs(omega0) >= low:
             return V0, omega0
-    V, omega = checked("V0", V0), checked("omega0", omega0)
+    V, omega = check_array("V0", V0), check_array("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.array_types import Floats
 from ..core.checks import broadcast_shape
-from ..core.typed import Floats
 from ..kernels.motion.records import OMEGA, SPEED
 from .fitted import TERMS
 from .schedule import Corners, Course, Curve, at_start, curve, motions_of, of_some, pieces_of, slope_of

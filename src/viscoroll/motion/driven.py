@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import broadcast_shape, checked
-from ..core.drive import Feedback, Schedule, over, slope_factor
-from ..core.errors import ParameterError, one_of
-from ..core.labels import Labels, unlabelled
+from ..core.array_types import Floats
+from ..core.checks import broadcast_shape, check_array
+from ..core.drive import Feedback, Schedule, make_dimensionless, slope_tan_cos
+from ..core.errors import ParameterError, exactly_one_error
+from ..core.labels import Labels, strip_labels
 from ..core.scale import HasUnits, Scale
-from ..core.typed import Floats
 from ..kernels.motion.records import NEITHER
 from .checks import start_speeds
 from .courses import SPEEDS, Courses
@@ -58,11 +58,15 @@ class Drive(NamedTuple):
     @property
     def numbers(self) -> dict[str, Floats]:
         """What is given as a number, or as one a motion, by name."""
-        return {name: checked(name, each) for name, each in self.given.items() if _is_number(each)}
+        return {name: check_array(name, each) for name, each in self.given.items() if _is_number(each)}
 
     def over(self, scale: Scale) -> Drive:
         """The same without dimension."""
-        return Drive(*map(over, self._fields, self, (scale,) * len(self))) if scale.si and self.acts else self
+        return (
+            Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
+            if scale.si and self.acts
+            else self
+        )
 
     @property
     def has_callable(self) -> bool:
@@ -83,12 +87,12 @@ def _still(name: str, given: Any) -> bool:
     """Whether it is 0 at all times; raises ParameterError for what is no number and no function of time."""
     if isinstance(given, Feedback):
         return not (np.any(given.V) or np.any(given.omega)) and _still(name, given.value)
-    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else checked(name, given)))
+    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else check_array(name, given)))
 
 
 def bare(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> tuple[tuple[Any, Any], Drive, Labels | None]:
     """Start speeds and drive without units and labels of xarray and pandas, and these labels; raises ParameterError."""
-    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
+    plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels
 
 
@@ -171,9 +175,9 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolv
         raise ParameterError("resolve", resolve, "left out", sentence)
     if not drive.acts:
         return Prepared(*undriven(), *start_speeds(V0, omega0))
-    tangent = slope_factor(drive.slope)[0]
+    tangent = slope_tan_cos(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
-        raise one_of("V", "omega", both=True)
+        raise exactly_one_error("V", "omega", both=True)
     for name, by, why in _BESIDE:
         if getattr(drive, by) is not None and (beside := getattr(drive, name)) is not None:
             raise ParameterError(name, beside, "left out", f"{name} is given beside {by}=: leave it out, {why}")
@@ -218,7 +222,7 @@ def _prescribed_start(name: str, given: Any, courses: Courses, speed: Any) -> An
     start, scale = courses.starts()
     if callable(speed):  # its fit is off by rounding, and may be of the other sign
         start = np.array([float(speed(0.0))])
-    if given is not None and not (np.abs(checked(name, given) - start) <= _START * scale).all():
+    if given is not None and not (np.abs(check_array(name, given) - start) <= _START * scale).all():
         raise ParameterError(name, given, f"None, or {float(start[0]):.12g} as prescribed")
     if start.size > 1:
         return start
@@ -229,7 +233,7 @@ def _gains(drive: Drive) -> Floats:
     """Of force over V, force over omega, torque over V, torque over omega."""
     pairs = [(each.V, each.omega) if isinstance(each, Feedback) else (0.0, 0.0) for each in (drive.force, drive.torque)]
     rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
-    rows[3] = rows[3] - checked("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
+    rows[3] = rows[3] - check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
     count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
     return np.array([np.broadcast_to(row, count) for row in rows])
 

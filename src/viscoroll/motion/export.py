@@ -12,7 +12,7 @@ from .. import __version__
 from ..contact_law.parameters import PARAMETERS
 from ..core.drive import Feedback, Schedule
 from ..core.errors import MotionStatus
-from ..core.results import short
+from ..core.results import format_value
 from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
@@ -82,7 +82,9 @@ def _drive(result: Rolled) -> tuple[dict[str, Any], dict[str, Any]]:
         given = whole.value if feeds_back else whole
         gains = {"gain_V": whole.V, "gain_omega": whole.omega} if feeds_back else {}
         if callable(given):
-            told = (f", {what} = {short(gain) if np.ndim(gain) else f'{gain:.15g}'}" for what, gain in gains.items())
+            told = (
+                f", {what} = {format_value(gain) if np.ndim(gain) else f'{gain:.15g}'}" for what, gain in gains.items()
+            )
             texts[key] = "a function of t" + "".join(told)
             continue
         about = attributes(name, result.scale.si)

@@ -23,9 +23,9 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from ..core.checks import checked, number
+from ..core.array_types import Floats
+from ..core.checks import check_array, check_number
 from ..core.errors import ParameterError
-from ..core.typed import Floats
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: terms of a polynomial, looks at a callable, values taken of it at most
@@ -83,7 +83,7 @@ class _Given:
     def values(self, at: Floats) -> Floats:
         """Its values, checked."""
         self.taken += at.size
-        found = checked(f"{self.name}(t)", [self.function(t) for t in at.tolist()], low=self.low)
+        found = check_array(f"{self.name}(t)", [self.function(t) for t in at.tolist()], low=self.low)
         if found.shape != at.shape:
             raise ParameterError(f"{self.name}(t)", f"array of shape {found.shape[1:]}", "a number")
         return found
@@ -166,7 +166,7 @@ def fitted(
     """
     looks = LOOKS
     if resolve is not None:
-        spacing = number("resolve", resolve, low=0.0, strict=True)
+        spacing = check_number("resolve", resolve, low=0.0, strict=True)
         if spacing * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise ParameterError("resolve", spacing, allowed)

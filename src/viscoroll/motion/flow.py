@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters
-from ..core.blocks import flattened, run_blocks
-from ..core.typed import Floats, Integers
+from ..core.array_types import Floats, Integers
+from ..core.blocks import broadcast_vector, run_blocks
 from .flow_store import FlowMap, load, path_of, save
 from .rolling import motions
 
@@ -203,7 +203,7 @@ def look_up_ensemble(
     from ..kernels.flow.loop import look_up_motions
     from ..kernels.flow.records import Flow
 
-    V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
+    V0, omega0, times = (broadcast_vector(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     result = FlowResult.empty(len(rows), count, times.size)
     wanted = np.array(rows, np.int64)

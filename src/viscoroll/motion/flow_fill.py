@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.numerics.interpolation import Interpolation, chebyshev, powers_of_chebyshev, to_chebyshev
 from ..kernels.rows.simd_polynomial import TERMS
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.files import seal, seal_holds
-from ..core.typed import Floats
+from ..core.array_types import Floats
+from ..core.files import seal, seal_matches
 from ..kernels.compile.folder import cache_root, read_private, write_private
 from ..materials.prony import Prony
 
@@ -109,7 +109,7 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
     """The map in the bytes ``content`` of a file; raises ValueError if it is damaged or of other ``parameters``."""
     from ..kernels.flow.layout import SIZE
 
-    if not seal_holds(content):
+    if not seal_matches(content):
         raise ValueError("its bytes differ from the SHA-256 at their end")
     with np.load(io.BytesIO(content)) as data:
         if not np.array_equal(data["parameters"], _numbers(parameters)):

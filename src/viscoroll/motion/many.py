@@ -11,11 +11,11 @@ import numpy as np
 from ..contact_law.assumptions import Validity
 from ..contact_law.judged import validity
 from ..contact_law.steadiness import Steadiness
-from ..core.checks import checked
-from ..core.errors import MotionStatus, ParameterError, described
+from ..core.array_types import Booleans, Floats, Integers
+from ..core.checks import check_array
+from ..core.errors import MotionStatus, ParameterError, describe_value
 from ..core.labels import Labels
-from ..core.results import Row
-from ..core.typed import Booleans, Floats, Integers
+from ..core.results import SummaryRow
 from .result import Rolled
 
 if TYPE_CHECKING:
@@ -96,9 +96,9 @@ class Ensemble(Rolled):
         from .summaries import summary_of
 
         given: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
-        levels = checked("quantiles", given, low=0.0, high=1.0)
+        levels = check_array("quantiles", given, low=0.0, high=1.0)
         if levels.ndim != 1:
-            raise ParameterError("quantiles", described(quantiles), "a list of numbers")
+            raise ParameterError("quantiles", describe_value(quantiles), "a list of numbers")
         return summary_of(self, tuple(levels.tolist()))
 
     def validity(self) -> Validity:
@@ -128,18 +128,18 @@ class Ensemble(Rolled):
         some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(np.int64))
         return some, fastest["V"][some], np.copysign(fastest["omega"], self.V0 * self.omega0)[some]
 
-    def _card(self) -> tuple[str, list[Row]]:
-        ends = [Row("ended", f"{count}: {message}") for message, count in self.messages().items()]
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
         rows = [self._times()]
         for name in ("V", "omega", "x"):
             if (values := getattr(self, name)) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]
                 low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
                 text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
-                rows.append(Row(name, text, self._unit(name)))
-        rows.append(Row("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
+                rows.append(SummaryRow(name, text, self._unit(name)))
+        rows.append(SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
         if self.flow.any():
-            rows.append(Row("by the flow map", f"{self.flow.sum()}, stated error {self.flow_error:.2g}"))
+            rows.append(SummaryRow("by the flow map", f"{self.flow.sum()}, stated error {self.flow_error:.2g}"))
         return f"Ensemble of {len(self)} motions", rows + ends
 
     def to_xarray(self) -> xr.Dataset:

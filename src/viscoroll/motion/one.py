@@ -14,9 +14,9 @@ from ..contact_law.assumptions import Validity
 from ..contact_law.contact import contact
 from ..contact_law.judged import validity
 from ..contact_law.steadiness import Steadiness
+from ..core.array_types import Floats
 from ..core.errors import MotionStatus, ParameterError
-from ..core.results import Row, Values
-from ..core.typed import Floats
+from ..core.results import SummaryRow, Values
 from .checks import SPEED_RANGE, output_times
 from .driven import ROWS
 from .result import Rolled
@@ -152,22 +152,26 @@ class Motion(Rolled):
         free, rolls = self.scene.freely(V / self.scale["V"]).scaled(self.scale), self.regime[reached] > 0
         return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         rows = [self._times()]
-        rows += [Row(name, _course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
+        rows += [SummaryRow(name, _course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
         for name, given in self.drive.given.items():
             called = f"prescribed {name}" if name in ("V", "omega") else name  # which have a row of their own above
-            rows.append(Row(called, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
+            rows.append(
+                SummaryRow(called, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name))
+            )
         if not np.isnan(self.onset_time):
-            rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
+            rows.append(SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
         if self.switches:
             last = self.switches[-1]
             died = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(self.rest_time) else ""
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
-            rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{died}"))
+            rows.append(
+                SummaryRow("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{died}")
+            )
         if self.reversals.size:
-            rows.append(Row("reversals of V", str(self.reversals.size)))
-        return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
+            rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
+        return "Motion", [*rows, SummaryRow("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
 
     def at(self, t: ArrayLike) -> Motion:
         """The same motion at other times within [0, end]; by the continuous output of the methods.

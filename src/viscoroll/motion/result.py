@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..contact_law.parameters import Parameters, Rolls
+from ..core.array_types import Floats
 from ..core.errors import MotionStatus
-from ..core.results import Row, Shown, unit_of
+from ..core.results import Result, SummaryRow, unit_of
 from ..core.scale import Scale
 from ..core.symbols import attributes
-from ..core.typed import Floats
 from .driven import Drive
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Rolled(Shown):
+class Rolled(Result):
     """What was rolled, and its rows over the output times."""
 
     roller: Rolls
@@ -59,5 +59,5 @@ class Rolled(Shown):
     def _unit(self, name: str) -> str:
         return unit_of(attributes(name, self.scale.si))
 
-    def _times(self) -> Row:
-        return Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))
+    def _times(self) -> SummaryRow:
+        return SummaryRow("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from ..contact_law.contact import contact
 from ..contact_law.parameters import Parameters, Rolls, framed, refuse_cover
 from ..contact_law.steadiness import CAUGHT
-from ..core.blocks import flattened, run_blocks
-from ..core.checks import checked, yes_or_no
-from ..core.drive import over
+from ..core.array_types import Floats, Integers
+from ..core.blocks import broadcast_vector, run_blocks
+from ..core.checks import check_array, check_bool
+from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
-from ..core.typed import Floats, Integers
 from ..materials.law.table import law_table
 from .checks import controls, in_words, refuse_end, refuse_many
 from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
@@ -74,18 +74,18 @@ def begin(
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
-    unsteady = unsteady is not False and yes_or_no("unsteady", unsteady)
+    unsteady = unsteady is not False and check_bool("unsteady", unsteady)
     if unsteady:
         refuse_cover(scene, "N is not known: leave unsteady=True out")
     if unsteady and not scene.like_bodies:
         sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     try:
-        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end) / scale["t"]
+        limits, last = controls(rtol, make_dimensionless("rest", rest, scale), max_steps), float(end) / scale["t"]
         if last == math.inf:
             refuse_end(float(end), scale["t"])
-        own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
-        spacing = None if resolve is None else over("resolve", resolve, scale)
+        own = make_dimensionless("V0", starts[0], scale), make_dimensionless("omega0", starts[1], scale)
+        spacing = None if resolve is None else make_dimensionless("resolve", resolve, scale)
         ready = prepared(drive.over(scale), *own, last, rtol, spacing)
         if ready.courses is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + ready.courses.corners)
@@ -108,7 +108,7 @@ def _time_of_rest(rested: Any, units: HasUnits) -> float:
     """
     if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
-    time = checked("rested", rested, unit=units, low=0.0)
+    time = check_array("rested", rested, unit=units, low=0.0)
     if time.ndim:
         raise ParameterError("rested", rested, "one time >= 0, or True")
     return float(time)
@@ -180,7 +180,7 @@ def motions(
     rows = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
     given, kappa, mu, j = parameters
     law, limits = law_table(given), (_RTOL, 0.0, _MOST_STEPS)
-    arrays = [flattened(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
+    arrays = [broadcast_vector(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
     out, info = np.empty((rows.size, starts[0].size, t.size)), np.empty((starts[0].size, _INFO))
 
     def work(start: int, stop: int) -> None:

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import checked
-from ..core.drive import Feedback, Schedule, refuse_more_than_t
+from ..core.array_types import Floats
+from ..core.checks import check_array
+from ..core.drive import Feedback, Schedule, require_time_argument
 from ..core.errors import ParameterError
-from ..core.typed import Floats
 from .fitted import fitted
 
 #: of the values of a piece, its first one where that is rounding
@@ -76,14 +76,14 @@ def course(
     if isinstance(given, Feedback):
         given = given.value
     if callable(given):
-        refuse_more_than_t(name, given)
+        require_time_argument(name, given)
         starts, terms, error = fitted(name, given, end, rtol, low, resolve)
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         return Curve(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
     if isinstance(given, Schedule):
-        return Corners(given.times, checked(f"values of {name}", given.values, low=low))
-    values = checked(name, 0.0 if given is None else given, low=low)
+        return Corners(given.times, check_array(f"values of {name}", given.values, low=low))
+    values = check_array(name, 0.0 if given is None else given, low=low)
     if values.ndim > 1:
         raise ParameterError(
             name, f"array of shape {values.shape}", "a number, one a motion, or a Schedule(times, values)"

@@ -6,10 +6,10 @@ import warnings
 from collections.abc import Callable
 
 from ..contact_law.parameters import Rolls
+from ..core.array_types import Numbers
 from ..core.drive import Feedback, Schedule
-from ..core.labels import BARE
+from ..core.labels import UNLABELLED_TYPES
 from ..core.scale import DIMENSIONLESS
-from ..core.typed import Numbers
 from .checks import output_times
 from .driven import Drive, bare
 from .one import Motion, integrated
@@ -120,7 +120,7 @@ def roll(
     """
     units = roller.scale if isinstance(roller, Rolls) else DIMENSIONLESS  # begin() refuses what is no roller
     times, given = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
-    if not BARE.issuperset(map(type, (V0, omega0, *given))):
+    if not UNLABELLED_TYPES.issuperset(map(type, (V0, omega0, *given))):
         (V0, omega0), given, _ = bare((V0, omega0), given, units)
     asked = Asked(rtol, rest, max_steps, resolve)
     begun = begin(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)

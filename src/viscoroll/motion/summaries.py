@@ -16,8 +16,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.array_types import Floats, Integers
 from ..core.errors import MotionStatus, ParameterError
-from ..core.typed import Floats, Integers
 from .export import column_attributes, provenance
 
 if TYPE_CHECKING:

@@ -31,7 +31,7 @@ def show(given: Namespace) -> None:
     from ...materials.material_toml import read_materials
 
     for section, material in read_materials(given.file).items():
-        print(f"[{section}] {as_text(*material._card())}\n")
+        print(f"[{section}] {as_text(*material._summary())}\n")
         series, T = material.prony, material.T_ref
         if series.E.size:
             columns = {"E_i": series.E, "tau_i [s]": series.tau * T, "J_i": series.J, "T_i [s]": series.T * T}

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from .spectrum import Data, Spectrum, has_plateau, misfits, on_times, polished
 
 #: decades that the grid of times reaches beyond the data, and modes a decade, as they are tried

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.errors import FileError, ParameterError
-from ...core.sections import hint
+from ...core.sections import suggestion
 from ...io.measurements import NO_UNIT, Numbers, Table, conversion, find, readings
 from .names import UNITS, Meaning, meanings
 
@@ -86,7 +86,7 @@ def _index(table: Table, heading: str) -> int:
     """Index of the column with a heading, with its unit or without; raises ParameterError."""
     found = find(table, heading)
     if found is None:
-        allowed = f"one of {', '.join(map(repr, table.headings))}{hint(str(heading), table.headings)}"
+        allowed = f"one of {', '.join(map(repr, table.headings))}{suggestion(str(heading), table.headings)}"
         raise ParameterError("columns", f"{heading!r:.60}", allowed)
     return found
 

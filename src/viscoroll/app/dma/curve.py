@@ -12,9 +12,9 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked
+from ...core.array_types import Floats
+from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 
 #: points that a curve must have
 FEWEST_POINTS = 3
@@ -145,7 +145,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    values = [checked(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
+    values = [check_array(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
     first = next(iter(columns))
     for name, column in zip(columns, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:

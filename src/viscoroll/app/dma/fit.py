@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, overload
 
-from ...core.checks import number, whole
-from ...core.errors import ParameterError, unknown
-from ...core.typed import Numbers
+from ...core.array_types import Numbers
+from ...core.checks import check_integer, check_number
+from ...core.errors import ParameterError, unknown_name_error
 from ...materials.prony import Prony
 from ...materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
 from ...materials.shift import check_celsius
@@ -132,7 +132,7 @@ def fit_prony(
     elif storage is None or loss is None:
         raise ParameterError("storage and loss", None, "given, as columns beside omega, or a record of read_dma alone")
     if on not in ("both", "storage"):
-        raise unknown("on", on, ("both", "storage"), "what shifts are found from")
+        raise unknown_name_error("on", on, ("both", "storage"), "what shifts are found from")
     mode, shifts = _mode("tension" if mode is None else mode), None
     if temperature is None:
         for name, value in (("reference", reference), ("shift", shift)):
@@ -212,7 +212,7 @@ def fit_relaxation(
 def _mode(mode: Any) -> Mode:
     """Which modulus; raises ParameterError."""
     if mode not in ("tension", "shear"):
-        raise unknown("mode", mode, ("tension", "shear"), "a kind of modulus")
+        raise unknown_name_error("mode", mode, ("tension", "shear"), "a kind of modulus")
     return mode
 
 
@@ -221,8 +221,8 @@ def _series(whole_data: Data, data: Data, modes: int | None, misfit: float) -> d
 
     whole_data, data : what was measured, and what stands for it in the fit.
     """
-    target = number("misfit", misfit, low=0.0, strict=True)
-    modes = None if modes is None else whole("modes", modes, 1, MOST_MODES)
+    target = check_number("misfit", misfit, low=0.0, strict=True)
+    modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
     low, high = whole_data.band
     if high > MOST_SPREAD * low:
         first = data._fields[0]

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.errors import FileError, ModelWarning, ParameterError, outside, refuse_unknown
+from ...core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
 from ...io.measurements import Numbers, Table, conversion, read_table
 from .columns import Column, columns_of, numbers_of
 from .names import OF_SHEAR, UNITS, meanings
@@ -75,7 +75,7 @@ def read_dma(
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
     named = dict(columns or {})
-    refuse_unknown("columns", named, UNITS, "a meaning")
+    check_names("columns", named, UNITS, "a meaning")
     given, fills = _units_given(units)
     table = read_table(path, lambda cells: _known(cells, named), decimal=decimal, encoding=encoding)
     if table.bare and not named:
@@ -133,7 +133,7 @@ def _units_given(units: Any) -> tuple[dict[str, str], dict[str, str]]:
     if units is not None and not by_name and not (isinstance(units, (tuple, list)) and len(units) == 2):
         raise ParameterError("units", f"{units!r:.60}", allowed)
     pairs = dict(units or {}) if by_name or not units else dict(zip(("frequency", "storage"), units, strict=True))
-    refuse_unknown("units", pairs, UNITS, "a meaning")
+    check_names("units", pairs, UNITS, "a meaning")
     for name, unit in pairs.items():
         try:
             conversion(str(unit), UNITS[name])
@@ -227,7 +227,7 @@ def _warn_assumed(table: Table, taken: list[Column], fills: Mapping[str, str]) -
         assumed += [f"{column.unit} ({word})" for column in without[:1]]
     if assumed:
         text = f"{table.path}: columns without a unit are taken in {' and '.join(assumed)}"
-        warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=outside())
+        warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=caller_level())
 
 
 def _refuse_mixed(table: Table, record: DynamicModuli) -> None:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...core.errors import ModelWarning, outside
-from ...core.results import Row, Shown
-from ...core.typed import Floats
+from ...core.array_types import Floats
+from ...core.errors import ModelWarning, caller_level
+from ...core.results import Result, SummaryRow
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,7 +22,7 @@ SAME_TEMPERATURE = 1.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DynamicModuli(Shown):
+class DynamicModuli(Result):
     """Storage and loss modulus over angular frequency, as :func:`viscoroll.read_dma` reads them from a file.
 
     It unpacks into its first three columns, ``omega, storage, loss = record``; ``fit_prony(record)`` takes it whole,
@@ -67,7 +67,7 @@ class DynamicModuli(Shown):
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
             text = f"{self.source}: three columns lose {' and '.join(lost)}: give the record whole, fit_prony(record)"
-            warnings.warn(text, ModelWarning, stacklevel=outside())
+            warnings.warn(text, ModelWarning, stacklevel=caller_level())
         return iter((self.omega, self.storage, self.loss))
 
     def __len__(self) -> int:
@@ -100,7 +100,7 @@ class DynamicModuli(Shown):
         axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, Pa")
         return figure
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """What was understood, in three lines: the points, the columns they are from, the notes."""
         words = [f"{self.omega.size} points", f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s"]
         words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")
@@ -108,5 +108,8 @@ class DynamicModuli(Shown):
             low, high = self.temperature.min(), self.temperature.max()
             words.append(f"{low:g} °C" if low == high else f"{low:g} to {high:g} °C")
         given = (f"{name} {self.columns[name]!r} in {self.units.get(name, '1')}" for name in self.columns)
-        rows = [Row("columns", "; ".join(given)), Row("notes", "; ".join(self.notes) or "no column left aside")]
+        rows = [
+            SummaryRow("columns", "; ".join(given)),
+            SummaryRow("notes", "; ".join(self.notes) or "no column left aside"),
+        ]
         return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.results import Row
+from ...core.results import SummaryRow
 from .shift import loose_pairs
 
 #: medians of the Kramers-Kronig ratio outside of which storage and loss are said not to go together
@@ -16,7 +16,7 @@ _SOUND = (0.8, 1.25)
 _NU = 0.49
 
 
-def card(fit: Any) -> tuple[str, list[Row]]:
+def card(fit: Any) -> tuple[str, list[SummaryRow]]:
     """What ``print(fit)`` shows, of a :class:`viscoroll.app.dma.SeriesFit`."""
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
@@ -24,29 +24,31 @@ def card(fit: Any) -> tuple[str, list[Row]]:
     return f"Prony series of {fit.prony.E.size} modes for {fit.points} points, {span}", [*_rows(fit)]
 
 
-def _rows(fit: Any) -> Iterator[Row]:
+def _rows(fit: Any) -> Iterator[SummaryRow]:
     prony, symbol = fit.prony, symbol_of(fit)
     floor = "" if fit.plateau else "; the least that is allowed: the data do not determine it"
-    yield Row(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
+    yield SummaryRow(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
     if fit.mode == "shear":
         factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
-        yield Row("shear", f"the data are of shear: material(nu=) takes E = 2 (1 + nu) G, {factor}")
-    yield Row("alpha", f"{prony.alpha:.6g} (instantaneous over long-time modulus)")
-    yield Row("T_ref", f"{fit.T_ref:.6g} s (the longest time)")
+        yield SummaryRow("shear", f"the data are of shear: material(nu=) takes E = 2 (1 + nu) G, {factor}")
+    yield SummaryRow("alpha", f"{prony.alpha:.6g} (instantaneous over long-time modulus)")
+    yield SummaryRow("T_ref", f"{fit.T_ref:.6g} s (the longest time)")
     if fit.temperature is not None:
-        yield Row("temperature", f"{fit.temperature:g} C, at which these times are")
+        yield SummaryRow("temperature", f"{fit.temperature:g} C, at which these times are")
     if fit.points > fit.data[0].size:
-        yield Row("thinned", f"the means of {fit.data[0].size} logarithmic bins stand for the points here and below")
+        yield SummaryRow(
+            "thinned", f"the means of {fit.data[0].size} logarithmic bins stand for the points here and below"
+        )
     yield from fit._rows()
-    yield Row("outside", _outside(fit))
-    yield Row("wider", "with a grid of times wider on either side beside these, two a decade, none left out:")
+    yield SummaryRow("outside", _outside(fit))
+    yield SummaryRow("wider", "with a grid of times wider on either side beside these, two a decade, none left out:")
     for other in fit.wider:
         ratios = f"{symbol} times {other.E / fit.E:.4g}, alpha times {other.alpha / prony.alpha:.4g}"
         change = f"M changes by up to {other.M_change:.2%} at speeds inside the data"
-        yield Row("", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}")
-    yield Row("modes", f"{symbol}_i/{symbol}      tau_i, s")
+        yield SummaryRow("", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}")
+    yield SummaryRow("modes", f"{symbol}_i/{symbol}      tau_i, s")
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
-        yield Row("", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}")
+        yield SummaryRow("", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}")
 
 
 def symbol_of(fit: Any) -> str:
@@ -54,34 +56,37 @@ def symbol_of(fit: Any) -> str:
     return "G" if fit.mode == "shear" else "E"
 
 
-def of_dynamic(fit: Any) -> list[Row]:
+def of_dynamic(fit: Any) -> list[SummaryRow]:
     """The lines on misfit, Kramers-Kronig and shifts, of a :class:`viscoroll.Fit`."""
     symbol = symbol_of(fit)
     misfit = f"{fit.misfit.storage:.2%} in {symbol}', {fit.misfit.loss:.2%} in {symbol}'' (rms, relative)"
-    rows = [Row("misfit", misfit + _asked(fit)), Row(f"{symbol}''", _together(fit.kramers_kronig.median, symbol))]
+    rows = [
+        SummaryRow("misfit", misfit + _asked(fit)),
+        SummaryRow(f"{symbol}''", _together(fit.kramers_kronig.median, symbol)),
+    ]
     if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
         return rows
     factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
-    rows.append(Row("shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"))
+    rows.append(SummaryRow("shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"))
     if shifts.distinct > shifts.temperature.size:
         text = f"{shifts.distinct} temperatures, within 0.5 K of one another, were taken for {shifts.temperature.size}"
-        rows.append(Row("", text))
+        rows.append(SummaryRow("", text))
     if np.isfinite(shifts.mismatch).any():
         most = np.nanmax(shifts.mismatch)
-        rows.append(Row("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"))
+        rows.append(SummaryRow("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"))
     open_ones = (
         f"the overlap does not fix the shift {pair}: the curves are flat there" for pair in loose_pairs(shifts)
     )
-    return rows + [Row("", text) for text in open_ones]
+    return rows + [SummaryRow("", text) for text in open_ones]
 
 
-def of_relaxation(fit: Any) -> list[Row]:
+def of_relaxation(fit: Any) -> list[SummaryRow]:
     """The lines on the misfit, of a :class:`viscoroll.RelaxationFit`."""
     symbol = symbol_of(fit)
     misfit = f"{fit.misfit:.2%} in {symbol}(t) (rms, relative){_asked(fit)}"
     return [
-        Row("misfit", misfit),
-        Row("", f"{symbol}'' follows from the slope of {symbol}(t), with ten times this error or more"),
+        SummaryRow("misfit", misfit),
+        SummaryRow("", f"{symbol}'' follows from the slope of {symbol}(t), with ten times this error or more"),
     ]
 
 

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 
 from ...contact_law.assumptions import Assumption, measurement, passage
 from ...contact_law.contact import contact
-from ...core.checks import checked
+from ...core.array_types import Booleans, Floats, Numbers
+from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.plots.measured import fitted, relaxed
-from ...core.results import Row, Shown
-from ...core.typed import Booleans, Floats, Numbers
+from ...core.plots.measurements import fitted, relaxed
+from ...core.results import Result, SummaryRow
 from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
@@ -42,7 +42,7 @@ class Misfit(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class SeriesFit(Shown):
+class SeriesFit(Result):
     """A Prony series fitted to measured moduli: what :class:`Fit` and :class:`RelaxationFit` have in common.
 
     E : long-time modulus, in the unit of the data; of tension or of shear, as ``mode`` says.
@@ -163,7 +163,7 @@ class SeriesFit(Shown):
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
             raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
-        speed = checked("V", V, unit="m s-1")
+        speed = check_array("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
         seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return measurement(seen, {"the material": self.measured})
@@ -180,9 +180,9 @@ class SeriesFit(Shown):
         about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series", "modulus": self.mode}
         return xr.Dataset(data, {place: (place, self.data[0], {"units": unit})}, about)
 
-    _card = card
+    _summary = card
 
-    def _rows(self) -> list[Row]:
+    def _rows(self) -> list[SummaryRow]:
         """The lines of the report on misfit and data."""
         raise NotImplementedError
 

@@ -11,9 +11,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked
-from ...core.errors import ModelWarning, ParameterError, outside
-from ...core.typed import Floats
+from ...core.array_types import Floats
+from ...core.checks import check_array
+from ...core.errors import ModelWarning, ParameterError, caller_level
 from ...materials.shift import USUAL_RANGE, check_celsius, relative_shift
 from .curve import Curve, curve_of, thinned
 from .sweeps import default_reference, listed_factors, nearest, points_of, sets_of
@@ -84,7 +84,9 @@ def master_curve(
         Curves so flat that their overlap does not fix the shift; temperatures that look like kelvin.
     """
     at, columns, first = points_of(temperature, omega, storage, loss)
-    whole = [checked(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)]
+    whole = [
+        check_array(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)
+    ]
     sets = sets_of(at, first)
     temperatures = sets.temperature
     check_celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
@@ -110,7 +112,7 @@ def master_curve(
     shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(at).size)
     if loose := loose_pairs(shifts):
         text = f"overlap does not fix the shift {'; '.join(loose)}: curves on a plateau; give shift="
-        warnings.warn(text + (', or try on="storage"' if on == "both" else ""), ModelWarning, stacklevel=outside())
+        warnings.warn(text + (', or try on="storage"' if on == "both" else ""), ModelWarning, stacklevel=caller_level())
     return curve_of(whole[0] * factor[sets.which], whole[1], whole[2]), shifts
 
 

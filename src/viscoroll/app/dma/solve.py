@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import FileError
-from ...core.typed import Floats
 from ...io.measurements import Numbers, Table
 
 #: pair of names -> storage and loss from them, the pairs that lose the least first

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from .curve import Curve, Relaxation
 
 #: modes whose part of the curve is smaller, relative to it, are left out

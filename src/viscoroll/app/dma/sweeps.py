@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.checks import checked
+from ...core.array_types import Floats, Integers
+from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.quantities import in_unit
-from ...core.typed import Floats, Integers
+from ...core.quantities import to_unit
 from .curve import UNITS, Curve
 from .record import SAME_TEMPERATURE
 
@@ -29,8 +29,8 @@ class Sets(NamedTuple):
 
 def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
     """A temperature each point, and the columns; of lists of curves the first point of each, else None."""
-    given = checked("temperature", temperature, unit="degC")
-    columns = tuple(in_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
+    given = check_array("temperature", temperature, unit="degC")
+    columns = tuple(to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         if given.ndim != 1:
             raise ParameterError("temperature", f"of shape {given.shape}", "one a curve")
@@ -95,7 +95,7 @@ def nearest(base: float, temperatures: Floats, name: str) -> int:
 
 def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, float]:
     """Factors of the sets, 1 at the reference, and the reference, of factors in the order of the curves."""
-    factors, temperatures = checked("shift", shift), sets.temperature
+    factors, temperatures = check_array("shift", shift), sets.temperature
     if not (factors > 0.0).all():
         raise ParameterError("shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms")
     if factors.shape != sets.given.shape:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...contact_law.assumptions import passage
 from ...contact_law.contact import contact
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ...materials.prony import Prony
 from ...scene import Scene
 from .choose import grid_of_times

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from ...core.checks import whole, yes_or_no
-from ...core.errors import ParameterError, refuse_unknown
-from ...core.typed import Floats
+from ...core.array_types import Floats
+from ...core.checks import check_bool, check_integer
+from ...core.errors import ParameterError, check_names
 from ...cylinder import Cylinder
 from ...materials.material_toml import SECTIONS
 from .fit import Identification
@@ -71,20 +71,20 @@ def identify(
     ):  # fmt: skip
         if not isinstance(value, kind):
             raise ParameterError(name, f"{value!r:.60}", allowed)
-    refuse_unknown("shift", shifts, SECTIONS, "a body")
-    count, seed, records = whole("starts", starts, 1), whole("seed", seed, 0), _called(data)
+    check_names("shift", shifts, SECTIONS, "a body")
+    count, seed, records = check_integer("starts", starts, 1), check_integer("seed", seed, 0), _called(data)
     for record in records.values():
         cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
-    problem = Problem(cylinder, unknowns, records, yes_or_no("robust", robust), shifts)
+    problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
     most = problem.points - any(one.estimated for one in problem.columns)
     if len(unknowns) > most:
         allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
         raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
     planned = not any(record.measured for record in records.values())
-    return Identification(problem, _minima(problem, 1 if planned else count, seed, yes_or_no("progress", progress)))
+    return Identification(problem, _minima(problem, 1 if planned else count, seed, check_bool("progress", progress)))
 
 
 def _called(data: Iterable[Record]) -> dict[str, Record]:

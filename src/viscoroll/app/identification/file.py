@@ -11,10 +11,10 @@ from typing import Any
 
 import msgspec
 
-from ...core.errors import FileError, ModelWarning, ParameterError, outside
-from ...core.sections import as_struct, fault, read, refuse_unknown
+from ...core.errors import FileError, ModelWarning, ParameterError, caller_level
+from ...core.sections import as_struct, check_keys, read_toml, section_error
 from ...cylinder import Cylinder
-from ...io.config import read_body
+from ...io.config import read_roller
 from ...io.measurements import find, is_heading, missing, quantity, read_table
 from ...materials.material_toml import parse_shifts
 from .records import Coastdown, Record, Resistance, Traction
@@ -39,12 +39,14 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
         A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with its line.
         A file of data that cannot be read, or without a column.
     """
-    cylinder, content = read_body(path, tuple(_SECTIONS)), {"prior": {}} | read(path)
+    cylinder, content = read_roller(path, tuple(_SECTIONS)), {"prior": {}} | read_toml(path)
     if not isinstance(cylinder, Cylinder):
-        raise fault(path, "", "scene", "measurements are in SI units: give [cylinder]")
+        raise section_error(path, "", "scene", "measurements are in SI units: give [cylinder]")
     for section, kind in _SECTIONS.items():
         if not isinstance(content.get(section), kind):
-            raise fault(path, "", section, f"section {'[[data]]' if kind is list else f'[{section}]'} is missing")
+            raise section_error(
+                path, "", section, f"section {'[[data]]' if kind is list else f'[{section}]'} is missing"
+            )
     data = [_record(Path(path), section) for section in content["data"]]
     given = {name: content[name] for name in ("unknown", "prior")}
     return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | given
@@ -59,7 +61,7 @@ def _record(path: Path, given: Any) -> Record:
     own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
     section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
-        refuse_unknown(path, f"data.{name}", getattr(section, name), columns)
+        check_keys(path, f"data.{name}", getattr(section, name), columns)
     values = {name: getattr(section, name) for name, *_ in own}
     more: Any = {name: None if value == _UNKNOWN else value for name, value in values.items()}
     try:
@@ -99,7 +101,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         raise FileError(path, f"{problem}; a plan has no other columns")
     if others:
         text = f"{path.name}: columns that are left aside: {', '.join(others)}"
-        warnings.warn(text, ModelWarning, stacklevel=outside())
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
     found = {}
     for name in where:
         unit = kind.unit(name)

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.checks import number, whole
-from ...core.errors import ParameterError, refuse_unknown
-from ...core.plots.measured import compared
-from ...core.results import Row, Shown, Values
-from ...core.typed import Floats
+from ...core.array_types import Floats
+from ...core.checks import check_integer, check_number
+from ...core.errors import ParameterError, check_names
+from ...core.plots.measurements import compared
+from ...core.results import Result, SummaryRow, Values
 from .problem import Found, Problem
 from .profile import Likelihood, Product
 from .records import Record
@@ -40,7 +40,7 @@ class Prediction(Values):
         return Band(*(super(Prediction, self).__getattr__(name + end) for end in ("", "_low", "_high")))
 
 
-class Identification(Shown):
+class Identification(Result):
     """Values that fit measurements best, how well they are known, and what the data do not say.
 
     ``print`` shows a report; its intervals are profiles, which take about as long as the fit for each unknown.
@@ -92,7 +92,7 @@ class Identification(Shown):
         """What chi2 may rise by: chi-squared where sigma is given, F where it is estimated."""
         from scipy import stats
 
-        level = number("level", level, low=0.0, strict=True, high=0.9999)
+        level = check_number("level", level, low=0.0, strict=True, high=0.9999)
         estimated = any(one.estimated for one in self._problem.columns)
         return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
 
@@ -160,7 +160,9 @@ class Identification(Shown):
         for name, (_, span) in record.starts(self.cylinder.R).items():
             if span is not None:
                 raise ParameterError(name, None, "a number", f"{name} of the record is open: a prediction needs it")
-        return self._predicted(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
+        return self._predicted(
+            record, "", level, check_integer("draws", draws, 0, _DRAWS), check_integer("seed", seed, 0)
+        )
 
     def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         problem, cov, u = self._problem, self._about.cov, self._about.best.u
@@ -198,14 +200,14 @@ class Identification(Shown):
         return J / [one.spread(values.get(one.name, one.start)) for one in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
-        refuse_unknown("values", values, self.values, "an unknown")
+        check_names("values", values, self.values, "an unknown")
         given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
-        return np.array([one.to_u(number(one.name, value, **one.bounds(one.name))) for one, value in given])
+        return np.array([one.to_u(check_number(one.name, value, **one.bounds(one.name))) for one, value in given])
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
-        rows = [Row(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
-        return title, [*rows, Row("chi2", f"{self.chi2:.1f} of {self.dof}")]
+        rows = [SummaryRow(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
+        return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} of {self.dof}")]
 
     __str__, to_xarray = report, as_dataset
     _figure = compared

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import ViscorollError
-from ...core.typed import Floats
 from ...cylinder import Cylinder
 from .records import Record
 from .unknowns import Shift, Unknown, cylinder_of

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from .problem import Found, Problem
 
 #: of a coordinate, first and longest step: farther ones land in other minima

@@ -12,12 +12,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...core.checks import broadcast_shape, checked, number
-from ...core.errors import ParameterError, refuse_unknown
-from ...core.labels import Labels, unlabelled
-from ...core.quantities import in_unit
+from ...core.array_types import Floats, Numbers
+from ...core.checks import broadcast_shape, check_array, check_number
+from ...core.errors import ParameterError, check_names
+from ...core.labels import Labels, strip_labels
+from ...core.quantities import to_unit
 from ...core.scale import DIMENSIONLESS, si_unit
-from ...core.typed import Floats, Numbers
 from ...cylinder import Cylinder
 
 #: what a start may be in place of a number: V0/R
@@ -52,11 +52,11 @@ class Record:
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
         given = {name: getattr(self, name) for name in (*self.PLACES, *self.measured)}
-        given = {name: in_unit(self.of(name), value, self.unit(name)) for name, value in given.items()}
-        plain, labels = unlabelled(given, DIMENSIONLESS)
-        arrays = {name: np.atleast_1d(checked(self.of(name), value)) for name, value in plain.items()}
+        given = {name: to_unit(self.of(name), value, self.unit(name)) for name, value in given.items()}
+        plain, labels = strip_labels(given, DIMENSIONLESS)
+        arrays = {name: np.atleast_1d(check_array(self.of(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
-            arrays[f"sigma of {name}"] = checked(
+            arrays[f"sigma of {name}"] = check_array(
                 self.of(f"sigma of {name}"), value, unit=self.unit(name), low=0.0, strict=True
             )
         shape = broadcast_shape(**{self.of(name): array for name, array in arrays.items()})
@@ -70,7 +70,7 @@ class Record:
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
             if value is not None and not (name == "omega0" and isinstance(value, str) and value == ROLLING):
-                vars(self)[name] = number(self.of(name), value, unit=self.unit(name), low=low, strict=True)
+                vars(self)[name] = check_number(self.of(name), value, unit=self.unit(name), low=low, strict=True)
 
     @staticmethod
     def unit(name: str) -> str:
@@ -89,7 +89,7 @@ class Record:
                 allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
                 raise ParameterError(self.of("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
-        refuse_unknown(self.of("sigma"), given, among, "a quantity of it")
+        check_names(self.of("sigma"), given, among, "a quantity of it")
         return {name: value for name, value in given.items() if value is not None}
 
     @property
@@ -215,7 +215,7 @@ class Coastdown(Record):
             n = int(np.argmax(np.diff(t.ravel()) < 0.0))
             at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"
             raise ParameterError(self.of("t"), at, "a vector, in ascending order")
-        t0 = checked(self.of("t0"), self.t0, unit="s")
+        t0 = check_array(self.of("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
             raise ParameterError(self.of("t0"), self.t0, "a number, or (low, high)")
         vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.checks import checked, number
-from ...core.errors import ParameterError, refuse_unknown
+from ...core.checks import check_array, check_number
+from ...core.errors import ParameterError, check_names
 from ...core.scale import si_unit
 from ...cylinder import Cylinder
 from ...materials.material import Material
@@ -51,7 +51,7 @@ class Unknown(NamedTuple):
 
     @staticmethod
     def bounds(name: str) -> dict[str, Any]:
-        """What its values have to be, as of :func:`checked`."""
+        """What its values have to be, as of :func:`check_array`."""
         kind = name.split(":")[0]
         return {
             "unit": si_unit(kind.removeprefix(_PREFIX["base"])),
@@ -85,14 +85,14 @@ def unknowns_of(
     starts = {name: getattr(cylinder, name) for name in _OWN} | _BEARING
     for section, body in _bodies(cylinder).items():
         starts |= {_PREFIX[section] + name: value for name, value in _inputs(body).items()}
-    starts, ranges = {name: number(name, value) for name, value in starts.items()}, dict(given)
+    starts, ranges = {name: check_number(name, value) for name, value in starts.items()}, dict(given)
     for called, record in records.items():
         for name, (start, span) in record.starts(cylinder.R).items():
             starts[f"{name}:{called}"] = start
             if span is not None:
                 ranges.setdefault(f"{name}:{called}", span)
-    refuse_unknown("unknown", ranges, starts, "an input")
-    refuse_unknown("prior", priors, ranges, "an unknown")
+    check_names("unknown", ranges, starts, "an input")
+    check_names("prior", priors, ranges, "an unknown")
     return [_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
 
 
@@ -107,7 +107,7 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     if prior is None:
         return one
     mean, sd = _pair("prior", name, prior, "(value, standard deviation)")
-    sd = number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
+    sd = check_number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
     return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
 
 
@@ -116,7 +116,7 @@ def _pair(what: str, name: str, given: Any, allowed: str) -> list[float]:
     bounds = Unknown.bounds(name)
     if what == "prior":  # the standard deviation is of a logarithm: one unit is none of both
         del bounds["unit"]
-    pair = checked(f"{what} {name}", given, **bounds)
+    pair = check_array(f"{what} {name}", given, **bounds)
     if pair.shape != (2,):
         raise ParameterError(f"{what} {name}", f"{given!r:.60}", allowed)
     return pair.tolist()

@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.array_types import Booleans, Floats, Integers
 from ...core.errors import ParameterError
 from ...core.renamed import warn_renamed
-from ...core.typed import Booleans, Floats, Integers
 from ...materials.law.table import LawTable
-from ..contact_table import rolling
+from ..contact_table import pure_rolling_fields
 from ..parameters import Rolls, framed, refuse_arrays
 
 #: octaves of u on either side of the rates of a material with closely spaced nodes
@@ -200,7 +200,7 @@ def speed_nodes(law: LawTable) -> Floats:
 
 def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
     """kappa (M - gain V) and its slope in kappa V, at u = kappa V; two rows."""
-    return rolling(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
+    return pure_rolling_fields(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
 
 
 def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.array_types import Floats, Integers
 from ...core.labels import Labels
-from ...core.results import Row, Values, short, unit_of
+from ...core.results import SummaryRow, Values, format_value, unit_of
 from ...core.scale import DIMENSIONS, Scale
-from ...core.typed import Floats, Integers
 from .loads import Loads
 from .states import Field, States
 
@@ -164,18 +164,18 @@ class Steady(Values):
     #: as :attr:`reason`
     message = reason
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
-            speeds = Row("V", short(np.asarray(self.V)), unit_of(self._attributes("V")))
-            return f"Steady rolling, {np.size(self.count)} states", [Row("equilibria", found), speeds]
+            speeds = SummaryRow("V", format_value(np.asarray(self.V)), unit_of(self._attributes("V")))
+            return f"Steady rolling, {np.size(self.count)} states", [SummaryRow("equilibria", found), speeds]
         if not self.count:
-            return "Steady rolling: no equilibrium", [Row("reason", str(self.reason))]
+            return "Steady rolling: no equilibrium", [SummaryRow("reason", str(self.reason))]
         rows = []
         for n in range(self.count):
-            rows.append(Row("equilibrium", "stable" if self.stable[n] else "not stable"))
+            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "not stable"))
             for name in ("V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"):
-                rows.append(Row(f"  {name}", f"{self[name][n]:.6g}", unit_of(self._attributes(name))))
+                rows.append(SummaryRow(f"  {name}", f"{self[name][n]:.6g}", unit_of(self._attributes(name))))
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:

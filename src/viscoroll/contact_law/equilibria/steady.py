@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 
-from ...core.drive import Feedback, over
+from ...core.array_types import Integers, Numbers
+from ...core.drive import Feedback, make_dimensionless
 from ...core.errors import ParameterError
-from ...core.labels import unlabelled
-from ...core.typed import Integers, Numbers
+from ...core.labels import strip_labels
 from ...materials.law.table import LawTable
 from ..parameters import Rolls, framed, scale_of
 from .loads import Loads, loads_of
@@ -75,10 +75,10 @@ def steady(
     to that over ``grip`` (``tests/test_steady.py``).
     """
     units = scale_of(roller)
-    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V}, units)
+    plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
     roller, scene, scale = framed(roller, "steady", slope=slope)
-    force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
+    force, torque, V = (make_dimensionless(name, plain[name], scale) for name in ("force", "torque", "V"))
     loads = loads_of(scene, force, torque, slope, V)
     law = scene.table
     assert law is not None  # loads_of refuses many

@@ -20,12 +20,12 @@ def draw(data: xr.Dataset) -> Figure:
     ParameterError
         A dataset that is none of these, or holds a single state.
     """
-    from . import many, states
+    from . import ensembles, states
 
     has = {*data.dims, *data}
     kinds = (
-        ("quantile" in has or {"motion", "t"} <= set(data.dims), many.distributions),
-        ("input" in data.dims, many.sobol_bars),
+        ("quantile" in has or {"motion", "t"} <= set(data.dims), ensembles.distributions),
+        ("input" in data.dims, ensembles.sobol_bars),
         ({"t", "regime"} <= {*has, *data.coords}, states.motion),
         ("equilibrium" in data.dims, states.equilibria),
         ({"p", "tau", "x"} <= {*has, *data.coords}, states.stresses),

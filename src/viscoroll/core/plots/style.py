@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FileError
-from ..files import replacing
+from ..files import replace_file
 from ..symbols import SYMBOLS
 
 if TYPE_CHECKING:
@@ -126,5 +126,5 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     suffix = Path(path).suffix
     if suffix.removeprefix(".").lower() not in formats:
         raise FileError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         figure.savefig(temporary)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import FileError, ParameterError
-from ...core.typed import Floats
 from ...core.units import is_unit
 from .headings import NO_UNIT, looks_like_unit
 

@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from ...core.errors import ParameterError
-from ...core.units import factor
+from ...core.units import conversion_factor
 
 #: signs that stand where a ratio has no unit
 NO_UNIT = ("", "1", "-", "--", "–", "—", "/", "none")
@@ -95,9 +95,9 @@ def conversion(unit: str, wanted: str) -> tuple[float, float]:
     elif not looks_like_unit(unit):
         raise ParameterError("unit", unit, f"a unit that pint knows, of the dimension of {wanted}")
     try:
-        return factor(unit, wanted)
+        return conversion_factor(unit, wanted)
     except ParameterError:
         for pattern, spelled in _SPELLED:
             if pattern.fullmatch(unit.strip()):
-                return factor(spelled, wanted)
+                return conversion_factor(spelled, wanted)
         raise

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ...core.array_types import Floats
 from ...core.errors import FileError
-from ...core.sections import hint
-from ...core.typed import Floats
+from ...core.sections import suggestion
 from .cells import Table
 from .headings import NO_UNIT, conversion, readings
 
@@ -39,7 +39,9 @@ def find(table: Table, name: str) -> int | None:
 
 def missing(table: Table, name: str) -> FileError:
     """The error where no column has a name; it lists those that there are."""
-    return FileError(table.path, f"has no column {name!r}, but {', '.join(table.headings)}{hint(name, table.headings)}")
+    return FileError(
+        table.path, f"has no column {name!r}, but {', '.join(table.headings)}{suggestion(name, table.headings)}"
+    )
 
 
 def quantity(table: Table, name: str, wanted: str, unit: str = "") -> Floats:

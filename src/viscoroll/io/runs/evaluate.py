@@ -12,7 +12,7 @@ import numpy as np
 from ...contact_law.assumptions import passage
 from ...contact_law.contact import contact
 from ...contact_law.known import warn_of_share
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ...motion.batch import ensemble
 from ...motion.many import Ensemble
 from ..sampling import points

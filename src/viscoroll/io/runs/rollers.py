@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from ...contact_law.parameters import Parameters, Rolls
-from ...core.checks import checked
+from ...core.checks import check_array
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
@@ -20,7 +20,7 @@ from ...materials.material import Material
 from ...materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
-from ..config import body_of
+from ..config import make_roller
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Rollers(Rolls):
 def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
     """What rolls, one or one a motion; raises ParameterError, of a material FileError."""
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
-    one = body_of(path, content, {name: typical for name, (typical, _) in bodies.items()})
+    one = make_roller(path, content, {name: typical for name, (typical, _) in bodies.items()})
     if not isinstance(one, Cylinder):
         return one
     each = {name: body for name, (_, body) in bodies.items()}
@@ -112,9 +112,9 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical, typical
     if thickness is not None:
-        thickness = checked("thickness", thickness, low=0.0, strict=True)
-    E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
-    return typical, Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref, thickness)
+        thickness = check_array("thickness", thickness, low=0.0, strict=True)
+    E = check_array("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
+    return typical, Solid(E, check_array("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref, thickness)
 
 
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:

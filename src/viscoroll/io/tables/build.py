@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
+from ...core.array_types import Floats
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...materials.law.netcdf import bodies_as_toml, parse_law
 from ...materials.law.table import LawTable

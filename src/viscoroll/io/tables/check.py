@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ... import __version__
-from ...core.checks import whole
+from ...core.checks import check_integer
 from ...core.errors import FileError
 from ...materials.law.netcdf import parse_axis, parse_law
 from ...materials.law_file import AXIS, KIND, dataset_content, stated_errors
@@ -91,7 +91,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     FileError
         A grid that is of a material or a cylinder.
     """
-    count, seed = whole("n", count, 1), whole("seed", seed, 0)
+    count, seed = check_integer("n", count, 1), check_integer("seed", seed, 0)
     source = table.encoding.get("source", "table")
     if not is_law(table):
         return _check_grid(table, count, seed, source)

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import __version__
+from ...core.array_types import Floats
 from ...core.errors import ParameterError
-from ...core.files import replacing, write_text
+from ...core.files import replace_file, write_text
 from ...core.symbols import PAPER
-from ...core.typed import Floats
 from ...materials.law.netcdf import parse_law
 from ...materials.law_file import CHECKSUM, COVER, dataset_content
 from . import schema, store
@@ -62,7 +62,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
 def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
     """64-bit offset format (CDF-2), which every netCDF library since 2004 reads."""
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         encoding = {name: {"_FillValue": None} for name in table.variables}
         table.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT", encoding=encoding)
 
@@ -70,7 +70,7 @@ def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
 def _write_csv(table: xr.Dataset, path: Path) -> None:
     """A row of names, then a row for every node, first axis slowest; digits that read back to the same bits."""
     fields = table[list(schema.fields_of(table))]
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         fields.to_dataframe(dim_order=list(schema.axes_of(table))).to_csv(temporary)
 
 
@@ -135,7 +135,7 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
         f"breakpoints; linear_error_at: where it is largest. {table.attrs['comment']}",
         "given": {name: table.attrs[name] for name in (*_GIVEN, "material") if name in table.attrs},
     }
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         savemat(temporary, {"viscoroll": content}, do_compression=True)
 
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import broadcast_shape, checked
-from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
+from ...core.array_types import Floats
+from ...core.checks import broadcast_shape, check_array
+from ...core.errors import OutOfTableError, ParameterError, check_names
 from ...core.results import Values
-from ...core.typed import Floats
 from ...materials.law.grid import friction_limit
 from ...materials.law.splines import fit_spline, pack_spline
 from . import schema
@@ -50,7 +50,7 @@ class Interpolant:
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolated ``fields`` at ``points``; see :func:`interpolate`."""
         known = schema.fields_of(self._table)
-        names = refuse_unknown("fields", known if fields is None else fields, known, "a field of this table")
+        names = check_names("fields", known if fields is None else fields, known, "a field of this table")
         places, shape = self._places(points, names)
         results: dict[str, Any] = {}
         for name in names:
@@ -96,7 +96,7 @@ class Interpolant:
         """
         from ...kernels.splines.spline import spline_at
 
-        (name,) = refuse_unknown("field", field, schema.fields_of(self._table), "a field of this table")
+        (name,) = check_names("field", field, schema.fields_of(self._table), "a field of this table")
         if self._table.attrs[schema.KIND] == "atlas":
             raise ParameterError("field", name, "of a grid over V and delta")
         dims, found = self._spline(name)
@@ -113,7 +113,8 @@ class Interpolant:
             allowed = f"{', '.join(self._axes)} (needed for these fields: {wanted})"
             raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
         arrays = {
-            name: checked(name, value, unit=self._table[name].attrs.get("units", "1")) for name, value in points.items()
+            name: check_array(name, value, unit=self._table[name].attrs.get("units", "1"))
+            for name, value in points.items()
         }
         shape = broadcast_shape(**arrays)
         for name, array in arrays.items():

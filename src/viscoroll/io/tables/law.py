@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...contact_law.contact_table import states_of
-from ...core.errors import ParameterError, one_of
-from ...core.typed import Floats
+from ...contact_law.contact_table import evaluate_law
+from ...core.array_types import Floats
+from ...core.errors import ParameterError, exactly_one_error
 from ...cylinder import Cylinder
 from ...materials.law import alpha_axis
 from ...materials.law.cover_rows import solve_at_speed
@@ -56,7 +56,7 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
         What is no material, alphas out of range, both or neither.
     """
     if (alpha is None) == (material is None):
-        raise one_of("material", "alpha", both=alpha is not None)
+        raise exactly_one_error("material", "alpha", both=alpha is not None)
     if alpha is not None:
         if base is not None or np.shape(alpha) != (2,):
             raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
@@ -120,7 +120,7 @@ def _errors_of_cover(table: LawTable, count: int, seed: int) -> dict[str, float]
     slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
     u = slow * (fast / slow) ** np.random.default_rng(seed).random(count)
     exact = np.array([solve_at_speed(cover, each, orders=_TERMS) for each in u.tolist()]).T
-    found = states_of(table, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, _OF_COVER)
+    found = evaluate_law(table, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, _OF_COVER)
     L, M = exact[1], u * exact[4]
     free = found[2] * (2.0 if cover.on == "base" else -2.0)
     errors = found[0] / exact[0] - 1.0, 2.0 * found[1] / L - 1.0, (free - exact[2]) / L, found[3] / exact[3] - 1.0

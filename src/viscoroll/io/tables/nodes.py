@@ -7,9 +7,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked, number, one_name, whole
+from ...core.array_types import Floats
+from ...core.checks import check_array, check_choice, check_integer, check_number
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...scene import Scene
 
@@ -32,14 +32,14 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     ParameterError
         An unknown spacing, low >= high, high - low beyond the doubles, count < 2, or "log" with low <= 0.
     """
-    one_name("spacing", spacing, "linear", "log")
-    low = number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
-    high = number("high", high)
+    check_choice("spacing", spacing, "linear", "log")
+    low = check_number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
+    high = check_number("high", high)
     if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
     if high - low == np.inf:
         raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
-    return (np.geomspace if spacing == "log" else np.linspace)(low, high, whole("count", count, 2, MAX_NODES))
+    return (np.geomspace if spacing == "log" else np.linspace)(low, high, check_integer("count", count, 2, MAX_NODES))
 
 
 def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: ArrayLike | None = None) -> Floats:
@@ -70,7 +70,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     >>> V = vr.tables.spread(1e-5, 4.0, 160, "log")
     >>> grid = vr.tables.build(scene, V, delta=vr.tables.creep_nodes(scene, V, 161))
     """
-    if whole("count", count, 5, MAX_NODES) % 2 == 0:
+    if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
         raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
     at: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = increasing("V", V, low=0.0, strict=True)
@@ -85,7 +85,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 
 def increasing(name: str, nodes: Any, **bound: Any) -> Floats:
     """Nodes of an axis as a vector of its own; raises ParameterError where they are out of range or do not increase."""
-    axis = np.atleast_1d(checked(name, nodes, **bound)).copy()
+    axis = np.atleast_1d(check_array(name, nodes, **bound)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
         raise ParameterError(name, f"an array of shape {axis.shape}", "one-dimensional and strictly increasing")
     return axis

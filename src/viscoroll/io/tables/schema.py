@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ... import __version__
 from ...core.errors import FileError
 from ...core.scale import si_unit
-from ...core.symbols import PAPER, SYMBOLS, meaning
+from ...core.symbols import PAPER, SYMBOLS, describe_quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,7 +60,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
 
     symbol = SYMBOLS[name]
     attributes = {
-        "long_name": meaning(name, si), "units": si_unit(name) if si else "1", "symbol": symbol.latex,
+        "long_name": describe_quantity(name, si), "units": si_unit(name) if si else "1", "symbol": symbol.latex,
         "range": symbol.range, "equation": symbol.equation, "reference": PAPER,
     }  # fmt: skip
     return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes)

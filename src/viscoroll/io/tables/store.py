@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.errors import FileError
-from ...core.files import sealed_content, write_dataset
+from ...core.files import read_sealed, write_dataset
 from ...materials import law_file
 from . import schema
 
@@ -81,7 +81,7 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
     """
     import xarray as xr
 
-    content = sealed_content(path, _MOST_BYTES, "table of viscoroll", "build it again")
+    content = read_sealed(path, _MOST_BYTES, "table of viscoroll", "build it again")
     try:
         table = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False)
     except Exception as error:  # libraries raise many kinds

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 from ..bodies import Bodies
 from ..prony import Prony
 from ..prony_forms import Modes

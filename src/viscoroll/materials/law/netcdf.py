@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...core.checks import checked, number
+from ...core.checks import check_array, check_number
 from ...core.errors import FileError, ParameterError
 from ..bodies import Bodies
 from ..cover import Cover
@@ -51,7 +51,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     if not isinstance(material, Real):
         allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
         raise ParameterError("material", f"of type {type(material).__name__}", allowed)
-    return law_table(float(checked("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
+    return law_table(float(check_array("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
 
 
 def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
@@ -112,7 +112,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
         return parse_law(content, path)
     axis = parse_axis(content, path)
     low, high = axis.alpha
-    if alpha is None or not low <= number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
+    if alpha is None or not low <= check_number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
         wider = "`viscoroll tables law --alpha LOW:HIGH` writes others"
         raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds ({wider})")
     return axis.at(alpha)
