@@ -1,6 +1,9 @@
 """Covers of finite thickness: limits, closed forms, more terms, balances; against boundary elements: make prove."""
 
+import ctypes
 import dataclasses
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -196,6 +199,44 @@ def test_a_law_on_disk(tmp_path):
             assert np.array_equal(values, vr.contact(known, V, delta=1e-3)[name])
     assert law.pair == roller.pair
     refused(lambda: found.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "layer of 0.5", "0.49")
+
+
+#: evaluates the header for arrays of states, as the fields and slopes below
+C_STATES = """#include "cover.h"
+void states(int n, double kappa, double mu, const double *V, const double *slip, double *out) {
+  for (int i = 0; i < n; i++) {
+    vr_state s, t = vr_contact(&cover, kappa, mu, V[i], slip[i]);
+    vr_slopes d;
+    vr_contact_slopes(&cover, kappa, mu, V[i], slip[i], &s, &d);
+    double all[] = {s.lam, s.epsilon, s.delta_star, s.delta_0, t.beta, t.Q, s.M, s.M_half_space, s.M_cylinder, d.dQ_dV,
+                    d.dQ_domega, d.dM_dV};
+    for (int k = 0; k < 12; k++) out[12 * i + k] = all[k];
+  }
+}
+"""
+C_FIELDS = ("lam", "epsilon", "delta_star", "delta_0", "beta", "Q", "M", "M_half_space", "M_cylinder")
+C_FIELDS += ("dQ_dV", "dQ_domega", "dM_dV")
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
+@pytest.mark.parametrize("cover", COVERS)
+def test_the_header_of_C_is_the_contact(tmp_path, cover):
+    """In rows and behind them, forwards and backwards, below and above full slip, with slopes; N is NaN."""
+    vr.tables.export(vr.tables.law(cover), tmp_path / "cover.h")
+    (tmp_path / "states.c").write_text(C_STATES)
+    flags = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC", "states.c", "-lm", "-o", "states.so")
+    subprocess.run([shutil.which("cc"), *flags], cwd=tmp_path, check=True)
+    scene, speeds = scene_on(cover), 10.0 ** np.linspace(-6.0, 14.0, 61)
+    V, part = (each.ravel() for each in np.meshgrid([*speeds, *-speeds], [-1.4, -0.6, -0.05, 1e-2, 0.3, 0.97, 1.2]))
+    limit = vr.contact(scene, V, delta=0.0, fields=("delta_star", "delta_0"))
+    omega = V * (1.0 + limit.delta_0 + part * limit.delta_star)
+    slip, out = omega - V, np.empty((V.size, len(C_FIELDS)))
+    pointers = (ctypes.c_void_p(array.ctypes.data) for array in (V, slip, out))
+    ctypes.CDLL(str(tmp_path / "states.so")).states(V.size, ctypes.c_double(KAPPA), ctypes.c_double(MU), *pointers)
+    known = vr.contact(scene, V, omega=omega, slopes=True, fields=C_FIELDS)
+    for name, values in zip(C_FIELDS, out.T, strict=True):
+        scale = np.abs(known[name]).max() if name in ("Q", "beta", "delta_0") else np.abs(known[name])
+        assert close(values, known[name], rel=tol.COVER_IN_C, scale=scale, what=name)
 
 
 def test_a_bound_law_is_the_contact():

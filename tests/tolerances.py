@@ -469,6 +469,9 @@ COVER_THIN = 0.08
 COVER_FAST = 1e-6
 #: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as large as that.
 COVER_NU = 1e-5
+#: The header of C against contact: states and slopes, over their condition number where omega - V is rounded; Q and
+#: delta_0 over their largest.
+COVER_IN_C = 1e-11
 #: Differences over a millionth of V: their second order, and rounding over a millionth.
 COVER_SLOPES = 1e-6
 #: Motions whose energy is looked at.

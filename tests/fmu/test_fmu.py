@@ -1,6 +1,7 @@
 """FMUs as a tool drives them: the rules of the standard, forces and motions of the package, refusals in words."""
 
 import ctypes
+import dataclasses
 import shutil
 import sys
 from contextlib import contextmanager
@@ -27,6 +28,10 @@ CYLINDERS = {
     "alike": vr.Cylinder(R=0.1, m=35.5, material=RUBBER, mu=0.3),
     "unlike": vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0),
 }
+#: a steel roller with a rubber cover
+COVERED = vr.Cylinder(
+    R=0.05, m=9.0, material=dataclasses.replace(RUBBER, thickness=5e-3), base=vr.Material.rigid(), mu=0.6, load=2000.0
+)
 OUTPUTS = ("force", "torque", "moment_half_space", "moment_cylinder")
 
 
@@ -39,7 +44,7 @@ def built(tmp_path_factory):
         if key not in made:
             name, model, version = key
             made[key] = folder / f"{name}-{model}-{version}.fmu"
-            fmu.build(CYLINDERS[name], made[key], model, version)
+            fmu.build((CYLINDERS | {"covered": COVERED})[name], made[key], model, version)
         return str(made[key])
 
     return path
@@ -151,9 +156,9 @@ THROWS = {"thrown": (1.0, 0.0, 0.0, 0.0), "driven": (-0.5, 20.0, 0.02, 0.1)}
 
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("throw", THROWS)
-@pytest.mark.parametrize("name", CYLINDERS)
+@pytest.mark.parametrize("name", [*CYLINDERS, "covered"])
 def test_roller_by_co_simulation_is_that_of_roll(built, name, throw, version):
-    cylinder = CYLINDERS[name]
+    cylinder = (CYLINDERS | {"covered": COVERED})[name]
     V0, omega0, force, torque = THROWS[throw]
     force, torque, t = force * cylinder.load, torque * cylinder.load * cylinder.R, np.linspace(0.0, 0.5, 11)
     exact = cylinder.roll(V0, omega0, t, rtol=1e-11, force=force, torque=torque)
@@ -165,6 +170,25 @@ def test_roller_by_co_simulation_is_that_of_roll(built, name, throw, version):
     assert close(found["time"], t, rel=tol.FMU_ROUNDED, scale=1.0)
     for column, values in {"v": exact.V, "omega": exact.omega, "x": exact.x}.items():
         assert close(found[column], values, rel=tol.FMU_ROLLER, scale=np.abs(values).max()), column
+
+
+def test_the_law_of_a_cover_holds_at_its_load(built, tmp_path):
+    """Another load would be another law; a law on disk starts at a load that is its own."""
+    with opened(built("covered", "Roller", 2), "CoSimulation", v0=1.0) as roller:
+        for given in ({"load": 2100.0}, {"R": 0.06}):
+            roller.set(**given)
+            with pytest.raises(fmpy.fmi1.FMICallException):
+                roller.step(0.0, 0.1)
+            assert "contact length at rest, in m," in roller.said[-1]
+            roller.set(load=2000.0, R=0.05)
+        roller.set(load=1000.0, width=0.5)
+        roller.step(0.0, 0.1)
+    path = tmp_path / "law.nc"
+    vr.tables.save(vr.tables.law(COVERED), path)
+    fmu.build(vr.load_law(path), tmp_path / "roller.fmu")
+    with opened(str(tmp_path / "roller.fmu"), "CoSimulation", v0=1.0) as roller:
+        roller.step(0.0, 0.1)
+        assert close(roller.get("load") * roller.get("R"), COVERED.load * COVERED.R, rel=tol.FMU_ROUNDED)
 
 
 def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):

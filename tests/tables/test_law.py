@@ -15,7 +15,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.core import files
-from viscoroll.io.config import read_roller
+from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.tables.check import check_table
 from viscoroll.materials.law.netcdf import law_table_of
 from viscoroll.materials.law.table import FUNCTIONS, LawTable, law_table

@@ -20,13 +20,15 @@ from ...core.extras import import_extra
 from ...core.files import replace_file
 from ...cylinder import Cylinder
 from ...io import tables
-from ...materials.cover import Cover
-from ...materials.law.netcdf import law_table_of
+from ...materials.law.netcdf import parse_law
+from ...materials.law_file import dataset_content
 from .description import described, sources_described
-from .variables import MODELS, Variable
+from .variables import MODELS, ROLLER, Variable
 
 #: Versions of FMI.
 VERSIONS = (2, 3)
+#: radius in m that the FMU has where none is given
+_START_R = next(variable.start for variable in ROLLER.variables if variable.name == "R")
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
 #: functions of the standard that have nothing to do here, and succeed
 _NOTHING_TO_DO = re.compile(r"(Enter|Exit)\w*Mode|Terminate|SetDebugLogging|EvaluateDiscreteStates")
@@ -62,10 +64,18 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise ParameterError("model", repr(model), f"one of {', '.join(MODELS)}")
     if version not in VERSIONS:
         raise ParameterError("version", version, "2 or 3, of FMI")
-    if (isinstance(given, Cylinder) and given.pair.covered) or getattr(given, "cover", None) or type(given) is Cover:
-        raise ParameterError("thickness", "of a body", "left out: FMUs do not hold the law of a layer")
-    table = law_table_of(given.pair if isinstance(given, Cylinder) else given)
-    known = {"T_ref": table.T_ref} | ({} if table.pair is None else {"E_prime": table.pair.E_prime})
+    law = tables.law(given)
+    table = parse_law(dataset_content(law), path)
+    cover: Any = table.material
+    known, l0 = {"T_ref": table.T_ref}, 0.0
+    if table.pair is not None:
+        known["E_prime"] = table.pair.E_prime
+    if table.cover is not None:
+        if not MODELS[model].states:
+            raise ParameterError("model", repr(model), "'Roller' for a cover, whose law holds at one load")
+        if table.pair is not None:
+            l0 = float(table.pair.cover(1.0).thickness / cover.thickness)
+            known["load"] = l0**2 * table.pair.E_prime / (32.0 * _START_R)
     if isinstance(given, Cylinder):
         known |= _of_cylinder(given)
     fmpy = import_extra("fmpy", "fmpy", "fmu")
@@ -74,11 +84,10 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise MissingDependencyError("cc, a compiler of C,", None)
     variables = MODELS[model].variables
     starts = {v.name: float(known.get(v.name, v.start)) for v in variables if v.start is not None}
-    law = tables.law(table)
     with TemporaryDirectory() as name:
         folder = Path(name)
         tables.export(law, folder / "law.h")
-        token = _write_sources(folder, Path(fmpy.__file__).parent / "c-code", model, version, starts)
+        token = _write_sources(folder, Path(fmpy.__file__).parent / "c-code", model, version, starts, l0)
         library = folder / f"{model}{fmpy.sharedLibraryExtension}"
         _compile(compiler, folder / "fmu.c", library)
         content = {"modelDescription.xml": described(version, model, starts, token, law.attrs["title"]).encode()}
@@ -105,7 +114,7 @@ def _of_cylinder(cylinder: Cylinder) -> dict[str, float]:
     return found
 
 
-def _write_sources(folder: Path, headers: Path, model: str, version: int, starts: dict[str, float]) -> str:
+def _write_sources(folder: Path, headers: Path, model: str, version: int, starts: dict[str, float], l0: float) -> str:
     """All that ``cc fmu.c`` needs beside law.h; gives the token by which description and library know one another."""
     ours = files("viscoroll")
     source = (ours / "app/fmu/fmu.c").read_text(encoding="utf-8")
@@ -113,7 +122,7 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, starts
     texts |= {path.name: path.read_text(encoding="utf-8") for path in headers.glob(f"fmi{version}*.h")}
     texts["stubs.h"] = _stubs(source, texts[f"fmi{version}FunctionTypes.h"], version)
     texts["model.h"] = _model_header(MODELS[model].variables, starts) + (
-        f"#define FMI_VERSION {version}\n#define ROLLER {int(bool(MODELS[model].states))}\n"
+        f"#define FMI_VERSION {version}\n#define ROLLER {int(bool(MODELS[model].states))}\n#define L0 {l0!r}\n"
     )
     law = (folder / "law.h").read_text(encoding="utf-8")
     token = hashlib.sha256("".join((model, law, *(texts[name] for name in sorted(texts)))).encode()).hexdigest()

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model.h" /* FMI_VERSION, ROLLER, TOKEN; n_NAME, the reference of every variable, COUNT, NAMES, KINDS, START */
+#include "model.h" /* FMI_VERSION, ROLLER, TOKEN; n_NAME, the reference of every variable, COUNT, NAMES, KINDS, START;
+                        L0: contact length at rest, in m, that the law of a cover is for, 0 of others */
 #include "law.h"
 #include "vr_roll.h"
 #if FMI_VERSION == 3
@@ -59,6 +60,9 @@ static int refuse(const instance *m, const char *what, double value, const char 
   return ERROR;
 }
 
+/* R/l0, Eq. (4) */
+static double kappa_of(const double *x) { return sqrt(x[n_E_prime] * x[n_R] * x[n_width] / (32.0 * x[n_load])); }
+
 static int in_range(const instance *m) {
   for (int n = 1; n < COUNT; n++) {
     if (KINDS[n] && !isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
@@ -66,11 +70,11 @@ static int in_range(const instance *m) {
   }
   for (int n = FIRST_STATE; n < FIRST_STATE + STATES; n++)
     if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
-  return OK;
+  double l0 = m->x[n_R] / kappa_of(m->x);
+  char text[120];
+  snprintf(text, sizeof text, "%.9g, at which the law of the cover holds: set R, load, width and E_prime for it", L0);
+  return L0 > 0.0 && !(fabs(l0 - L0) <= 1e-9 * L0) ? refuse(m, "contact length at rest, in m,", l0, text) : OK;
 }
-
-/* R/l0, Eq. (4) */
-static double kappa_of(const double *x) { return sqrt(x[n_E_prime] * x[n_R] * x[n_width] / (32.0 * x[n_load])); }
 
 #if ROLLER
 /* dimensionless; its time is T_ref */

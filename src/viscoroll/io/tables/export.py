@@ -18,7 +18,7 @@ from ...core.errors import ParameterError
 from ...core.files import replace_file, write_text
 from ...core.symbols import PAPER
 from ...materials.law.netcdf import parse_law
-from ...materials.law_file import CHECKSUM, COVER, dataset_content
+from ...materials.law_file import CHECKSUM, dataset_content
 from . import schema, store
 
 if TYPE_CHECKING:
@@ -52,8 +52,6 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     path = Path(path)
     store.check(table, "export")
     formats = LAW if store.is_law(table) else GRID
-    if table.attrs.get(schema.KIND) == COVER:
-        formats = _EITHER
     if path.suffix not in formats:
         kind = "law" if store.is_law(table) else "grid"
         raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")
@@ -140,15 +138,25 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
 
 
 def _write_header(found: xr.Dataset, path: Path) -> None:
-    """Table and evaluator in one header of C."""
+    """Write the rows of a law and their evaluator as one header of C.
+
+    found : dataset of a law, of half-spaces or of a cover.
+    path : file to write; its stem becomes the name of the variable, of type vr_law.
+    """
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
     table = parse_law(dataset_content(found), path)
-    octaves = ",\n".join(
-        "{" + ",\n ".join("{" + _numbers(powers) + "}" for powers in octave) + "}" for octave in table.coefficients
+    front = table.record.rows[:8]
+    arrays = {f"{name}_coefficients": table.coefficients}
+    fields, of_cover = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays], ["0", "{0.0}"]
+    if table.cover is not None:
+        arrays[f"{name}_creep"] = np.moveaxis(table.cover.creep, 0, -1)
+        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:8])]
+    constants = "".join(
+        f"static const double {array}[{len(rows)}][VR_TERMS][{rows.shape[-1]}] = {_initializer(rows)};\n"
+        for array, rows in arrays.items()
     )
-    limit = ", ".join("{" + _numbers(body) + "}" for body in table.fast_limit)
     evaluator = files("viscoroll.io.tables").joinpath("c/vr_law.h").read_text(encoding="utf-8")
     about = "\n".join(f" * {line}".rstrip() for line in found.attrs["material"].splitlines()).replace("*/", "* /")
     write_text(
@@ -162,18 +170,16 @@ def _write_header(found: xr.Dataset, path: Path) -> None:
 {evaluator}
 #ifndef VR_LAW_{name}
 #define VR_LAW_{name}
-static const double {name}_coefficients[{len(table.coefficients)}][VR_TERMS][VR_FUNCTIONS] = {{
-{octaves}}};
-static const vr_law {name} = {{
-  {len(table.coefficients)}, {table.e0}, {table.alpha!r}, {{{limit}}}, {name}_coefficients}};
+{constants}static const vr_law {name} = {{{len(table.coefficients)}, {table.e0}, {", ".join(fields + of_cover)}}};
 #endif
 """,
     )
 
 
-def _numbers(values: Floats) -> str:
-    """Digits that read back to the same bits."""
-    return ",".join(map(repr, values.tolist()))
+def _initializer(values: Floats) -> str:
+    """Return an array as a nested initializer of C, with digits that read back to the same bits."""
+    text = json.dumps(values.tolist(), separators=(",", ":")).replace("],", "],\n")
+    return text.translate(str.maketrans("[]", "{}")).replace("NaN", "NAN")
 
 
 def _write_json(found: xr.Dataset, path: Path) -> None:
