@@ -18,7 +18,8 @@ from viscoroll.core import files
 from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.tables.check import check_table
 from viscoroll.materials.law.netcdf import law_table_of
-from viscoroll.materials.law.table import FUNCTIONS, LawTable, law_table
+from viscoroll.materials.law.pack import FUNCTIONS
+from viscoroll.materials.law.table import LawTable, law_table
 from viscoroll.materials.law_file import checksum
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])

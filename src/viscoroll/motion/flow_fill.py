@@ -17,7 +17,7 @@ from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
 from ..kernels.motion.records import PARTIAL
 from ..kernels.numerics.interpolation import gauss
-from ..materials.law.fit import interleave_pairs
+from ..materials.law.pack import interleave_pairs
 from ..materials.law.table import law_table
 from .flow_rows import NODES, Nodes, Rows, octaves
 from .flow_store import FlowMap

@@ -15,7 +15,8 @@ from ...materials.law import alpha_axis
 from ...materials.law.cover_rows import solve_at_speed
 from ...materials.law.evaluate import evaluate_by_modes
 from ...materials.law.netcdf import law_as_dataset, law_table_of
-from ...materials.law.table import FUNCTIONS, LawTable
+from ...materials.law.pack import AXIS_FUNCTIONS, FUNCTIONS
+from ...materials.law.table import LawTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,7 +93,7 @@ def measured_errors(
         each = [measured_errors(table.at(alpha), count and 1 + count // len(alphas), seed) for alpha in alphas]
         worst = {name: max(one[name] for one in each) for name in FUNCTIONS}
         worst["m"] = worst["m_half_space"] + worst["m_cylinder"]
-        return {name: worst[name] for name in alpha_axis.FUNCTIONS}
+        return {name: worst[name] for name in AXIS_FUNCTIONS}
     if table.cover is not None:
         return _errors_of_cover(table, count or _SOLVES, seed)
     rows, e0 = table.coefficients.shape[0], table.e0

@@ -31,25 +31,44 @@ from ..cover import Cover
 from ..prony import Prony
 from .evaluate import modes_record
 
-#: terms of the pressure: these many, and so many for each unit of theta (found by doubling them: 3e-14 up to theta = 1)
-_TERMS, _TERMS_PER_THETA = 14, 6
-#: largest half length over thickness; there doubling the terms still changes results by less than 1e-10
-MOST_THETA = 6.0
-#: trapezoidal rule in s for integrals over u = 0.6 ln(1 + e^s): step, and ends where the integrands are below rounding
-_STEP, _SCALE, _FIRST, _LAST = 0.3, 0.6, -26.0, 20.0 / 0.6
-#: likewise over t = 2 ln(1 + e^s) for the decay of the memory of one polynomial
-_DECAY_STEP, _DECAY_SCALE, _DECAY_FIRST, _DECAY_LAST = 0.14, 2.0, -33.0, 18.0
-#: arguments beyond which ratios of Bessel functions of the orders here are 1 to rounding
-_LARGE, _LARGEST = 1e8, 1e12
-#: points in t = arccos x at which the local strain is added up
-_POINTS = 512
+#: terms of the pressure for theta -> 0
+_TERMS = 14
+#: further terms for each unit of theta; found by doubling all: results change by 3e-14 up to theta = 1
+_TERMS_PER_THETA = 6
+#: largest half contact length divided by the thickness; there doubling the terms still changes results by less than
+#: 1e-10
+LARGEST_THETA = 6.0
+#: step of the trapezoidal rule in s for integrals over the wave number u = 0.6 ln(1 + e^s); halving it changes nothing
+_STEP = 0.3
+#: factor of ln(1 + e^s) in that substitution
+_SCALE = 0.6
+#: ends of that rule in s, beyond which the integrands are below rounding
+_ENDS = -26.0, 20.0 / 0.6
+#: step of the trapezoidal rule in s for integrals over t = 2 ln(1 + e^s), the memory of one polynomial
+_DECAY_STEP = 0.14
+#: factor of ln(1 + e^s) in that substitution
+_DECAY_SCALE = 2.0
+#: ends of that rule in s
+_DECAY_ENDS = -33.0, 18.0
+#: alpha_i from which on ratios of Bessel functions I_n/I_0 of the orders used here are 1 to rounding
+_LARGE_ALPHA = 1e8
+#: beta_j from which on the memory of a polynomial vanishes to rounding
+_LARGE_BETA = 1e12
+#: intervals in arccos x for the integral of the local strain; accurate to 1e-5
+_INTERVALS = 512
+#: exponent of the decay over an interval above which nothing is left in double precision
+_DECAYED = 700.0
 
 
 class LayerNodes(NamedTuple):
-    """What depends on Poisson's ratio alone, at the nodes u of the integrals over the wave number.
+    """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on Poisson's ratio alone.
 
-    u, du : nodes and weights.  L, T : (L - 1)/u and (T - 1)/u times the weights.  C : C less its limit for short waves.
-    local : that limit, (1 - 2 nu)/(2 - 2 nu), the coupling of a half-space.
+    u : nodes, wave number times thickness, (n,).
+    du : weights of the rule.
+    L : (L - 1)/u times the weights.
+    T : (T - 1)/u times the weights.
+    C : C less its limit for short waves.
+    local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu).
     """
 
     u: Floats
@@ -61,14 +80,14 @@ class LayerNodes(NamedTuple):
 
 
 class CoverState(NamedTuple):
-    """The contact at one half length z and one theta; slopes and creep over V T_ref/R.
+    """The contact at one half length z and one theta; slopes and creep in units of V T_ref/R.
 
-    load : H = P/(pi/2) in the units of the pressure, z^2 for an elastic half-space.
+    load : H = P/(pi/2) in the unit of the pressure; z^2 for an elastic half-space.
     shift : g, the shift of the contact ahead of the axis.
     moment : M/(P V).
-    creep_limit : delta_star/(mu V), the creep from which on all of the contact slips.
-    strain : what of the strain of the layer's surface by the pressure, weighted with the pressure, comes of the finite
-        thickness; positive where the surface is stretched.  :func:`local_strain` is the rest.
+    creep_limit : delta_star/(mu V), the creep from which on the whole contact slips.
+    strain : part of the mean strain of the layer's surface by the pressure (weighted with the pressure) that is due to
+        the finite thickness; positive where the surface is stretched.  :func:`local_strain` is the rest.
     q, X : terms of the pressure, and amplitudes of the relaxation modes.
     """
 
@@ -82,108 +101,126 @@ class CoverState(NamedTuple):
 
 
 class CoverModes:
-    """The series of a cover as the solve takes it; made once a cover.
+    """The series of a cover in the form that the solve uses.
 
-    Parameters
-    ----------
     layer : series of the layer.
-    total : series of both bodies together, the layer's own where the other body is rigid.
+    total : series of both bodies together; the layer's own if the other body is rigid.
     share : the layer's part of the long-time compliance, in (0, 1].
     nu, other_nu : Poisson's ratios of the layer and of the other body.
     """
 
     def __init__(self, layer: Prony, total: Prony, share: float, nu: float, other_nu: float) -> None:
-        modes = total.modes
-        self.alpha = float(total.alpha)
-        self.a, self.b, self.J = modes.a, modes.b, modes.J
-        self.e, self.t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
-        self.Q = modes_record(modes).Q
+        self.series, self.J, self.alpha = modes_record(total.modes), total.modes.J, float(total.alpha)
         self.share, self.nodes, self.nus = share, layer_nodes(nu), (nu, other_nu)
         self.layer_J, self.layer_b = share * layer.J, 1.0 / layer.T
         self.layer_instant = share / float(layer.alpha)
-        self.other_local = (1.0 - share) * _local(other_nu)
+        self.other_local = (1.0 - share) * _half_space_coupling(other_nu)
 
     def elastic(self, share: float) -> CoverModes:
-        """The same bodies without relaxation, with this share of the compliance."""
+        """Return the same bodies without relaxation; ``share``: the layer's part of the compliance."""
         return CoverModes(Prony.elastic(), Prony.elastic(), share, *self.nus)
 
     def compliance(self, k: Floats) -> Any:
-        """Complex compliance of both bodies at wave numbers k over 1/(V T_ref), for exp(i k Y)."""
-        return 1.0 / self.alpha + (self.J * self.b / (self.b - 1j * k[:, None])).sum(axis=1)
+        """Return the complex compliance of both bodies for exp(i k Y), (n,); ``k`` in units of 1/(V T_ref), (n,)."""
+        b = self.series.b
+        return 1.0 / self.alpha + (self.J * b / (b - 1j * k[:, None])).sum(axis=1)
 
     def layer_storage(self, k: Floats) -> Any:
-        """Real part of the layer's share of that compliance."""
-        return self.layer_instant + (self.layer_J * (self.layer_b**2 / (self.layer_b**2 + k[:, None] ** 2))).sum(axis=1)
+        """Return the real part of the layer's share of that compliance, (n,); ``k`` as there."""
+        b = self.layer_b
+        return self.layer_instant + (self.layer_J * (b**2 / (b**2 + k[:, None] ** 2))).sum(axis=1)
 
 
-def modes_of(cover: Cover) -> CoverModes:
-    """The series of a cover as the solve takes it."""
+def modes_of_cover(cover: Cover) -> CoverModes:
+    """Return the series of a ``cover`` in the form that the solve uses."""
     return CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu)
 
 
-def _local(nu: float) -> float:
-    """Coupling C of a half-space."""
+def _half_space_coupling(nu: float) -> float:
+    """Return the coupling C of a half-space with Poisson's ratio ``nu``."""
     return (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
+
+
+def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Return nodes and weights of an integral over [0, inf): the trapezoidal rule in s, scale ln(1 + e^s) the variable.
+
+    Nodes are dense towards 0; for the integrands here the rule converges exponentially.
+
+    step: in s.
+    scale: of the variable.
+    ends: first and last s.
+    """
+    s = np.arange(*ends, step)
+    return scale * np.logaddexp(0.0, s), step * scale / (1.0 + np.exp(-s))
 
 
 @lru_cache(maxsize=64)
 def layer_nodes(nu: float) -> LayerNodes:
-    """The nodes for one Poisson's ratio.
+    """Return the kernels of a layer at the nodes; ``nu``: its Poisson's ratio.
 
-    Dense towards u = 0, where slow memories put poles at u = i beta/theta; in s the rule converges exponentially.
+    Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
     """
-    s = np.arange(_FIRST, _LAST, _STEP)
-    u, du = _SCALE * np.logaddexp(0.0, s), _STEP * _SCALE / (1.0 + np.exp(-s))
+    u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
-    below = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
+    denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
     rest = (2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap) * e
     local = (kap - 1.0) / (kap + 1.0)
-    coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / ((kap + 1.0) * below) - local
-    per = du / (u * below)
-    return LayerNodes(u, du, -per * (rest + 4.0 * u * e), -per * (rest - 4.0 * u * e), coupling, local)
+    coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / ((kap + 1.0) * denominator) - local
+    weights = du / (u * denominator)
+    return LayerNodes(u, du, -weights * (rest + 4.0 * u * e), -weights * (rest - 4.0 * u * e), coupling, local)
 
 
 def bessel(v: Floats, order: int) -> Floats:
-    """J_0 ... J_order at v >= 0, each with the sign (-1)^(n//2), [order, place], to 1e-15 absolute.
+    """Return J_0 ... J_order at v, each with the sign (-1)^(n//2), accurate to 1e-15 absolute.
 
     They are the Chebyshev coefficients of cos(v x) and sin(v x), by a discrete sum long enough for aliases to vanish.
+
+    v: arguments >= 0, (n,).
+    order: highest order.
+    Returns [order, argument].
     """
     count = (int(v.max() + 0.5 * order) + 24) & ~1
     phi = (np.arange(count // 2) + 0.5) * (math.pi / count)
     arguments = np.multiply.outer(np.cos(phi), v)
     cosines = np.cos(np.arange(order + 1)[:, None] * phi) * (2.0 / count)
-    found = np.empty((order + 1, v.size))
-    found[::2], found[1::2] = cosines[::2] @ np.cos(arguments), cosines[1::2] @ np.sin(arguments)
-    return found
+    values = np.empty((order + 1, v.size))
+    values[::2], values[1::2] = cosines[::2] @ np.cos(arguments), cosines[1::2] @ np.sin(arguments)
+    return values
 
 
 @lru_cache(maxsize=1)
 def _decay_nodes() -> tuple[Floats, Floats]:
-    """(2 sinh^2(t/2) at the nodes of t, weights times exp(-n t), [order, node])."""
-    s = np.arange(_DECAY_FIRST, _DECAY_LAST, _DECAY_STEP)
-    t = _DECAY_SCALE * np.logaddexp(0.0, s)
-    weights = _DECAY_STEP * _DECAY_SCALE / (1.0 + np.exp(-s)) * np.sinh(t)
-    orders = np.arange(_orders(MOST_THETA) * 2 + 1)[:, None]
-    return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * weights
+    """Return 2 sinh^2(t/2) at the nodes of t, (n,), and the weights times sinh(t) exp(-n t), [order, node]."""
+    t, weights = _half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
+    orders = np.arange(_term_count(LARGEST_THETA) * 2 + 1)[:, None]
+    return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
 
 
 def _decays(beta: Floats, order: int) -> Floats:
-    """D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx, [order, mode]."""
-    beta = np.minimum(beta, _LARGEST)
-    rise, weights = _decay_nodes()
-    return weights[: order + 1] @ np.exp(-rise[:, None] * beta) * beta
+    """Return D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx, [order, mode].
+
+    beta: b_j z, (modes,).
+    order: highest n.
+    """
+    beta = np.minimum(beta, _LARGE_BETA)
+    x, weights = _decay_nodes()
+    return weights[: order + 1] @ np.exp(-x[:, None] * beta) * beta
 
 
-def _orders(theta: float) -> int:
+def _term_count(theta: float) -> int:
+    """Return the number of terms of the pressure at ``theta``."""
     return math.ceil(_TERMS + _TERMS_PER_THETA * theta)
 
 
 class _Exponentials(NamedTuple):
-    """The relaxation and creep modes on a contact of half length z, as of the half-space.
+    """The relaxation and creep modes on a contact of half length z, as for a half-space.
 
-    ratio : I_n/I_0 of alpha, [order, mode].  root : sqrt(I_1/I_0).  k : K_0/K_1 of beta.
-    x : B^-1 sqrt(r) (e, Q^T), the matching at the front edge, of the half-space and of a source by each creep mode.
-    sigma : what an excess memory of 1 is as such a source.
+    ratio : I_n/I_0 of alpha_i, [order, mode].
+    root : sqrt(I_1/I_0), (modes,).
+    k : K_0/K_1 of beta_j, (modes,).
+    x : B^-1 sqrt(r) (e, Q^T), the matching at the front edge, of the half-space and of a source by each creep mode,
+        (modes, 1 + modes).
+    sigma : source that an excess memory of 1 is, (modes,).
     """
 
     ratio: Floats
@@ -194,38 +231,38 @@ class _Exponentials(NamedTuple):
 
 
 def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
-    """Those of N orders."""
+    """Evaluate the modes on a contact.
+
+    modes: of the cover.
+    z: half contact length divided by V T_ref.
+    N: highest order of the terms of the pressure.
+    """
     from scipy.special import ive, k0e, k1e
 
-    alpha, beta = np.minimum(modes.a * z, _LARGE), modes.b * z
+    a, b, e, _, _, Q = modes.series
+    alpha, beta = np.minimum(a * z, _LARGE_ALPHA), b * z
     ratio = ive(np.arange(N + 1)[:, None], alpha) / ive(0, alpha)
     root, k = np.sqrt(ratio[1]), k0e(beta) / k1e(beta)
-    B = np.eye(root.size) + root[:, None] * ((modes.Q.T * k) @ modes.Q) * root
-    x = np.linalg.solve(B, np.column_stack([root * modes.e, root[:, None] * modes.Q.T]))
-    return _Exponentials(ratio, root, k, x, np.sqrt(modes.J * modes.b) / (beta * k1e(beta)))
+    B = np.eye(root.size) + root[:, None] * ((Q.T * k) @ Q) * root
+    x = np.linalg.solve(B, np.column_stack([root * e, root[:, None] * Q.T]))
+    return _Exponentials(ratio, root, k, x, np.sqrt(modes.J * b) / (beta * k1e(beta)))
 
 
 def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[Floats, Floats]:
-    """What the layer adds to the slope and to the memory.
+    """Return what the layer adds to the slope and to the memory.
 
-    Parameters
-    ----------
-    v, A : u theta at the nodes, and the signed Bessel functions there.
-    beta : b_j z.
-    weights : (L - 1)/u times the weights of the rule and the layer's part of the compliance; complex where that is < 1.
-
-    Returns
-    -------
-    S : (N + 1, N), the slope is sum (S q)_n T_n.
-    c : (modes, N), c q is the excess memory of that slope in each creep mode.
+    v: u theta at the nodes, (n,).
+    A: signed Bessel functions there, (N + 1, n).
+    beta: b_j z, (modes,).
+    weights: (L - 1)/u times the weights of the rule and the layer's complex part of the compliance, (n,).
+    Returns (S, c): the slope is sum (S q)_n T_n, S (N + 1, N); c q, c (modes, N), is the excess memory of that slope in
+    each creep mode.
     """
     N = len(A) - 1
     n, m = np.arange(N + 1), np.arange(1, N + 1)
-    odd, apart = m % 2 == 1, (n[:, None] + m) % 2 == 1
-    S = 2.0 * (A @ (A[1:] * np.real(weights)).T) * m
-    S[apart] = 0.0
-    if np.iscomplexobj(weights):
-        S[apart] = (2.0 * (A @ (A[1:] * weights.imag).T) * np.where(odd, m, -m))[apart]
+    odd = m % 2 == 1
+    even_part, odd_part = (2.0 * (A @ (A[1:] * part).T) for part in (weights.real, weights.imag))
+    S = np.where((n[:, None] + m) % 2 == 1, odd_part * np.where(odd, m, -m), even_part * m)
     S[0] *= 0.5
     # excess memory of exp(i v x): its own less that of its Chebyshev series, which decays
     D = _decays(beta, N)
@@ -236,35 +273,32 @@ def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[F
 
 
 def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) -> CoverState:
-    """The contact of half length ``z`` (over V T_ref) and ``theta`` (over the thickness); one linear system.
+    """Solve the contact of a given half length, by one linear system.
 
-    Parameters
-    ----------
-    modes : of the cover.
-    z, theta : both > 0, theta <= 6.
-    orders : terms of the pressure; default 14 + 6 theta.
+    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 it is that of a half-space.
 
-    Returns
-    -------
-    CoverState
-        Against boundary elements: 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 the half-space's.
+    modes: of the cover.
+    z: half contact length divided by V T_ref, > 0.
+    theta: half contact length divided by the thickness, in (0, 6].
+    orders: terms of the pressure; default: 14 + 6 theta.
     """
-    nodes, N = modes.nodes, orders or _orders(theta)
+    nodes, N = modes.nodes, orders or _term_count(theta)
     v = nodes.u * theta
     A, J = bessel(v, N), modes.compliance(v / z)
-    part: Any = 1.0 if modes.share == 1.0 else 1.0 - (1.0 - modes.share) / J
+    part = 1.0 - (1.0 - modes.share) / J
     ratio, root, k, x, sigma = _exponentials(modes, z, N)
-    X0, Xi = modes.e / root * x[:, 0], (modes.e / root)[:, None] * x[:, 1:] * sigma
-    S, c = _layer_operator(v, A, modes.b * z, nodes.L * part)
+    _, b, e, t, _, Q = modes.series
+    X0, Xi = e / root * x[:, 0], (e / root)[:, None] * x[:, 1:] * sigma
+    S, c = _layer_operator(v, A, b * z, nodes.L * part)
     Phi = 2.0 * ratio[1:]
     right = Phi @ X0
     right[0] += z
     q: Any = np.linalg.solve(np.eye(N) + S[1:] + Phi @ (Xi @ c), right)
     excess = sigma * (c @ q)
     # T_mean - sum X + s_0 without cancellation
-    shift: Any = modes.t @ (k * (modes.Q @ (root * (x[:, 0] - x[:, 1:] @ excess)))) + modes.t @ excess + S[0] @ q
+    shift: Any = t @ (k * (Q @ (root * (x[:, 0] - x[:, 1:] @ excess)))) + t @ excess + S[0] @ q
     moment = shift + z * q[1] / (2.0 * q[0])
-    # transform of the pressure over pi z, times v: its even and odd terms
+    # transform of the pressure divided by pi z, times v: its even and odd terms
     mq = np.arange(1, N + 1) * q
     odd, even = mq[::2] @ A[1::2], mq[1::2] @ A[2::2]
     source = (nodes.T - nodes.L) * part * (even - 1j * odd)
@@ -275,42 +309,46 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
 
 
 def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:
-    """Mean strain by the coupling of a half-space, -C J p at each place, less that of the other body; 0 for nu = 1/2.
+    """Return the mean strain by the coupling of half-spaces, -C J p at each point, less that of the other body.
 
-    Good to some 1e-5 of itself: the pressure is linear between points.
+    It is 0 for nu = 1/2, and accurate to 1e-5 of itself: the pressure is taken as linear between points.
+
+    modes: of the cover.
+    z: half contact length divided by V T_ref.
+    state: contact of that length.
     """
     local = modes.nodes.local
     if local == 0.0 and modes.other_local == 0.0:
         return 0.0
-    squared, remembered = _products(modes, z, state)
+    squared, remembered = _pressure_products(modes, z, state)
     own = local * (modes.layer_instant * squared + modes.layer_J @ remembered)
     return float(2.0 / (math.pi * state.q[0]) * (modes.other_local * squared - own))
 
 
-def _products(modes: CoverModes, z: float, state: CoverState) -> tuple[float, Floats]:
-    """Int p^2 dx, and Int p f_j dx with f_j = Int_0^inf beta_j exp(-beta_j s) p(x + s) ds of each creep mode.
+def _pressure_products(modes: CoverModes, z: float, state: CoverState) -> tuple[float, Floats]:
+    """Return int p^2 dx, and int p f_j dx with f_j = int_0^inf beta_j exp(-beta_j s) p(x + s) ds of each creep mode.
 
-    p is linear between points that are even in t = arccos x; the memory runs from the front edge x = 1 to the rear.
+    p is linear between points that are equidistant in arccos x; the memory runs from the front edge x = 1 to the rear.
+
+    modes: of the cover.
+    z: half contact length divided by V T_ref.
+    state: contact of that length.
     """
     from scipy.fft import dst
     from scipy.special import ive
 
-    alpha = np.minimum(modes.a * z, _LARGE)
-    coefficients = 2.0 * (ive(np.arange(1, _POINTS)[:, None], alpha) / ive(0, alpha)) @ state.X
-    coefficients[: state.q.size] = state.q
-    p = np.concatenate([[0.0], 0.5 * dst(coefficients, type=1), [0.0]])
-    t = np.arange(_POINTS + 1) * (math.pi / _POINTS)
-    x, weights = np.cos(t), np.sin(t) * (math.pi / _POINTS)
-    beta = modes.layer_b[:, None] * z
-    step = np.minimum(beta * (x[:-1] - x[1:]), 700.0)
-    kept, gone = np.exp(-step), -np.expm1(-step)
-    # of a linear p: its value at the near end, and its rise towards the far end, times the mean distance
-    mean = np.where(step > 1e-3, gone / step - kept, step * (0.5 - step / 3.0))
-    gained = gone * p[1:] + (p[:-1] - p[1:]) * mean
-    decay, f = kept.copy(), gained
-    reach = 1
-    while reach < _POINTS:  # f_{k+1} = kept f_k + gained, for all k at once by doubling
-        f, decay = f.copy(), decay.copy()
+    alpha = np.minimum(modes.series.a * z, _LARGE_ALPHA)
+    terms = 2.0 * (ive(np.arange(1, _INTERVALS)[:, None], alpha) / ive(0, alpha)) @ state.X
+    terms[: state.q.size] = state.q
+    p = np.concatenate([[0.0], 0.5 * dst(terms, type=1), [0.0]])
+    t = np.arange(_INTERVALS + 1) * (math.pi / _INTERVALS)
+    x, weights = np.cos(t), np.sin(t) * (math.pi / _INTERVALS)
+    step = np.minimum(modes.layer_b[:, None] * z * (x[:-1] - x[1:]), _DECAYED)
+    decay, gone = np.exp(-step), -np.expm1(-step)
+    # for a linear p: its value at the near end, and its increase towards the far end, times the mean distance
+    mean = np.where(step > 1e-3, gone / step - decay, step * (0.5 - step / 3.0))
+    f, reach = gone * p[1:] + (p[:-1] - p[1:]) * mean, 1
+    while reach < _INTERVALS:  # f_{k+1} = decay_k f_k + gain_k, for all k at once by doubling
         f[:, reach:] += decay[:, reach:] * f[:, :-reach].copy()
         decay[:, reach:] *= decay[:, :-reach].copy()
         reach *= 2

@@ -1,4 +1,4 @@
-"""A series as kernels take it by its modes, and what these make rows of."""
+"""Values of the law by its modes, without a table: from these all rows are made."""
 
 from __future__ import annotations
 
@@ -12,19 +12,27 @@ from ..bodies import Bodies
 from ..prony import Prony
 from ..prony_forms import Modes
 
-#: times in T_ref beyond which numbers of rows leave the doubles
+#: longest time, in units of T_ref, and inverse of the shortest one; beyond it numbers of rows overflow or vanish
 _LONGEST = 1e100
 
 
 def refuse_distant_times(slowest: float, fastest: float) -> None:
-    """Raise ParameterError where times, by the rates of creep and relaxation, leave the range of rows."""
+    """Raise ParameterError for times that rows cannot hold.
+
+    slowest: slowest rate of creep, in units of 1/T_ref.
+    fastest: fastest rate of relaxation, likewise.
+    """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
         allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} of their unit"
         raise ParameterError("times", f"{1.0 / fastest:g} to {1.0 / slowest:g}", allowed)
 
 
 def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
-    """The record of one series, or of many; ``weights``: the half-space's, of two bodies that differ."""
+    """Return the record of a series that kernels read (:class:`...kernels.rows.series.Series`).
+
+    modes: both forms of one series, or of many along leading axes.
+    weights: part of each creep mode that is the half-space's, for two bodies that differ; None: they are alike.
+    """
     from ...kernels.rows.series import Series
 
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
@@ -33,11 +41,16 @@ def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
 
 
 def series_record(given: Any) -> tuple[Any, Floats]:
-    """(The record of a series, nothing), or (that of one mode, the alphas that it is to have); for one thread."""
+    """Return what kernels need to evaluate a law by its modes, for one thread.
+
+    given: a series, two bodies, or alphas, one or one for each element.
+    Returns (record of the series, alphas): for a series or bodies no alphas; for alphas the record of one mode, which
+    the kernel overwrites with each alpha in turn.
+    """
     from ...kernels.rows.series import Series
 
     if isinstance(given, Bodies):
-        # a copy, which can be written to: the table of a pair keeps its weights read only
+        # the kernel writes into the record, and the weights of a pair are read only
         return modes_record(given.total.modes, given.half_space_weights.copy()), np.empty(0)
     if isinstance(given, Prony):
         return modes_record(given.modes), np.empty(0)
@@ -46,9 +59,11 @@ def series_record(given: Any) -> tuple[Any, Floats]:
 
 
 class ModesValues(NamedTuple):
-    """What rows are made of, at places of z: g/z, h/z and the parts of m in half-space and cylinder.
+    """Functions of z from which rows are made: g/z, h/z, and m of half-space and cylinder.
 
-    values, slopes : (4, places), slopes over ln(1/z).  N : of M = M(V) + N V'.
+    values : shape (4, n).
+    slopes : their derivatives with respect to ln(1/z), shape (4, n).
+    N : factor of dV/dt in M = M(V) + N dV/dt, shape (n,).
     """
 
     values: Floats
@@ -57,13 +72,17 @@ class ModesValues(NamedTuple):
 
 
 def evaluate_by_modes(given: Any, z: Floats) -> ModesValues:
-    """By no table, at every z = zeta > 0; ``given``: a series, a pair, or alphas, one or one each."""
+    """Evaluate the law by the formulas of its modes.
+
+    given: a series, two bodies, or alphas, one or one for each z.
+    z: half contact length divided by V T_ref, zeta of the paper, > 0, shape (n,).
+    """
     from ...kernels.rows.modes import modes_loop
     from ...kernels.rows.series import FUNCTIONS, new_workspace
 
     series, alpha = series_record(given)
-    found, z = np.zeros((2 * FUNCTIONS + 1, z.size)), z.view()
-    z.flags.writeable = False  # as all that a kernel reads, see ``blocks.elements``
+    values, z = np.zeros((2 * FUNCTIONS + 1, z.size)), z.view()
+    z.flags.writeable = False  # kernels are compiled for arguments that are read only
     if series.a.size:
-        modes_loop(series, alpha, new_workspace(series.a.size), z, found)
-    return ModesValues(found[:FUNCTIONS], found[FUNCTIONS:-1], found[-1])
+        modes_loop(series, alpha, new_workspace(series.a.size), z, values)
+    return ModesValues(values[:FUNCTIONS], values[FUNCTIONS:-1], values[-1])

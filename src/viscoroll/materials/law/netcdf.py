@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.checks import check_array, check_number
 from ...core.errors import FileError, ParameterError
 from ..bodies import Bodies
@@ -25,9 +26,9 @@ from ..pair import Pair
 from ..prony import Prony
 from ..prony_forms import HIGHEST_ALPHA
 from .alpha_axis import LawAxis
-from .cover_rows import CoverRows
 from .grid import load_grid
-from .table import FUNCTIONS, Floats, LawTable, law_table, make_table
+from .pack import FUNCTIONS, CoverRows
+from .table import LawTable, law_table, make_table
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -1,212 +1,174 @@
-"""The laws of states that have an alpha or a material each, as kernels take them: rows made where they are met."""
+"""Laws of arrays in which every element has its own alpha, material or cover: rows are made where kernels read them."""
 
 from __future__ import annotations
 
-import math
 import threading
 from functools import lru_cache
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ...core.array_types import Floats, Integers
 from ..bodies import Bodies
 from ..cover import Cover
-from ..prony import Block, Prony, read_only
+from ..prony import Prony, read_only
 from .alpha_axis import OCTAVES, alpha_terms, tables_of_octave
 from .cover_rows import cover_rows
-from .evaluate import modes_record, refuse_distant_times
-from .fit import row_range
+from .evaluate import refuse_distant_times
+from .pack import allocate_rows, pack_axis, pack_materials
 from .table import make_table
 
 _lock = threading.Lock()
-#: the axis: what was met of each octave of alpha in this process (:mod:`...kernels.rows.alpha_axis`), never dropped
-#: again, and its address and how many rows it has, 0: not met
+#: rows of every octave of alpha that this process has used, (rows, parts, terms, powers); they are kept until it ends
 _octaves: dict[int, Floats] = {}
-_known = np.zeros((OCTAVES, 2), np.int64)
+#: address and number of rows of each of them, which kernels read; 0 rows: not used yet
+_octave_table = np.zeros((OCTAVES, 2), np.int64)
 
 
 def record_of_alphas(alpha: Floats) -> Any:
-    """The record of states or motions that have these alphas, one or one each, for one thread.
+    """Return the record of the laws of states or motions that have an alpha each, for use by one thread.
 
-    It holds the law of one of them at a time (:func:`...kernels.rows.record.hold`).
+    The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
+
+    alpha: one value for each element, or one for all, >= 1.
     """
-    from ...kernels.rows.alpha_axis import ALPHA_E0, SOURCE, make_part, select_alpha
+    from ...kernels.rows import alpha_axis
     from ...kernels.rows.record import E0
 
     alpha = np.ascontiguousarray(alpha, dtype=np.float64)
-    met = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
-    for octave in met[_known[met, 1] == 0].tolist():
-        with _lock:
-            if not _known[octave, 1]:  # else another thread just has
-                _octaves[octave], count = _octave(octave)
-                _known[octave] = _octaves[octave].ctypes.data, count
-    rows, marks = _room(int(_known[met, 1].max()))
-    marks[E0] = ALPHA_E0
-    return _record(
-        select_alpha, make_part, SOURCE, rows=rows, marks=marks, alpha=alpha, state_count=alpha.size, octaves=_known
-    )
+    octaves = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
+    with _lock:
+        for octave in octaves[_octave_table[octaves, 1] == 0].tolist():
+            tables = tables_of_octave(octave)
+            rows = pack_axis([table.record for table in tables], np.array([table.T_mean for table in tables]))
+            terms = read_only(np.moveaxis(alpha_terms(rows), 0, 2))
+            _octaves[octave], _octave_table[octave] = terms, (terms.ctypes.data, len(terms))
+    numbers, marks = allocate_rows(int(_octave_table[octaves, 1].max()))
+    marks[E0] = alpha_axis.ALPHA_E0
+    return _lazy_record(
+        alpha_axis, alpha_axis.select_alpha, rows=numbers, marks=marks, alpha=alpha, state_count=alpha.size,
+        octaves=_octave_table,
+    )  # fmt: skip
 
 
 def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
-    """An order in which states of one octave of alpha and one of kappa |V| follow each other.
+    """Return an order of states in which those of one octave of alpha and one of kappa |V| follow each other.
 
-    What they read is then near: scattered states take half as long again.
+    They then read rows that are close in memory: states in random order take half as long again.
+
+    alpha, kappa, V: of the states, dimensionless, shape (n,), or one for all.
+    Returns indices (n,); none for a single state.
     """
-    row_range = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
-    return np.argsort(row_range, kind="stable") if row_range.size > 1 else np.empty(0, np.int64)
-
-
-def _room(count: int) -> tuple[Floats, Integers]:
-    """Of so many rows, numbers and marks, with those in front."""
-    from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE
-
-    return np.zeros((count + 1) * ROW_SIZE), np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
-
-
-def _record(select: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> Any:
-    """The record of a law by its kernels and what these know: numbers, and arrays by their addresses.
-
-    ``free``: room for what a cover has beside its rows, which its kernels know too.
-    """
-    known |= {} if free is None else {"cover_rows": free}
-    from ...kernels.compile.intrinsics import function_address
-    from ...kernels.rows.record import Law
-
-    source = np.zeros(1, kind)
-    for name, value in known.items():
-        source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
-    # the marks keep alive all that the kernels have the addresses of
-    held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
-    addresses = function_address(select, kind), function_address(make, kind), int(source.ctypes.data)
-    rows, marks, added = map(read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
-    return Law(rows, marks, added, *addresses, None if free is None else read_only(free.view()))
-
-
-def _octave(octave: int) -> tuple[Floats, int]:
-    """(numbers, rows) of an octave of alpha."""
-    from ...kernels.rows.alpha_axis import ALPHA_PARTS
-    from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
-
-    tables = tables_of_octave(octave)
-    rows, c = len(tables[0].given_coefficients), np.array([table.T_mean for table in tables])
-    values = np.array([table.record.rows[ROW_SIZE:].reshape(rows, ROW_SIZE) for table in tables])
-    # two powers of one function, then of the other
-    pairs = values[..., :BODY_MOMENTS].reshape(len(tables), rows, -1, 2, 2)
-    pairs[..., 1, :] /= c[:, None, None, None]  # M/V and epsilon
-    values = np.concatenate([values[..., :BODY_MOMENTS], values[..., H_OVER_F2:]], axis=-1)
-    found = alpha_terms(values.reshape(len(tables), rows, ALPHA_PARTS, PART_SIZE))
-    return read_only(np.moveaxis(found, 0, 2)), rows
+    octaves = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
+    return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
 
 
 def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
-    """The record of states or motions that have the materials ``which``.
+    """Return the record of the laws of states or motions that have a material each, for use by one thread.
 
-    For one thread; it holds the law of one of them at a time (:func:`...kernels.rows.record.hold`).
+    The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
+
+    materials: many series, pairs or covers.
+    which: index of the material of each element, shape (n,).
     """
+    used, index = np.unique(which, return_inverse=True)
+    index = np.ascontiguousarray(index, dtype=np.int64)
     if isinstance(materials, Cover):
-        return _law_of_covers(materials, which)
-    from ...kernels.rows.series import LANES, series_size, workspace_size
-    from ...kernels.rows.z_grid import (
-        FIRST_EXPONENT,
-        SELECTED,
-        SERIES_START,
-        SOURCE,
-        grid_size,
-        make_part,
-        select_series,
-        work_size,
-    )
+        return _record_of_covers(materials.thickness[used], materials, index)
+    from ...kernels.rows import series, z_grid
 
-    some, of = np.unique(which, return_inverse=True)
-    blocks = list(materials.blocks(some))
-    most = max((block.modes.a.shape[-1] for block in blocks), default=0)
-    numbers = np.zeros((some.size, SERIES_START + series_size(most)))
+    blocks = list(materials.blocks(used))
+    most_modes = max((block.modes.a.shape[-1] for block in blocks), default=0)
+    numbers = np.zeros((used.size, z_grid.SERIES_START + series.series_size(most_modes)))
     for block in blocks:
         if block.modes.a.shape[-1]:
             refuse_distant_times(block.modes.b.min(), block.modes.a.max())
-        found = _numbers(block)
-        numbers[block.rows, : found.shape[1]] = found
-    count = int(numbers[:, FIRST_EXPONENT + 1].max(initial=1.0))
-    nodes, working = grid_size(count, float(numbers[:, 0].max(initial=1.0))), workspace_size(most)
-    rows, marks = _room(count)
-    marks[SELECTED] = -1
-    return _record(
-        select_series, make_part, SOURCE, rows=rows, marks=marks,
-        material_index=np.ascontiguousarray(of, dtype=np.int64), state_count=of.size, materials=numbers,
-        material_size=numbers.shape[1], numbers=np.empty(work_size(nodes)), node_count=nodes,
-        node_versions=np.zeros(nodes // LANES, np.int64), workspace=np.empty(working), workspace_size=working,
+        packed = pack_materials(block)
+        numbers[block.rows, : packed.shape[1]] = packed
+    row_count = int(numbers[:, z_grid.FIRST_EXPONENT + 1].max(initial=1.0))
+    nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max(initial=1.0)))
+    workspace = np.empty(series.workspace_size(most_modes))
+    rows, marks = allocate_rows(row_count)
+    marks[z_grid.SELECTED] = -1
+    return _lazy_record(
+        z_grid, z_grid.select_series, rows=rows, marks=marks, material_index=index, state_count=index.size,
+        materials=numbers, material_size=numbers.shape[1], numbers=np.empty(z_grid.work_size(nodes)), node_count=nodes,
+        node_versions=np.zeros(nodes // series.LANES, np.int64), workspace=workspace, workspace_size=workspace.size,
         unlike=any(block.weights is not None for block in blocks),
     )  # fmt: skip
 
 
-def _numbers(block: Block) -> Floats:
-    """What the kernels take of materials, a row each (:mod:`...kernels.rows.z_grid`)."""
-    modes, count = block.modes, block.rows.size
-    weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights
-    alpha, fast = np.broadcast_to(modes.alpha, count), modes.J * modes.b
-    logs = fast * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
-    sums = [(share * term).sum(axis=-1) for share in (1.0, weights, 1.0 - weights) for term in (fast, logs)]
-    means = [(share * modes.J / modes.b).sum(axis=-1) for share in (weights, 1.0 - weights)]
-    first, rows, N = np.zeros(count), np.ones(count), np.full(count, modes.a.shape[-1])
-    if modes.a.shape[-1]:
-        first, rows = row_range(modes.b[:, 0], modes.a[:, -1])
-    *vectors, Q = modes_record(modes, weights)
-    front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, first, rows, N]
-    return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)
+def _lazy_record(
+    kernels: Any, select: Any, rows: Floats, marks: Integers, cover_rows: Floats | None = None, **fields: Any
+) -> Any:
+    """Return the record of a law whose rows are made by kernels where they are read.
+
+    kernels: module with the kernel ``make_part`` and the type SOURCE of the data that both kernels read.
+    select: kernel that makes the law of one element the current one.
+    rows, marks: numbers and marks of the record, which the kernels write.
+    cover_rows: likewise the numbers that covers have in addition; None for half-spaces.
+    fields: the other fields of SOURCE, numbers or arrays, of which the address is passed.
+    """
+    from ...kernels.compile.intrinsics import function_address
+    from ...kernels.rows.record import Law
+
+    fields |= {"rows": rows, "marks": marks} | ({} if cover_rows is None else {"cover_rows": cover_rows})
+    source = np.zeros(1, kernels.SOURCE)
+    for name, value in fields.items():
+        source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
+    # the marks keep all arrays alive of which the kernels have the addresses
+    owner = SimpleNamespace(__array_interface__=marks.__array_interface__, arrays=(source, fields))
+    selector, maker = (function_address(kernel, kernels.SOURCE) for kernel in (select, kernels.make_part))
+    rows, marks, N_rows = map(read_only, (rows.view(), np.asarray(owner), np.empty(0)))
+    cover_rows = None if cover_rows is None else read_only(cover_rows.view())
+    return Law(rows, marks, N_rows, selector, maker, int(source.ctypes.data), cover_rows)
 
 
-def _law_of_covers(covers: Cover, which: Integers) -> Any:
-    """The record of states or motions that have the covers ``which``, for one thread."""
-    from ...kernels.numerics.interpolation import to_chebyshev as to_terms
-    from ...kernels.rows.record import E0
-    from ...kernels.rows.thickness_axis import NODES, SELECTED, SOURCE, make_part, select_cover
+def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
+    """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
 
-    some, of = np.unique(which, return_inverse=True)
-    octave, place = np.floor(np.log2(covers.thickness[some])), np.log2(covers.thickness[some])
-    laws = {each: _octave_of_covers(covers.of_thickness(2.0**each)) for each in np.unique(octave).tolist()}
-    weights = np.polynomial.chebyshev.chebvander(2.0 * (place - octave) - 1.0, NODES - 1) @ to_terms(NODES)
-    octaves = np.array([(laws[each].numbers.ctypes.data, laws[each].rows) for each in octave.tolist()], np.int64)
-    most = max(law.rows for law in laws.values())
-    rows, marks = _room(most)
-    marks[SELECTED], marks[E0] = -1, next(iter(laws.values())).e0
-    free = np.zeros(max(law.beside for law in laws.values()))
-    return _record(
-        select_cover, make_part, SOURCE, free, rows=rows, marks=marks,
-        cover_index=np.ascontiguousarray(of, dtype=np.int64), state_count=of.size,
-        weights=np.ascontiguousarray(weights), octaves=octaves, cover_count=some.size,
+    thickness: of each cover, divided by l0, shape (covers,).
+    covers: covers of which all but the thickness is taken.
+    index: index of the cover of each element, shape (n,).
+    """
+    from ...kernels.numerics.interpolation import to_chebyshev
+    from ...kernels.rows import thickness_axis
+    from ...kernels.rows.record import E0, ROW_COUNT
+
+    position = np.log2(thickness)
+    octave = np.floor(position)
+    laws = {}
+    for exponent in np.unique(octave).tolist():
+        with _lock:
+            laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent))
+    nodes = thickness_axis.NODES
+    weights = np.polynomial.chebyshev.chebvander(2.0 * (position - octave) - 1.0, nodes - 1) @ to_chebyshev(nodes)
+    octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
+    records = [record for _, record in laws.values()]
+    rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
+    marks[thickness_axis.SELECTED], marks[E0] = -1, records[0].marks[E0]
+    return _lazy_record(
+        thickness_axis, thickness_axis.select_cover, rows=rows, marks=marks, cover_index=index, state_count=index.size,
+        cover_rows=np.zeros(max(record.cover_rows.size for record in records)), cover_count=thickness.size,
+        weights=np.ascontiguousarray(weights), octaves=np.array(octaves, np.int64),
     )  # fmt: skip
 
 
-class _CoverLaws(NamedTuple):
-    """Laws of covers at the nodes of an octave of thickness.
-
-    numbers : (nodes, numbers) of a law: those in front, its rows, and what a cover has beside them.
-    rows, e0 : how many rows each has, and the exponent of the first.  beside : how many of the numbers are beside them.
-    """
-
-    numbers: Floats
-    rows: int
-    e0: int
-    beside: int
-
-
-def _octave_of_covers(thinnest: Cover) -> _CoverLaws:
-    """Those of an octave of thickness, made once a process; ``thinnest``: its lower end."""
-    with _lock:
-        return _made_octave_of_covers(thinnest)
-
-
 @lru_cache(maxsize=32)
-def _made_octave_of_covers(thinnest: Cover) -> _CoverLaws:
+def _laws_of_octave(thinnest: Cover) -> tuple[Floats, Any]:
+    """Return the laws at the nodes of an octave of thickness; made once a process.
+
+    thinnest: cover at the lower end of the octave.
+    Returns the numbers of their records, (nodes, numbers in front and rows, then those of the cover), and one of these
+    records.
+    """
     from ...kernels.numerics.interpolation import chebyshev, to_doubles
-    from ...kernels.rows.record import E0, ROW_SIZE
     from ...kernels.rows.thickness_axis import NODES
 
     numbers = []
-    for place in to_doubles(chebyshev(NODES)).tolist():
-        cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * place))
-        law = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
-        numbers.append(np.concatenate([law.rows, law.cover_rows]))
-    return _CoverLaws(np.array(numbers), law.rows.size // ROW_SIZE - 1, int(law.marks[E0]), law.cover_rows.size)
+    for node in to_doubles(chebyshev(NODES)).tolist():
+        cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * node))
+        record = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
+        numbers.append(np.concatenate([record.rows, record.cover_rows]))
+    return np.array(numbers), record

@@ -4,54 +4,49 @@ from __future__ import annotations
 
 import math
 import threading
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import ParameterError
 from ..bodies import Bodies, total_series
 from ..cover import Cover
 from ..pair import Pair
 from ..prony import Prony, read_only
-from .cover_rows import CoverRows, cover_rows
-from .evaluate import evaluate_by_modes, refuse_distant_times
-from .fit import (
-    FUNCTIONS,
-    TERMS,
-    Floats,
-    Rows,
-    fit_rows,
-    fit_unsteady,
-    interleave_pairs,
-    pack_rows,
-    pack_unsteady,
-    row_range,
-)
+from .cover_rows import cover_rows
+from .evaluate import refuse_distant_times
+from .fit import fit_rows, fit_unsteady
+from .pack import FUNCTIONS, CoverRows, constant_rows, pack_record, pack_unsteady, steady_table
+from .rows import Rows, row_range
 
-#: tables kept, of some 0.2 MB
-_KEPT = 32
+#: number of tables that a process keeps; each takes about 0.2 MB
+_KEPT_TABLES = 32
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LawTable:
-    """The law of one material or pair, whatever the load, speed, creep, radius and friction; arrays are read only.
+    """The law of one material or pair for any load, speed, creep, radius and friction; arrays are read only.
 
     Attributes
     ----------
-    material : what it is the law of, with times over ``T_ref``.
-    given_coefficients : as :attr:`coefficients`, with NaN where N was not made yet.
-    e0 : the first row holds [0, 2^e0).
-    alpha : instantaneous over long-time modulus.
-    T_mean : M/V as V -> 0, which is the sum of J_j T_j but for a cover against a body that deforms; over ``T_ref``.
+    material : alpha, series or bodies whose law this is, with times in units of ``T_ref``.
+    given_coefficients : as :attr:`coefficients`, with NaN where N was not computed yet.
+    e0 : exponent of the end of the first row, which is the interval [0, 2^e0).
+    alpha : instantaneous divided by long-time stiffness, dimensionless.
+    T_mean : limit of M/V for V -> 0, in units of ``T_ref``: the sum of J_j T_j, except for a cover against a body that
+        deforms.
     unlike : whether the bodies differ.
-    fast_limit : (3, 2), W = sum J_j/T_j and C = sum J_j/T_j (ln(2 T_j) - 0.5772...) of all, half-space and cylinder.
-    relaxation_strength, relaxation_time, creep_strength, retardation_time : both forms of the series, slowest first.
-    half_space_weight : what of every creep strength is the half-space's.
-    T_ref : what times are counted in, s.
-    pair : the bodies in SI units, where it was made of such.
-    cover : the rows that a cover of finite thickness has beside these, and None of half-spaces.
+    fast_limit : W = sum J_j/T_j and C = sum J_j/T_j (ln(2 T_j) - 0.5772...) of both bodies together, of the half-space
+        and of the cylinder, shape (3, 2).
+    relaxation_strength, relaxation_time, creep_strength, retardation_time : both forms of the series, slowest mode
+        first, times in units of ``T_ref``.
+    half_space_weight : part of each creep strength that is the half-space's, dimensionless.
+    T_ref : unit of time, s.
+    pair : the bodies in SI units, if the table was made of such.
+    cover : rows that a cover of finite thickness has in addition; None for half-spaces.
     """
 
     material: float | Prony | Bodies
@@ -75,48 +70,34 @@ class LawTable:
 
     @cached_property
     def coefficients(self) -> Floats:
-        """(rows, 24 powers, 7 functions), the functions in the order of :data:`.fit.FUNCTIONS`.
+        """Coefficients (rows, 24 powers, 7 functions), functions in the order of :data:`.pack.FUNCTIONS`.
 
-        Of a cover N is not known: its column is NaN.
+        For a cover N is not known: its column is NaN.
         """
         table = self.given_coefficients
         if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
-        return read_only(fit_unsteady(table, self.e0, lambda z: evaluate_by_modes(self.material, z).N))
+        return read_only(fit_unsteady(self.material, table, self.e0))
 
     @cached_property
     def record(self) -> Any:
-        """What kernels take, derived from this table and from nothing else."""
-        from ...kernels.rows.record import E0, PARTS_PER_ROW, ROW_COUNT, ROW_SIZE, Law
-
-        count, front = (
-            len(self.given_coefficients),
-            np.append([self.alpha, 1.0 / math.sqrt(self.alpha)], self.fast_limit),
-        )
-        lengths = free = None
-        if self.cover is not None:
-            front, free, lengths = pack_cover_front(self.cover), read_only(pack_cover(self.cover)), self.cover.creep[0]
-        rows, marks = np.zeros((count + 1) * ROW_SIZE), np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
-        rows[:8] = front
-        rows[ROW_SIZE:] = pack_rows(self.given_coefficients, self.e0, front[0], front[2:4], lengths).ravel()
-        marks[[ROW_COUNT, E0]] = count, self.e0
-        return Law(read_only(rows), read_only(marks), read_only(np.empty(0)), 0, 0, 0, free)
+        """Record of the law that kernels read (:class:`...kernels.rows.record.Law`)."""
+        return pack_record(self.given_coefficients, self.e0, self.alpha, self.fast_limit, self.cover)
 
     @cached_property
     def unsteady_record(self) -> Any:
         """As :attr:`record`, with N."""
-        N = self.coefficients[:, :, FUNCTIONS.index("N")]
-        return self.record._replace(N_rows=read_only(pack_unsteady(N, self.e0, self.alpha)))
+        return self.record._replace(N_rows=read_only(pack_unsteady(self.coefficients, self.e0, self.alpha)))
 
 
 def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
-    """The table of a material, made once a process and shared by all its threads.
+    """Return the table of a material; it is made once a process and shared by all its threads.
 
     Parameters
     ----------
-    given : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, of which those that are alike, or
-        both elastic, are one material; or a table.
-    coefficients : that are known of it, as of a file.
+    given : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, which are one material if they are
+        alike or both elastic; or a table, which is returned.
+    coefficients : rows of the law, as read from a file; default: they are computed.
 
     Raises
     ------
@@ -139,7 +120,7 @@ def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | N
 _lock = threading.Lock()
 
 
-@lru_cache(maxsize=_KEPT)
+@lru_cache(maxsize=_KEPT_TABLES)
 def _made(given: float | Prony | Bodies) -> LawTable:
     return make_table(given)
 
@@ -147,53 +128,28 @@ def _made(given: float | Prony | Bodies) -> LawTable:
 def make_table(
     given: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None
 ) -> LawTable:
-    """A table made anew, or of ``coefficients`` or rows of a cover that are known."""
+    """Make a new table.
+
+    given: alpha, series, bodies or a cover.
+    coefficients: rows of the law (rows, 24 powers, 7 functions); None: they are computed.
+    cover: rows of the law of a cover; None: they are computed if ``given`` is one.
+    """
     total, unlike = total_series(given), isinstance(given, Bodies)
     modes, alpha = total.modes, total.alpha
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
-    W, shares = modes.J * modes.b, (1.0, weights, 1.0 - weights)
+    W = modes.J * modes.b
     terms = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma), modes.J / modes.b
-    sums = np.array([[math.fsum(share * row) for row in terms] for share in shares])
-    table, e0 = _elastic(), 0
+    sums = np.array([[math.fsum(part * term) for term in terms] for part in (1.0, weights, 1.0 - weights)])
+    e0, T_mean = 0, total.T_mean
     if isinstance(given, Cover):
         cover = cover or cover_rows(given)
-        table, e0 = cover.coefficients, cover.e0
+        coefficients, e0, T_mean = cover.coefficients, cover.e0, float(cover.coefficients[0, 0, 2:4].sum())
     elif modes.a.size:
         refuse_distant_times(modes.b[0], modes.a[-1])
         e0, count = map(int, row_range(modes.b[0], modes.a[-1]))
         if coefficients is None:
-            coefficients = fit_rows(lambda z: evaluate_by_modes(given, z), Rows(e0, count), alpha, sums[1:, 2])
-        table = coefficients
+            coefficients = fit_rows(given, Rows(e0, count), alpha, sums[1:, 2])
+    else:  # elastic bodies: lam = eta/F = H/F^2 = 1, and neither shift nor moment
+        coefficients = steady_table(constant_rows(1.0, 0.0, 0.0, 0.0, 1.0, 1.0), N=0.0)
     arrays = map(read_only, (sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
-    found = LawTable(given, read_only(table), e0, alpha, total.T_mean, unlike, *arrays)
-    if cover is None:
-        return found
-    return replace(found, cover=cover, T_mean=float(cover.coefficients[0, 0, 2:4].sum()))
-
-
-def pack_cover_front(cover: CoverRows) -> Floats:
-    """The numbers in front of a cover's rows (:mod:`...kernels.rows.record`), by which the fast limit of the half-space
-    says that of the cover: L = L_1 (1 + a/u) and M = b V/u^2, without logarithms."""
-    L, _, _, L_slope, _, _, _, moment = cover.limits
-    on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
-    parts = (moment, 0.0) if on_base else (0.0, moment)
-    return np.array([1.0 / (L * L), L, 0.0, 4.0 * L_slope, 0.0, 8.0 * parts[0], 0.0, 8.0 * parts[1]])
-
-
-def pack_cover(cover: CoverRows) -> Floats:
-    """What kernels read of a cover beside its rows (:mod:`...kernels.rows.cover`)."""
-    from ...kernels.rows.cover import COVER_FRONT_SIZE
-
-    L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
-    share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
-    front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
-    assert len(front) == COVER_FRONT_SIZE
-    own = cover.creep[1]
-    return np.append(front, np.concatenate([own, interleave_pairs(own, own)], axis=1))
-
-
-def _elastic() -> Floats:
-    """lam = eta/F = H/F^2 = 1, and no shift or moment: closed forms."""
-    table = np.zeros((1, TERMS, len(FUNCTIONS)))
-    table[0, 0] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]
-    return table
+    return LawTable(given, read_only(coefficients), e0, alpha, T_mean, unlike, *arrays, cover=cover)
