@@ -127,12 +127,6 @@ class Bodies(OneOrMany):
     def _key(self) -> tuple[Any, ...]:
         return self.cylinder, self.base, np.shape(self.share), np.asarray(self.share).tobytes()
 
-    def __eq__(self, other: object) -> bool:
-        return self._key == other._key if isinstance(other, Bodies) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._key)
-
     def __repr__(self) -> str:
         if self.shape:
             modes = (body.E.shape[-1] for body in (self.cylinder, self.base))

@@ -21,23 +21,35 @@ from ..core.symbols import PAPER
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Integer attribute of a file: another number where one of this version could not be read any more.
-SCHEMA, VERSION = "law_schema", 1
+#: integer attribute of a file that states its schema
+SCHEMA = "law_schema"
+#: schema of this version; it changes if a file of this version could not be read by an older one
+VERSION = 1
+#: attribute with the checksum of the numbers
 CHECKSUM = "sha256_of_numbers"
-#: what to do about a file that is not as it was written
+#: what a user can do about a file that is not as it was written
 REMEDY = "write it again by `viscoroll tables law`"
+#: largest file that is read, bytes; laws have less than 10 MB
 _MOST_BYTES = 1 << 27
-
-#: Attribute that names the kind of a file, and its values: one material or pair, every alpha of one relaxation time,
-#: or a layer of finite thickness.
-KIND, LAW, AXIS, COVER = "viscoroll_table", "law", "axis", "cover"
+#: attribute that names the kind of a file
+KIND = "viscoroll_table"
+#: kind: the law of one material or pair
+LAW = "law"
+#: kind: the law of one relaxation time for all alpha
+AXIS = "axis"
+#: kind: the law of a layer of finite thickness
+COVER = "cover"
 
 
 class Kind(NamedTuple):
-    """What the file of a kind holds, and how it is read.
+    """Contents of the files of a kind.
 
-    functions : name of each function in the order of its coefficients -> meaning.  dims, terms : of coefficients, and
-    what they are of.  others : name of each other number -> dimensions, meaning.
+    summary : beginning of the summary of the file.
+    functions : name of each function in the order of its coefficients -> meaning.
+    dims : dimensions of the coefficients.
+    terms : what the coefficients are those of.
+    others : name of each other variable -> (dimensions, meaning).
+    comment : how the numbers are evaluated.
     """
 
     summary: str
@@ -138,101 +150,119 @@ KINDS = {
 
 
 class Content(NamedTuple):
-    """The numbers of a file by variable, and its attributes."""
+    """Content of a file.
+
+    numbers : arrays by the names of variables.
+    attributes : values by the names of global attributes.
+    """
 
     numbers: dict[str, Any]
     attributes: dict[str, Any]
 
 
-def dataset_content(found: Any) -> Content:
-    """That of a dataset; of what is none, nothing."""
-    numbers = {str(name): variable.values for name, variable in getattr(found, "variables", {}).items()}
-    return Content(numbers, getattr(found, "attrs", {}))
+def dataset_content(dataset: Any) -> Content:
+    """Return the content of a ``dataset``; for another object, nothing."""
+    numbers = {str(name): variable.values for name, variable in getattr(dataset, "variables", {}).items()}
+    return Content(numbers, getattr(dataset, "attrs", {}))
 
 
 def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
-    """SHA-256 over names and numbers of all variables: little-endian doubles, the last dimension fastest."""
+    """Return the SHA-256 over names and numbers of all variables: little-endian doubles, last dimension fastest.
+
+    numbers: arrays by name.
+    kind: of the file, which determines the names and their order.
+    """
     digest = hashlib.sha256()
     for name in (*KINDS[kind].functions, *KINDS[kind].others):
         digest.update(name.encode() + np.ascontiguousarray(numbers[name], "<f8").tobytes())
     return digest.hexdigest()
 
 
-def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], **more: str) -> xr.Dataset:
-    """The dataset of a file: its numbers, what they are and where they come from, and their checksum.
+def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], **attributes: str) -> xr.Dataset:
+    """Return the dataset of a file: its numbers, their meaning and origin, and their checksum.
 
-    title : what the law is of.  errors : the largest relative one of each function.  more : other attributes.
+    law: object with the variables of the kind as attributes, and ``coefficients`` with the functions last.
+    kind: of the file.
+    title: bodies whose law it is, in words.
+    errors: largest relative error of each function.
+    attributes: further attributes.
     """
     import xarray as xr
 
-    held = KINDS[kind]
+    about = KINDS[kind]
     data = {}
-    for n, (name, meaning) in enumerate(held.functions.items()):
-        about = {"long_name": f"coefficients of {held.terms}: {meaning}", "largest_relative_error": errors[name]}
-        data[name] = xr.Variable(held.dims, law.coefficients[..., n], about)
-    for name, (dims, meaning) in held.others.items():
+    for n, (name, meaning) in enumerate(about.functions.items()):
+        labels = {"long_name": f"coefficients of {about.terms}: {meaning}", "largest_relative_error": errors[name]}
+        data[name] = xr.Variable(about.dims, law.coefficients[..., n], labels)
+    for name, (dims, meaning) in about.others.items():
         value = np.asarray(getattr(law, name))
         value = value.astype(np.int32) if value.dtype.kind == "i" else value
-        about = {"units": "s"} if name == "T_ref" else {}  # the others have none
-        data[name] = xr.Variable(dims, value, {"long_name": meaning, **about})
-    attributes = {
+        unit = {"units": "s"} if name == "T_ref" else {}  # the other variables are dimensionless or in T_ref
+        data[name] = xr.Variable(dims, value, {"long_name": meaning, **unit})
+    dataset = xr.Dataset(data, attrs={
         "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {title}",
-        "summary": held.summary + "any speed, creep, kappa and mu, by two look-ups and no iteration.",
+        "summary": about.summary + "any speed, creep, kappa and mu, by two look-ups and no iteration.",
         "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: kind, SCHEMA: np.int32(VERSION),
-        **more, "comment": held.comment, "references": PAPER, "source": f"viscoroll {__version__}",
+        **attributes, "comment": about.comment, "references": PAPER, "source": f"viscoroll {__version__}",
         "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
-    }  # fmt: skip
-    found = xr.Dataset(data, attrs=attributes)
-    return found.assign_attrs({CHECKSUM: checksum(dataset_content(found).numbers, kind)})
+    })  # fmt: skip
+    return dataset.assign_attrs({CHECKSUM: checksum(dataset_content(dataset).numbers, kind)})
 
 
-def stated_errors(found: Any) -> dict[str, float]:
-    """The largest relative error of every function that a dataset states."""
-    functions = KINDS[found.attrs[KIND]].functions
-    return {name: float(found[name].attrs["largest_relative_error"]) for name in functions}
+def stated_errors(dataset: Any) -> dict[str, float]:
+    """Return the largest relative error of every function that the ``dataset`` of a law states."""
+    functions = KINDS[dataset.attrs[KIND]].functions
+    return {name: float(dataset[name].attrs["largest_relative_error"]) for name in functions}
 
 
 def is_law(path: str | PathLike[str]) -> bool:
-    """Whether a file is the law of a material or a cover; raises FileError of one that cannot be read or is damaged."""
+    """Return whether the file ``path`` is the law of a material or cover; raises FileError for a damaged file."""
     try:
         return read_content(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
-    except OSError:  # the reader of materials says what it is not
+    except OSError:  # no HDF5: the reader of materials reports that
         return False
 
 
 def read_law(path: str | PathLike[str]) -> Content:
-    """What a law file holds, verified; raises FileError."""
+    """Return the verified content of the law file ``path``; raises FileError."""
     try:
-        found = read_content(path, "law file of viscoroll", REMEDY)
+        content = read_content(path, "law file of viscoroll", REMEDY)
+    except FileError:
+        raise
     except Exception as error:  # libraries raise many kinds
-        if isinstance(error, FileError):
-            raise
         raise FileError(path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}") from error
-    check_law(found, path)
-    return found
+    check_law(content, path)
+    return content
 
 
-def read_content(path: str | PathLike[str], what: str, remedy: str) -> Content:
-    """The numbers and attributes of a file by h5py alone, which takes a tenth of the time of xarray.
+def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Content:
+    """Read a netCDF file by h5py alone, which takes a tenth of the time of xarray.
 
-    Raises FileError of one that cannot be read or is not what was sealed, else whatever h5py does.
+    path: of the file.
+    expected: kind of file in words, for errors.
+    remedy: what to do about a damaged file, for errors.
+    Raises FileError for a file that cannot be read or whose seal does not match it, and any error of h5py.
     """
     import h5py
 
-    with h5py.File(io.BytesIO(read_sealed(path, _MOST_BYTES, what, remedy)), "r") as file:
-        numbers = {name: each[()] for name, each in file.items() if isinstance(each, h5py.Dataset)}
-        return Content(numbers, {key: _single(value) for key, value in file.attrs.items()})
+    with h5py.File(io.BytesIO(read_sealed(path, _MOST_BYTES, expected, remedy)), "r") as file:
+        numbers = {name: variable[()] for name, variable in file.items() if isinstance(variable, h5py.Dataset)}
+        return Content(numbers, {key: _to_scalar(value) for key, value in file.attrs.items()})
 
 
-def _single(value: Any) -> Any:
-    """A text or a number, which programs also write as an array of one, and texts as bytes."""
+def _to_scalar(value: Any) -> Any:
+    """Return the ``value`` of an attribute as text or number: some programs write arrays of one, and texts as bytes."""
     if np.size(value) == 1:
         value = np.ravel(value)[0]
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
 def check_law(content: Content, path: Any) -> None:
-    """Refuse what is no law of this schema, or not the numbers that its checksum is of; raises FileError."""
+    """Raise FileError for a file that is no law of this schema, or whose numbers do not match its checksum.
+
+    content: of the file.
+    path: of the file, for errors.
+    """
     numbers, attributes = content
     kind = attributes.get(KIND)
     if kind not in KINDS:

@@ -23,18 +23,21 @@ from .measured import Measured
 from .prony import Prony
 from .shift import WLF, Arrhenius, relative_shift
 
+#: sections of a file that describe a body
 SECTIONS = ("material", "base")
+#: what is missing from a file without them
+_NO_MATERIAL = "section [material] is missing: it needs E and nu"
 
 
 class PronySection(msgspec.Struct):
-    """prony = { E = [...], tau = [...] }."""
+    """Key prony = { E = [...], tau = [...] }: the parameters of :class:`Prony`."""
 
     E: list[float]
     tau: list[float]
 
 
 class CreepSection(msgspec.Struct):
-    """creep = { J = [...], T = [...] }, perhaps with alpha."""
+    """Key creep = { J = [...], T = [...] }: the parameters of :meth:`Prony.creep`."""
 
     J: list[float]
     T: list[float]
@@ -42,7 +45,7 @@ class CreepSection(msgspec.Struct):
 
 
 class FileSection(msgspec.Struct, kw_only=True):
-    """[material] or [base] of a netCDF or TOML file, a thickness, and a temperature."""
+    """Section [material] or [base] that names a netCDF or TOML file; thickness, shift and temperature as below."""
 
     file: str
     thickness: float | None = None
@@ -52,13 +55,13 @@ class FileSection(msgspec.Struct, kw_only=True):
 
 
 class MaterialSection(FileSection, kw_only=True):
-    """[material] or [base]: the parameters of :class:`Material`, or of :meth:`Material.sls`, and a temperature.
+    """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`, and a temperature.
 
-    T_epsilon, T_sigma : retardation and relaxation time of one mode, s, in place of a series.
-    creep : in place of ``prony``: compliances over that at once, and times; perhaps alpha.
-    wlf, arrhenius : how times shift with temperature.
-    temperature : which they are wanted at, degrees Celsius.
-    reference : at which moduli and times are as they stand here, degrees Celsius; default: where the shift is 1.
+    T_epsilon, T_sigma : retardation and relaxation time of one mode, s, instead of a series.
+    creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
+    wlf, arrhenius : time-temperature shift.
+    temperature : temperature of the material, degrees Celsius.
+    reference : temperature at which moduli and times are as given, degrees Celsius; default: where the shift is 1.
     """
 
     file: None = None  # type: ignore[assignment]
@@ -76,12 +79,16 @@ class MaterialSection(FileSection, kw_only=True):
 
 
 def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
-    """The materials of a TOML file by section, "material" and "base"; of a netCDF file its one, "material".
+    """Read the materials of a TOML file by section, "material" and "base"; of a netCDF file its only one, "material".
 
     Parameters
     ----------
-    path : a file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are not
-        looked at.  Or one that :meth:`Material.to_netcdf` wrote.
+    path : a file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are
+        ignored.  Or a file that :meth:`Material.to_netcdf` wrote.
+
+    Returns
+    -------
+    dict of str to Material
 
     Raises
     ------
@@ -92,132 +99,169 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
     """
     if Path(path).suffix == SUFFIX:
         return {"material": Material.from_netcdf(path)}
-    found = parse_materials(path, read_toml(path))
-    if not found:
-        raise section_error(path, "", "material", "section [material] is missing: it needs E and nu")
-    return found
+    materials = parse_materials(path, read_toml(path))
+    if not materials:
+        raise section_error(path, "", "material", _NO_MATERIAL)
+    return materials
 
 
 def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
-    """The materials of a file that was read; arguments and errors as :func:`read_materials`."""
-    return {name: _material(path, name, content[name]) for name in SECTIONS if name in content}
+    """Return the materials of a file that was read; raises FileError as :func:`read_materials` does.
+
+    path: of the file.
+    content: its sections.
+    """
+    return {name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content}
 
 
 def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
-    """a_T of the materials of a file that was read, over temperature, 1 at that of the file, where it has a shift."""
-    given = {name: _section(path, name, content[name]) for name in SECTIONS if name in content}
-    found = {name: _shift(path, name, each) for name, each in given.items()}
-    return {name: partial(relative_shift, shift[0], reference=shift[1]) for name, shift in found.items() if shift}
+    """Return the shifts of those materials of a file that have one; raises FileError.
+
+    path: of the file.
+    content: its sections.
+    Returns functions a_T(temperature in degrees Celsius) by section, which are 1 at the temperature of the section.
+    """
+    sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
+    return {
+        name: partial(relative_shift, shift, reference=section.temperature)
+        for name, section in sections.items() if (shift := _shift_of(path, name, section))
+    }  # fmt: skip
 
 
 def material_as_toml(material: Material, section: str = "material") -> str:
-    """The section of a TOML file that reads back as this material, to the bit."""
-    measured = material.measured and (
-        f"{{ low = {material.measured.low}, high = {material.measured.high}, misfit = {material.measured.misfit}, "
-        f"source = {_text(material.measured.source)} }}"
+    """Return the ``section`` of a TOML file that reads back as this ``material``, to the bit."""
+    band = material.measured
+    values = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
+    values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
+    values["measured"] = band and (
+        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)} }}"
     )
-    held = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
-    held = {"name": _text(material.name)} | held | {"reference": material.temperature, "measured": measured}
-    lines = [f"{name} = {value}" for name, value in held.items() if value is not None]
+    lines = [f"{name} = {value}" for name, value in values.items() if value is not None]
     return "\n".join([f"[{section}]", *lines, series_as_toml(material.prony), ""])
 
 
 def series_as_toml(series: Prony) -> str:
-    """The key ``prony`` or ``creep`` that reads back as this series, to the bit."""
+    """Return the key ``prony`` or ``creep`` that reads back as this ``series``, to the bit."""
     if series.by_creep:
         return f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = {series.alpha!r} }}"
     return f"prony = {{ E = {series.E.tolist()}, tau = {series.tau.tolist()} }}"
 
 
-def _text(given: str) -> str:
-    # TOML knows no surrogates, and DEL only escaped
-    return json.dumps(given, ensure_ascii=False).replace("\x7f", r"\u007f")
+def _quote(text: str) -> str:
+    """Return ``text`` as a TOML string: TOML allows no surrogates, and the character DEL only escaped."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", r"\u007f")
 
 
-def _section(path: Any, name: str, content: Any) -> Any:
-    """A section by its schema, that of a file or its own."""
+def _parse_section(path: Any, name: str, content: Any) -> Any:
+    """Return a section as a FileSection or MaterialSection; raises FileError.
+
+    path, name: of the file and of the section.
+    content: keys and values of the section.
+    """
     kind = FileSection if isinstance(content, dict) and "file" in content else MaterialSection
     return as_struct(path, name, content, kind)
 
 
-def _material(path: Any, name: str, content: Any) -> Material:
-    given = _section(path, name, content)
+def _parse_material(path: Any, name: str, content: Any) -> Material:
+    """Return the material of a section at its temperature; raises FileError.
+
+    path, name: of the file and of the section.
+    content: keys and values of the section.
+    """
+    section = _parse_section(path, name, content)
     try:
-        found = _unshifted(path, name, given) if given.file is None else _stored(path, name, given)
-        shift, own = _shift(path, name, given) or (None, given.temperature)
-        if own is None:
-            return found
+        if section.file is None:
+            material = _make_material(path, name, section)
+        else:
+            material = _read_other_file(path, name, Path(path).parent / section.file)
+            if section.thickness is not None:
+                material = replace(material, thickness=section.thickness)
+        shift, temperature = _shift_of(path, name, section), section.temperature
+        if temperature is None:
+            return material
         if shift is None:
-            raise section_error(path, name, "temperature", f"temperature = {own:g}: needs wlf or arrhenius beside it")
-        return found.at(own, shift)
+            problem = f"temperature = {temperature:g}: needs wlf or arrhenius beside it"
+            raise section_error(path, name, "temperature", problem)
+        return material.at(temperature, shift)
     except ParameterError as error:
         raise section_error(path, name, error.name, str(error)) from error
 
 
-def _stored(path: Any, name: str, given: FileSection) -> Material:
-    """The material of a file beside ``path``: netCDF, its own or its law's, or TOML with this section or [material]."""
-    found = _beside(path, name, Path(path).parent / given.file)
-    return found if given.thickness is None else replace(found, thickness=given.thickness)
+def _read_other_file(path: Any, name: str, other: Path) -> Material:
+    """Return the material of a file that a section names; raises FileError.
 
-
-def _beside(path: Any, name: str, beside: Path) -> Material:
+    path, name: of the file and of the section that names it.
+    other: netCDF file of a material or of its law, or TOML file with a section of this name or [material].
+    """
     try:
-        if beside.suffix == SUFFIX:
-            return _of_law(beside) if is_law(beside) else Material.from_netcdf(beside)
-        content = read_toml(beside)
+        if other.suffix == SUFFIX:
+            return _material_of_law(other) if is_law(other) else Material.from_netcdf(other)
+        content = read_toml(other)
         section = name if name in content else "material"
         if section not in content:
-            raise section_error(beside, "", "material", "section [material] is missing: it needs E and nu")
+            raise section_error(other, "", "material", _NO_MATERIAL)
         if isinstance(content[section], dict) and "file" in content[section]:
-            raise section_error(beside, section, "file", "file: must not name a file again")
-        return _material(beside, section, content[section])
+            raise section_error(other, section, "file", "file: must not name a file again")
+        return _parse_material(other, section, content[section])
     except FileError as error:
         raise section_error(path, name, "file", str(error)) from error
 
 
-def _of_law(path: Path) -> Material:
-    """The one material that the file of a law names; raises FileError of a pair, or of a law without units."""
-    found = tomllib.loads(read_law(path).attributes["material"])
-    if not found.keys() & set(SECTIONS):
+def _material_of_law(path: Path) -> Material:
+    """Return the material of the law in file ``path``; raises FileError for a pair and for a law without units."""
+    content = tomllib.loads(read_law(path).attributes["material"])
+    if not content.keys() & set(SECTIONS):
         raise FileError(path, "is the law of a material without units: it must be of one with [material]")
-    if "base" in found:
+    if "base" in content:
         raise FileError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
-    return parse_materials(path, found)["material"]
+    return parse_materials(path, content)["material"]
 
 
-def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
-    more = {key: getattr(given, key) for key in ("name", "density", "thickness", "measured")}
-    more["temperature"] = given.reference
-    series = parse_series(path, name, msgspec.to_builtins({"prony": given.prony, "creep": given.creep}))
-    if given.T_epsilon is not None or given.T_sigma is not None:
-        if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:
-            raise section_error(
-                path, name, "", "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep"
-            )
-        return Material.sls(given.E, given.nu, given.T_epsilon, given.T_sigma, **more)
-    return Material(given.E, given.nu, series or Prony.elastic(), 1.0 if given.T_ref is None else given.T_ref, **more)
+def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
+    """Return the material of a section at its reference temperature; raises FileError and ParameterError.
+
+    path, name: of the file and of the section.
+    section: its content.
+    """
+    more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
+    more["temperature"] = section.reference
+    series = parse_series(path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep}))
+    times = section.T_epsilon, section.T_sigma
+    if times != (None, None):
+        if None in times or section.T_ref is not None or series:
+            problem = "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep"
+            raise section_error(path, name, "", problem)
+        return Material.sls(section.E, section.nu, *times, **more)  # type: ignore[arg-type]
+    T_ref = 1.0 if section.T_ref is None else section.T_ref
+    return Material(section.E, section.nu, series or Prony.elastic(), T_ref, **more)
 
 
 def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
-    """The series of a section by its keys prony and creep, of arrays one each; None without.  Raises FileError."""
-    found = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
-    if len(found) > 1:
+    """Return the series of a section by its key prony or creep, or None without these; raises FileError.
+
+    path, name: of the file and of the section.
+    given: keys and values; strengths and times may be arrays with one value for each of many materials.
+    """
+    forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
+    if len(forms) > 1:
         raise section_error(path, name, "creep", "prony and creep: must be one of the two")
-    for key, lists in found.items():
+    for key, lists in forms.items():
         columns = {
-            each: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
-            for each, value in lists.items()
+            column: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
+            for column, value in lists.items()
         }
         try:
             return Prony(**columns) if key == "prony" else Prony.creep(**columns)
-        except ParameterError as error:  # at its own line: E is a key of the material too
+        except ParameterError as error:  # E is a key of the material too: name the line of the series
             raise section_error(path, f"{name}.{key}", error.name, str(error)) from error
     return None
 
 
-def _shift(path: Any, name: str, given: FileSection) -> tuple[WLF | Arrhenius, float | None] | None:
-    """(a_T over temperature, the temperature that is asked for), where a section has one."""
-    if given.wlf is not None and given.arrhenius is not None:
+def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | None:
+    """Return the time-temperature shift of a ``section``, or None; raises FileError for two.
+
+    path, name: of the file and of the section, for errors.
+    """
+    if section.wlf is not None and section.arrhenius is not None:
         raise section_error(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
-    shift = given.wlf or given.arrhenius
-    return None if shift is None else (shift, given.temperature)
+    return section.wlf or section.arrhenius

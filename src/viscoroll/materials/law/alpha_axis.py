@@ -11,7 +11,7 @@ import numpy as np
 from ...core.array_types import Floats
 from ...core.checks import check_number
 from ...core.errors import ParameterError
-from ..prony import read_only
+from ..prony import lock_array
 from ..prony_forms import HIGHEST_ALPHA
 from .pack import from_axis, to_axis
 from .table import LawTable, law_table, make_table
@@ -90,7 +90,7 @@ def law_axis(low: float, high: float) -> LawAxis:
     coefficients = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
     for padded, piece in zip(coefficients, pieces, strict=True):
         padded[:, : piece.shape[1]] = piece
-    return LawAxis(read_only(coefficients), rows, octaves[0], tables[0].e0)
+    return LawAxis(lock_array(coefficients), rows, octaves[0], tables[0].e0)
 
 
 def tables_of_octave(octave: int) -> list[LawTable]:

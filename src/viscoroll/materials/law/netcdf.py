@@ -23,23 +23,28 @@ from ..law_file import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, make_data
 from ..material import Material
 from ..material_toml import material_as_toml, parse_materials, parse_series, series_as_toml
 from ..pair import Pair
-from ..prony import Prony
+from ..prony import Prony, lock_array
 from ..prony_forms import HIGHEST_ALPHA
 from .alpha_axis import LawAxis
 from .grid import load_grid
-from .pack import FUNCTIONS, CoverRows
+from .pack import CoverRows, steady_columns, steady_table
 from .table import LawTable, law_table, make_table
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: columns of a table but N, and what a file says of a layer beside its series
-_NOT_N = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
-_OF_COVER = "nu", "thickness", "on", "part", "other_nu"
+#: attributes of a cover that its file states besides the series
+_COVER_ATTRIBUTES = ("nu", "thickness", "on", "part", "other_nu")
+#: attributes of a table that the file of a cover states
+_COVER_NUMBERS = ("e0", "alpha", "T_ref")
 
 
 def law_table_of(material: Any, base: Any = None) -> LawTable:
-    """The law of a Prony, Bodies, alpha, Material (on a ``base``), Pair, or of a law that there is already."""
+    """Return the law of a material as users give it; raises ParameterError.
+
+    material: Prony, Bodies, alpha, Material, Pair, or a LawTable, which is returned.
+    base: Material of the half-space, only beside a Material; default: that of the cylinder.
+    """
     if base is not None and not isinstance(material, Material):
         raise ParameterError("base", "given", "left out unless material is a Material")
     if isinstance(material, LawTable | Prony | Bodies):
@@ -47,8 +52,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     if isinstance(material, Material):
         material = Pair(material, base)
     if isinstance(material, Pair):
-        pair = material
-        return replace(law_table(pair.law), T_ref=pair.T_ref, pair=pair)
+        return replace(law_table(material.law), T_ref=material.T_ref, pair=material)
     if not isinstance(material, Real):
         allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
         raise ParameterError("material", f"of type {type(material).__name__}", allowed)
@@ -56,21 +60,23 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
 
 
 def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
-    """All that a file holds; ``errors``: largest relative error by function."""
+    """Return the content of the file of a ``law``; ``errors``: largest relative error of each function."""
     if isinstance(law, LawAxis):
         return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
-    if law.cover is not None:
-        rows = np.concatenate([law.given_coefficients[..., _NOT_N], np.moveaxis(law.cover.creep, 0, -1)], axis=-1)
-        text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(law.material)
-        numbers = SimpleNamespace(coefficients=rows, **{n: getattr(law, n) for n in ("e0", "alpha", "T_ref")})
-        numbers.limits = law.cover.limits
-        return make_dataset(numbers, COVER, name_bodies(law), errors, material=text)
-    bodies, material = "unlike" if law.unlike else "alike", bodies_as_toml(law.pair or law.material)
-    return make_dataset(law, LAW, name_bodies(law), errors, bodies=bodies, material=material)
+    if law.cover is None:
+        bodies, material = "unlike" if law.unlike else "alike", bodies_as_toml(law.pair or law.material)
+        return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
+    creep = np.moveaxis(law.cover.creep, 0, -1)
+    numbers = SimpleNamespace(
+        coefficients=np.concatenate([steady_columns(law.given_coefficients), creep], axis=-1), limits=law.cover.limits,
+        **{name: getattr(law, name) for name in _COVER_NUMBERS},
+    )  # fmt: skip
+    text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(law.material)
+    return make_dataset(numbers, COVER, _title(law), errors, material=text)
 
 
-def name_bodies(table: LawTable) -> str:
-    """The bodies in words."""
+def _title(table: LawTable) -> str:
+    """Return the bodies of a ``table`` in words."""
     if table.pair is None:
         return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
     bodies = (table.pair.cylinder, table.pair.base)
@@ -78,7 +84,7 @@ def name_bodies(table: LawTable) -> str:
 
 
 def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
-    """The law of one material or pair from a file, to stand wherever a Prony or Bodies stands.
+    """Load the law of one material or pair from a file, for use wherever a Prony or Bodies is used.
 
     Parameters
     ----------
@@ -120,49 +126,50 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
 
 
 def parse_law(content: Content, path: Any) -> LawTable:
-    """The law of what was checked; raises FileError where it does not name its material."""
-    if content.attributes[KIND] == AXIS:
+    """Return the law of one material; raises FileError for a file that does not state its material.
+
+    content: of the file, verified.
+    path: of the file, for errors.
+    """
+    numbers, attributes = content
+    kind = attributes[KIND]
+    if kind == AXIS:
         raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
-    with _whole(path):
-        given = _material_of(content.attributes["material"], path)
-        if content.attributes[KIND] == COVER:
-            return _of_cover(content, *given)
-        pair = given if isinstance(given, Pair) else None
-        found = law_table(given if pair is None else pair.law, coefficients=_stacked(content, LAW))
-        numbers = content.numbers
-        return replace(found, e0=int(numbers["e0"]), T_ref=float(numbers["T_ref"]), pair=pair)
-
-
-def _of_cover(content: Content, cover: Cover, pair: Pair | None) -> LawTable:
-    """The law of a layer from its numbers."""
-    numbers, e0 = content.numbers, int(content.numbers["e0"])
-    stacked = _stacked(content, COVER)
-    coefficients = np.full((*stacked.shape[:2], len(FUNCTIONS)), np.nan)
-    coefficients[..., _NOT_N] = stacked[..., :-2]
-    rows = CoverRows(e0, coefficients, np.moveaxis(stacked[..., -2:], -1, 0), numbers["limits"])
-    return replace(make_table(cover, cover=rows), T_ref=float(numbers["T_ref"]), pair=pair)
+    with _refuse_incomplete(path):
+        given, pair = _parse_bodies(attributes["material"], path)
+        coefficients, e0 = _coefficients(content), int(numbers["e0"])
+        if kind == COVER:
+            table = steady_table(np.moveaxis(coefficients[..., :-2], -1, 0))
+            creep = np.moveaxis(coefficients[..., -2:], -1, 0)
+            law = make_table(given, cover=CoverRows(e0, table, creep, numbers["limits"]))
+        else:
+            law = law_table(given, coefficients=coefficients)
+        return replace(law, e0=e0, T_ref=float(numbers["T_ref"]), pair=pair)
 
 
 def parse_axis(content: Content, path: Any) -> LawAxis:
-    """The law of every alpha, of what was checked; raises FileError."""
-    with _whole(path):
-        whole, numbers = _stacked(content, AXIS), content.numbers
+    """Return the law of all alpha; raises FileError for an incomplete file.
+
+    content: of the file, verified.
+    path: of the file, for errors.
+    """
+    with _refuse_incomplete(path):
+        coefficients, numbers = _coefficients(content), content.numbers
         rows = tuple(map(int, numbers["rows"]))
-        if whole.ndim != len(KINDS[AXIS].dims) + 1 or len(rows) != len(whole):
-            raise ValueError(f"functions of shape {whole.shape[:-1]}")
-        return LawAxis(whole, rows, int(numbers["first"]), int(numbers["e0"]))
+        if coefficients.ndim != len(KINDS[AXIS].dims) + 1 or len(rows) != len(coefficients):
+            raise ValueError(f"functions of shape {coefficients.shape[:-1]}")
+        return LawAxis(coefficients, rows, int(numbers["first"]), int(numbers["e0"]))
 
 
-def _stacked(content: Content, kind: str) -> Floats:
-    """The coefficients of all functions."""
-    found = np.stack([content.numbers[name] for name in KINDS[kind].functions], axis=-1).astype(np.float64)
-    found.flags.writeable = False
-    return found
+def _coefficients(content: Content) -> Floats:
+    """Return the coefficients of all functions of a file, (..., functions), read only; ``content``: of the file."""
+    names = KINDS[content.attributes[KIND]].functions
+    return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(np.float64))
 
 
 @contextmanager
-def _whole(path: Any) -> Iterator[None]:
-    """FileError in place of what goes wrong where a file is not as it was written."""
+def _refuse_incomplete(path: Any) -> Iterator[None]:
+    """Raise FileError in place of the errors that a file makes which is not as it was written; ``path``: of it."""
     try:
         yield
     except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
@@ -171,13 +178,16 @@ def _whole(path: Any) -> Iterator[None]:
 
 
 def bodies_as_toml(given: Any) -> str:
-    """A pair, Bodies, a series or an alpha as TOML that reads back to the bit: as in scene files, or dimensionless."""
+    """Return TOML that reads back to the bit: of a pair as in scene files, of others dimensionless.
+
+    given: Pair, Cover, Bodies, Prony or alpha.
+    """
     if isinstance(given, Pair):
         text = material_as_toml(given.cylinder)
         text += "" if given.base is None else f"\n{material_as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
     if isinstance(given, Cover):
-        lines = (f"{name} = {json.dumps(getattr(given, name))}" for name in _OF_COVER)
+        lines = (f"{name} = {json.dumps(getattr(given, name))}" for name in _COVER_ATTRIBUTES)
         return "\n".join(["[cover]", series_as_toml(given.layer), *lines, ""])
     if isinstance(given, Bodies):
         parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
@@ -185,21 +195,26 @@ def bodies_as_toml(given: Any) -> str:
     return f"[scene]\n{series_as_toml(given) if isinstance(given, Prony) else f'alpha = {given!r}'}\n"
 
 
-def _material_of(text: str, path: Any) -> Any:
-    """What :func:`bodies_as_toml` wrote: a pair, Bodies, a series or an alpha; of a layer (Cover, its pair or None)."""
+def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
+    """Return what :func:`bodies_as_toml` wrote.
+
+    text: TOML.
+    path: of the file, for errors.
+    Returns (Cover, Bodies, Prony or alpha; the bodies in SI units, or None).
+    """
     content = tomllib.loads(text)
+    pair = None
+    if "material" in content:
+        bodies = parse_materials(path, content)
+        pair = Pair(bodies["material"], bodies.get("base"), content["plane"])
     if "cover" in content:
         given = content["cover"]
-        cover = Cover(parse_series(path, "cover", given), **{name: given[name] for name in _OF_COVER})
-        bodies = parse_materials(path, content) if "material" in content else None
-        return cover, None if bodies is None else Pair(bodies["material"], bodies.get("base"), content["plane"])
-    if "material" in content:
-        found = parse_materials(path, content)
-        return Pair(found["material"], found.get("base"), content["plane"])
+        return Cover(parse_series(path, "cover", given), **{name: given[name] for name in _COVER_ATTRIBUTES}), pair
+    if pair is not None:
+        return pair.law, pair
     if "bodies" in content:
         given = content["bodies"]
-        parts = (given[name] for name in ("cylinder", "base"))
-        series: Any = (parse_series(path, "bodies", one) for one in parts)
-        return Bodies(*series, given["share"])  # type: ignore[call-arg]
+        series = {name: parse_series(path, "bodies", given[name]) for name in ("cylinder", "base")}
+        return Bodies(**series, share=given["share"]), None
     given = content["scene"]
-    return given["alpha"] if "alpha" in given else parse_series(path, "scene", given)
+    return given["alpha"] if "alpha" in given else parse_series(path, "scene", given), None

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.array_types import Floats, Integers
-from ..prony import Block, read_only
+from ..prony import Block, lock_array
 from .evaluate import modes_record
 from .rows import TERMS, Rows, row_range
 
@@ -127,12 +127,12 @@ def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover:
 
     count, front, L, cover_rows = len(table), np.append([alpha, 1.0 / math.sqrt(alpha)], fast_limit), None, None
     if cover is not None:
-        front, cover_rows, L = _pack_cover_front(cover), read_only(_pack_cover(cover)), cover.creep[0]
+        front, cover_rows, L = _pack_cover_front(cover), lock_array(_pack_cover(cover)), cover.creep[0]
     rows, marks = allocate_rows(count)
     rows[: front.size] = front
     rows[ROW_SIZE:] = _pack_rows(table, e0, front[0], front[2:4], L).ravel()
     marks[[ROW_COUNT, E0]] = count, e0
-    return Law(read_only(rows), read_only(marks), read_only(np.empty(0)), 0, 0, 0, cover_rows)
+    return Law(lock_array(rows), lock_array(marks), lock_array(np.empty(0)), 0, 0, 0, cover_rows)
 
 
 def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floats | None) -> Floats:

@@ -12,7 +12,7 @@ import numpy as np
 from ...core.array_types import Floats, Integers
 from ..bodies import Bodies
 from ..cover import Cover
-from ..prony import Prony, read_only
+from ..prony import Prony, lock_array
 from .alpha_axis import OCTAVES, alpha_terms, tables_of_octave
 from .cover_rows import cover_rows
 from .evaluate import refuse_distant_times
@@ -42,7 +42,7 @@ def record_of_alphas(alpha: Floats) -> Any:
         for octave in octaves[_octave_table[octaves, 1] == 0].tolist():
             tables = tables_of_octave(octave)
             rows = pack_axis([table.record for table in tables], np.array([table.T_mean for table in tables]))
-            terms = read_only(np.moveaxis(alpha_terms(rows), 0, 2))
+            terms = lock_array(np.moveaxis(alpha_terms(rows), 0, 2))
             _octaves[octave], _octave_table[octave] = terms, (terms.ctypes.data, len(terms))
     numbers, marks = allocate_rows(int(_octave_table[octaves, 1].max()))
     marks[E0] = alpha_axis.ALPHA_E0
@@ -120,8 +120,8 @@ def _lazy_record(
     # the marks keep all arrays alive of which the kernels have the addresses
     owner = SimpleNamespace(__array_interface__=marks.__array_interface__, arrays=(source, fields))
     selector, maker = (function_address(kernel, kernels.SOURCE) for kernel in (select, kernels.make_part))
-    rows, marks, N_rows = map(read_only, (rows.view(), np.asarray(owner), np.empty(0)))
-    cover_rows = None if cover_rows is None else read_only(cover_rows.view())
+    rows, marks, N_rows = map(lock_array, (rows.view(), np.asarray(owner), np.empty(0)))
+    cover_rows = None if cover_rows is None else lock_array(cover_rows.view())
     return Law(rows, marks, N_rows, selector, maker, int(source.ctypes.data), cover_rows)
 
 

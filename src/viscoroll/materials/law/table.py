@@ -15,7 +15,7 @@ from ...core.errors import ParameterError
 from ..bodies import Bodies, total_series
 from ..cover import Cover
 from ..pair import Pair
-from ..prony import Prony, read_only
+from ..prony import Prony, lock_array
 from .cover_rows import cover_rows
 from .evaluate import refuse_distant_times
 from .fit import fit_rows, fit_unsteady
@@ -77,7 +77,7 @@ class LawTable:
         table = self.given_coefficients
         if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
-        return read_only(fit_unsteady(self.material, table, self.e0))
+        return lock_array(fit_unsteady(self.material, table, self.e0))
 
     @cached_property
     def record(self) -> Any:
@@ -87,7 +87,7 @@ class LawTable:
     @cached_property
     def unsteady_record(self) -> Any:
         """As :attr:`record`, with N."""
-        return self.record._replace(N_rows=read_only(pack_unsteady(self.coefficients, self.e0, self.alpha)))
+        return self.record._replace(N_rows=lock_array(pack_unsteady(self.coefficients, self.e0, self.alpha)))
 
 
 def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
@@ -151,5 +151,6 @@ def make_table(
             coefficients = fit_rows(given, Rows(e0, count), alpha, sums[1:, 2])
     else:  # elastic bodies: lam = eta/F = H/F^2 = 1, and neither shift nor moment
         coefficients = steady_table(constant_rows(1.0, 0.0, 0.0, 0.0, 1.0, 1.0), N=0.0)
-    arrays = map(read_only, (sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
-    return LawTable(given, read_only(coefficients), e0, alpha, T_mean, unlike, *arrays, cover=cover)
+    arrays = (coefficients, sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights)
+    coefficients, fast_limit, E, tau, J, T, weights = map(lock_array, arrays)
+    return LawTable(given, coefficients, e0, alpha, T_mean, unlike, fast_limit, E, tau, J, T, weights, cover=cover)
