@@ -49,10 +49,11 @@ import importlib
 import numpy as np
 import viscoroll as vr
 from viscoroll.app.cli import main
-from viscoroll.kernels.compile.cache import KERNELS
+from viscoroll.kernels.compile.cache import KERNELS as folder
 assert main(["warmup"]) == 0
 modules = [
-    importlib.import_module(f"viscoroll.kernels.{{path.parent.name}}.{{path.stem}}") for path in KERNELS.glob("*/[!_]*.py")
+    importlib.import_module(f"viscoroll.kernels.{{path.parent.name}}.{{path.stem}}")
+    for path in folder.glob("*/[!_]*.py")
 ]
 def ready():
     kernels = {{each for module in modules for each in vars(module).values() if hasattr(each, "overloads")}}

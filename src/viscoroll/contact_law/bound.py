@@ -32,6 +32,7 @@ class Law:
     """
 
     def __init__(self, roller: Rolls) -> None:
+        from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted
 
         _, scene, scale = framed(roller, "law")
@@ -43,7 +44,8 @@ class Law:
         table = scene.table
         assert table is not None
         self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
-        self._take(Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale))
+        scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
+        self._take(Jitted(scenes, table))
 
     def _take(self, jitted: Any) -> None:
         """Keep what is called, and the room for what it finds."""
@@ -148,11 +150,11 @@ class _LawOfGrid(Law):
     """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
 
     def __init__(self, grid: LawGrid) -> None:
-        from ..kernels.splines.law import JittedGrid
+        from ..kernels.splines.law import jitted_grid
 
         self.roller: Any = grid
         (low, high), slowest = grid.delta, grid.V[0]
-        self._take(JittedGrid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+        self._take(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         each = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)

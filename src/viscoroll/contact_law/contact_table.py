@@ -57,7 +57,7 @@ def evaluate_law(
             order = np.argsort(each, kind="stable") if each.size > 1 else order
         elif not direct:
             law, order = record_of_alphas(each), sort_by_octave(each, parts[0], parts[2])
-        asked = of.Request(of.States(*parts, creep_is_omega), order, to, out, start)
+        asked = of.Request(of.State(*parts, creep_is_omega), order, to, out, start)
         if direct:
             if loop(law, asked, stop - start):
                 raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")

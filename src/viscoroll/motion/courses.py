@@ -8,12 +8,12 @@ import numpy as np
 
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape
-from ..kernels.motion.records import OMEGA, SPEED
+from ..kernels.motion.workspace import PRESCRIBED_OMEGA, PRESCRIBED_V
 from .fitted import TERMS
 from .schedule import Corners, Course, Curve, at_start, curve, motions_of, of_some, pieces_of, slope_of
 
 #: by which name a speed is prescribed
-SPEEDS = {OMEGA: "omega", SPEED: "V"}
+SPEEDS = {PRESCRIBED_OMEGA: "omega", PRESCRIBED_V: "V"}
 #: bytes of pieces that are made at a time where motions have their own: little beside the schedules, and yet many
 #: motions at once where these are short
 _BLOCK_BYTES = 1 << 18

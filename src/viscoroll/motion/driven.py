@@ -13,7 +13,7 @@ from ..core.drive import Feedback, Schedule, make_dimensionless, slope_tan_cos
 from ..core.errors import ParameterError, exactly_one_error
 from ..core.labels import Labels, strip_labels
 from ..core.scale import HasUnits, Scale
-from ..kernels.motion.records import NEITHER
+from ..kernels.motion.workspace import NOT_PRESCRIBED
 from .checks import start_speeds
 from .courses import SPEEDS, Courses
 from .schedule import Course, Curve, course
@@ -149,9 +149,9 @@ class Prepared(NamedTuple):
 @cache
 def undriven() -> tuple[Floats, Floats, int]:
     """Pieces and gains of nothing that drives, and which speed is prescribed."""
-    from ..kernels.motion.load import FIRST, FUNCTIONS
+    from ..kernels.motion.workspace import COL_COEFFICIENTS, N_DRIVE_FUNCTIONS
 
-    return np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER
+    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
 
 
 def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None) -> Prepared:
@@ -186,7 +186,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolv
         return course(name, getattr(drive, name), end, rtol, low=low, resolve=resolve)
 
     force, torque, brake = checked_course("force"), checked_course("torque"), checked_course("brake", low=0.0)
-    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NEITHER)
+    prescribed = next((code for code, name in SPEEDS.items() if getattr(drive, name) is not None), NOT_PRESCRIBED)
     speed = checked_course(SPEEDS[prescribed]) if prescribed else None
     if isinstance(speed, np.ndarray) and not speed.size:
         raise ParameterError(SPEEDS[prescribed], "an empty array", "a number, one a motion, or a function of t")

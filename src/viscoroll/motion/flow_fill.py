@@ -15,7 +15,7 @@ from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
-from ..kernels.motion.records import PARTIAL
+from ..kernels.motion.workspace import PARTIAL_SLIP
 from ..kernels.numerics.interpolation import gauss
 from ..materials.law.pack import interleave_pairs
 from ..materials.law.table import law_table
@@ -94,7 +94,7 @@ class FlowProblem(NamedTuple):
             raise NoFlowMap(_OUT_OF_RANGE)
         starts = V, V * (1.0 + delta)
         (V, _, _, _, delta, regime, *_), _ = motions(self.parameters, starts, gamma, t, threads=self.threads)
-        if not ((regime == PARTIAL) & (V > 0.0)).all():
+        if not ((regime == PARTIAL_SLIP) & (V > 0.0)).all():
             raise NoFlowMap(reason)
         return V, delta
 

@@ -144,9 +144,9 @@ def integrate(
     ``batch`` : law, whether bodies differ, kappa, mu, gamma, j, V0 and omega0.  ``notes`` : room for the switches and
     for the ends of steps.
     """
-    from ..kernels.motion.loop import INFO, motion_loop
+    from ..kernels.motion.batch import INFO_COLUMNS, motion_loop
 
-    out, info = np.empty((rows.size, count, times.size)), np.empty((count, len(INFO)))
+    out, info = np.empty((rows.size, count, times.size)), np.empty((count, len(INFO_COLUMNS)))
     motion_loop(batch, drive, times, limits, rows, out, info, notes)
     return out, info
 

@@ -171,7 +171,7 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
 
     Where motions have times of their own, pieces between equal times have no length, and are passed over.
     """
-    from ..kernels.motion.load import FIRST, SCALE, START
+    from ..kernels.motion.workspace import COL_COEFFICIENTS, COL_SCALE, COL_START
 
     apart = max(len(each.starts) for each in curves)
     own = [np.broadcast_to(each.starts, (apart, each.starts.shape[1])) for each in curves]
@@ -180,9 +180,9 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
     kept = max(int((starts < end).any(axis=0).sum()), 1)
     starts, ends = starts[:, :kept], _ends(starts)[:, :kept]
     count, terms = max(len(each.terms) for each in curves), max(each.terms.shape[-1] for each in curves)
-    rows, lengths = np.zeros((count, starts.shape[1], FIRST + len(curves) * terms)), ends - starts
-    rows[..., START] = starts
-    rows[..., SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT)
+    rows, lengths = np.zeros((count, starts.shape[1], COL_COEFFICIENTS + len(curves) * terms)), ends - starts
+    rows[..., COL_START] = starts
+    rows[..., COL_SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT)
     for n, (each, first) in enumerate(zip(curves, own, strict=True)):
         which = _piece_at(each.starts, starts)
         begin, last = (np.take_along_axis(np.broadcast_to(of, first.shape), which, 1) for of in (first, each.ends))
@@ -192,13 +192,13 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
         )
         same = (begin == starts) & (last == ends)
         part = np.where(same[..., None], whole, _moved(whole, begin, last, starts, ends))
-        at = FIRST + n * terms
+        at = COL_COEFFICIENTS + n * terms
         rows[..., at : at + part.shape[-1]] = _from_zero(part)
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
     if late.any():  # the last acts at the end
-        acting = rows[np.arange(count), np.broadcast_to(at_end, count), FIRST:]
-        rows[..., FIRST:] = np.where(late[..., None], acting[:, None], rows[..., FIRST:])
+        acting = rows[np.arange(count), np.broadcast_to(at_end, count), COL_COEFFICIENTS:]
+        rows[..., COL_COEFFICIENTS:] = np.where(late[..., None], acting[:, None], rows[..., COL_COEFFICIENTS:])
     return rows
 
 

@@ -7,23 +7,28 @@ A bin spans 1/33 of the distance to the nearest singularity of the function (the
 k), so the truncation error falls like 66**-(DEGREE + 1) = 4e-17.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
+#: Bins of an octave.
 BINS = 16
+#: Degree of a polynomial: the truncation error is below a quarter of the rounding of doubles.
 DEGREE = 8
+#: Coefficients of a polynomial.
 COEFFICIENTS = DEGREE + 1
 
 
 class Segment(NamedTuple):
-    """Octaves [2**low, 2**high) of one tabulated function."""
+    """Octaves [2**low, 2**high) of one tabulated function.
+
+    function : its formula, in the words of the paper.  low, high : exponents of the ends.
+    """
 
     function: str
     low: int
     high: int
 
 
+#: Segments of the table, in their order.
 SEGMENTS = (
     Segment("r(x)/x", -4, 1),
     Segment("x (1 - r(x))", 1, 6),
@@ -34,8 +39,9 @@ SEGMENTS = (
 
 
 def segment_start(index: int) -> int:
-    """Position of the first coefficient of segment ``index`` in the table."""
+    """Return the position of the first coefficient of segment number ``index`` in the table."""
     return sum((s.high - s.low) * BINS * COEFFICIENTS for s in SEGMENTS[:index])
 
 
+#: Numbers of the table.
 TABLE_SIZE = segment_start(len(SEGMENTS))

@@ -13,35 +13,52 @@ Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
 and cost no further Bessel function.
 """
 
-from __future__ import annotations
-
 from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from ..compile.intrinsics import fma, septic
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.bins import bin_number, bin_offset
-from ..numerics.interpolation import Interpolation, chebyshev, horner, in_40_digits
+from ..numerics.interpolation import Interpolation, chebyshev, in_40_digits
 from . import layout
 
+#: Coefficients of the bins, as :mod:`layout` says.
 TABLE = np.load(Path(__file__).with_name("ratios.npy"))
 
-_BIN_BITS = 4  # log2(BINS)
+#: Leading bits of the mantissa that number a bin: log2(BINS).
+_BIN_BITS = 4
+#: One row of coefficients for each bin.
 _BINS = TABLE.reshape(-1, layout.COEFFICIENTS)
 
 
-def _origin(index: int) -> int:
-    """Row of a segment's first bin minus the number of that bin."""
+def _row_offset(index: int) -> int:
+    """Return what is added to the number of a bin (:func:`bin_number`) for its row; ``index``: of its segment."""
     return layout.segment_start(index) // layout.COEFFICIENTS - ((1023 + layout.SEGMENTS[index].low) << _BIN_BITS)
 
 
-_R_SMALL, _R_LARGE, _K_SMALL, _K_LARGE, _I2 = (_origin(i) for i in range(len(layout.SEGMENTS)))
+#: Offset of the rows of r(x)/x, x < 2.
+_R_SMALL = _row_offset(0)
+#: Offset of the rows of x (1 - r), x >= 2.
+_R_LARGE = _row_offset(1)
+#: Offset of the rows of k(z)/z, z < 1.
+_K_SMALL = _row_offset(2)
+#: Offset of the rows of z (1 - k), z >= 1.
+_K_LARGE = _row_offset(3)
+#: Offset of the rows of i2(x)/x^2, x < 4.
+_I2 = _row_offset(4)
+#: Argument below which r and i2 come from their power series.
+_NEAR = 0.0625
+#: Argument from which on r and k come from their asymptotic series.
+_FAR = 64.0
+#: Argument below which k/z is a logarithm, to rounding.
+K_LEAST = 2.0**-30
 
 
 def _r_power_series(terms: int) -> list[float]:
-    """c_n of r(x) = sum c_n x^(2n+1), from the Riccati equation."""
+    """Return ``terms`` coefficients c_n of r(x) = sum c_n x^(2n+1), from the Riccati equation."""
     c = [0.5]
     for n in range(1, terms):
         c.append(-sum(c[i] * c[n - 1 - i] for i in range(n)) / (2 * n + 2))
@@ -49,7 +66,10 @@ def _r_power_series(terms: int) -> list[float]:
 
 
 def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
-    """a_n of r (sign = -1) or k (sign = +1) = sum a_n x^-n, from the Riccati equations."""
+    """Return the first coefficients a_n of the asymptotic series sum a_n x^-n, from the Riccati equations.
+
+    sign : -1 for r, +1 for k.  terms : number of coefficients.
+    """
     a = [Decimal(1)]
     for n in range(1, terms):
         products = sum(a[i] * a[n - i] for i in range(1, n))
@@ -58,63 +78,75 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     return a
 
 
-_NEAR, _FAR = 0.0625, 64.0
-#: below, k/z goes like a logarithm
-K_LEAST = 2.0**-30
-
-
 @in_40_digits
 def _tail(sign: int) -> np.ndarray:
-    """x (1 - r) or z (1 - k) above 64 as a polynomial in the inverse: the asymptotic series at Chebyshev's nodes."""
+    """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the argument.
+
+    sign : -1 for r, +1 for k.  The polynomial goes through the asymptotic series at Chebyshev nodes.
+    """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]
-    return Interpolation(nodes).coefficients([horner(series, w) for w in nodes])
+    return Interpolation(nodes).coefficients(polyval(np.array(nodes), series))
 
 
+#: Coefficients of the power series of r.
 _POWERS = np.array(_r_power_series(layout.COEFFICIENTS + 1))
-#: every polynomial, all of one degree: the bins, then r/x and i2/x^2 in x^2 below them, and the tails above
+#: All polynomials, of one degree: the bins, then r/x and i2/x^2 in x^2 below the bins, and r and k above them.
 _ROWS = np.vstack([_BINS, _POWERS[:-1], -2.0 * _POWERS[1:], _tail(-1), _tail(+1)])
-_R_NEAR, _I2_NEAR, _R_FAR, _K_FAR = range(_BINS.shape[0], _ROWS.shape[0])
+#: Row of r/x below the bins.
+_R_NEAR = _BINS.shape[0]
+#: Row of i2/x^2 below the bins.
+_I2_NEAR = _R_NEAR + 1
+#: Row of x (1 - r) above the bins.
+_R_FAR = _R_NEAR + 2
+#: Row of z (1 - k) above the bins.
+_K_FAR = _R_NEAR + 3
+#: Euler's constant.
 _EULER_GAMMA = 0.57721566490153286061
+#: ln 2.
 _LN2 = 0.69314718055994530942
 
 
 @kernel
 def _polynomial(row, t):
-    """Polynomial number ``row`` at t."""
+    """Return the value at t of the polynomial number ``row``."""
     c = _ROWS[row]
     return fma(t, septic(t, c[1:]), c[0])
 
 
-@kernel(inline=True)
+@inline_kernel
 def ratio_r(x):
-    """r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy."""
-    per_x = 1.0 / x
-    # choices, not branches: those would be mispredicted on scattered arguments
-    near, far = x < _NEAR, not x < _FAR  # a NaN is far: it must not become the number of a bin
+    """Return r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy (2.4 ULP)."""
+    inverse_x = 1.0 / x
+    # selections, not branches: those would be mispredicted on scattered arguments
+    near = x < _NEAR
+    far = not x < _FAR  # also for NaN, which must not become the number of a bin
     row = bin_number(x, _BIN_BITS) + (_R_SMALL if x < 2.0 else _R_LARGE)
     row = _R_NEAR if near else _R_FAR if far else row
-    piece = _polynomial(row, x * x if near else per_x if far else bin_offset(x, _BIN_BITS))
-    r, complement = x * piece, piece * per_x
+    piece = _polynomial(row, x * x if near else inverse_x if far else bin_offset(x, _BIN_BITS))
+    r = x * piece
+    complement = piece * inverse_x
     return r if x < 2.0 else 1.0 - complement, 1.0 - r if x < 2.0 else complement
 
 
-@kernel(inline=True)
+@inline_kernel
 def ratio_k(z):
-    """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
+    """Return k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy (2.4 ULP)."""
     if z < K_LEAST:
         k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
         return k, 1.0 - k
-    per_z, inside = 1.0 / z, z < _FAR
+    inverse_z = 1.0 / z
+    inside = z < _FAR
     row = bin_number(z, _BIN_BITS) + (_K_SMALL if z < 1.0 else _K_LARGE)
-    piece = _polynomial(row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else per_z)
-    k, complement = z * piece, piece * per_z
+    piece = _polynomial(row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else inverse_z)
+    k = z * piece
+    complement = piece * inverse_z
     return k if z < 1.0 else 1.0 - complement, 1.0 - k if z < 1.0 else complement
 
 
-@kernel(inline=True)
+@inline_kernel
 def ratio_i2(x, r):
-    """i2 = I2/I0 at x >= 0, given r(x)."""
+    """Return i2 = I2/I0 at x >= 0, to full relative accuracy; ``r``: r(x)."""
     if not x < 4.0:  # or a NaN
         return 1.0 - 2.0 * r / x
     near = x < _NEAR
@@ -122,15 +154,15 @@ def ratio_i2(x, r):
     return x * x * _polynomial(row, x * x if near else bin_offset(x, _BIN_BITS))
 
 
-@kernel(inline=True)
+@inline_kernel
 def slope_r(x, r, complement):
-    """r'(x) = (1 - r)(1 + r) - r/x."""
+    """Return r'(x) = (1 - r)(1 + r) - r/x at x >= 0; ``r``, ``complement``: r and 1 - r there."""
     if x < 1e-8:
         return 0.5
     return complement * (1.0 + r) - r / x
 
 
-@kernel(inline=True)
+@inline_kernel
 def slope_k(z, k, complement):
-    """k'(z) = k/z - (1 - k)(1 + k)."""
+    """Return k'(z) = k/z - (1 - k)(1 + k) at z > 0; ``k``, ``complement``: k and 1 - k there."""
     return k / z - complement * (1.0 + k)

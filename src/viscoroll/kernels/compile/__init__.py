@@ -1,1 +1,1 @@
-"""How kernels are compiled: the decorator and its cache, arithmetic in one rounding."""
+"""How kernels are compiled: decorator, disk cache, compilation of a kernel with all that it calls, and intrinsics."""

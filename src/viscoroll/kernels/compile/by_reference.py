@@ -4,62 +4,53 @@ A field is loaded when it is read; a record in a record is passed by reference t
 kernel that made the reference runs.  Its arrays belong to the caller of that kernel.
 """
 
-from __future__ import annotations
-
-from typing import Any
-
 from numba.core import cgutils, types
 from numba.core.typing.templates import AttributeTemplate
-from numba.extending import (
-    infer_getattr,
-    intrinsic,
-    lower_getattr_generic,
-    models,
-    register_model,
-)
+from numba.extending import infer_getattr, lower_getattr_generic, models, register_model
+
+from .intrinsics import make_intrinsic
 
 
 class _ReferenceType(types.Type):
-    def __init__(self, record: Any) -> None:
+    """numba's type of a reference to a record; ``record``: numba's type of that."""
+
+    def __init__(self, record):
         super().__init__(f"reference to {record}")
         self.record = record
 
 
 @register_model(_ReferenceType)
 class _ReferenceModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
+    """A reference is represented by a pointer to the record."""
+
+    def __init__(self, manager, kind):
         super().__init__(manager, kind, manager[kind.record].get_value_type().as_pointer())
-
-
-def _read(kind: Any) -> Any:
-    """Type of a field of this kind as it is read from a reference."""
-    return _ReferenceType(kind) if isinstance(kind, types.NamedTuple) else kind
 
 
 @infer_getattr
 class _Attributes(AttributeTemplate):
+    """Types of the fields of a reference: a record in a record is a reference too."""
+
     key = _ReferenceType
 
-    def generic_resolve(self, reference: Any, name: str) -> Any:
+    def generic_resolve(self, reference, name):
         kind = dict(zip(reference.record.fields, reference.record.types, strict=True)).get(name)
-        return kind if kind is None else _read(kind)
+        return _ReferenceType(kind) if isinstance(kind, types.NamedTuple) else kind
 
 
 @lower_getattr_generic(_ReferenceType)
-def _attribute(context: Any, builder: Any, kind: Any, reference: Any, name: str) -> Any:
-    at = cgutils.gep_inbounds(builder, reference, 0, kind.record.fields.index(name))
-    return at if isinstance(kind.record[kind.record.fields.index(name)], types.NamedTuple) else builder.load(at)
+def _attribute(context, builder, kind, reference, name):
+    """Return a field as :class:`_Attributes` types it; arguments as numba gives them."""
+    index = kind.record.fields.index(name)
+    at = cgutils.gep_inbounds(builder, reference, 0, index)
+    return at if isinstance(kind.record[index], types.NamedTuple) else builder.load(at)
 
 
-def _by_reference(typing_context, record):
-    def lower(context, builder, signature, given):
-        return cgutils.alloca_once_value(builder, given[0])
+def _load(context, builder, kind, at):
+    """Return the value of type ``kind`` at the address ``at``, field by field.
 
-    return _ReferenceType(record)(record), lower
-
-
-def _load(context: Any, builder: Any, kind: Any, at: Any) -> Any:
-    """The value of type ``kind`` at the address ``at``, field by field; LLVM removes the fields that are not used."""
+    context, builder : of numba's lowering.  LLVM removes the fields that are not used.
+    """
     if not isinstance(kind, (types.NamedTuple, types.Array)):
         return builder.load(at)
     whole = context.get_constant_undef(kind)
@@ -70,23 +61,27 @@ def _load(context: Any, builder: Any, kind: Any, at: Any) -> Any:
     return whole
 
 
-def _by_value(typing_context, record):
-    def lower(context, builder, signature, given):
-        return _load(context, builder, record.record, given[0]) if isinstance(record, _ReferenceType) else given[0]
-
-    return (record.record if isinstance(record, _ReferenceType) else record)(record), lower
+def _lower_reference(context, builder, signature, arguments):
+    return cgutils.alloca_once_value(builder, arguments[0])
 
 
-def _data_pointer(typing_context, array):
-    def lower(context, builder, signature, given):
-        return context.make_array(array)(context, builder, given[0]).data
-
-    return types.CPointer(array.dtype)(array), lower
+def _lower_value(context, builder, signature, arguments):
+    kind = signature.args[0]
+    return _load(context, builder, kind.record, arguments[0]) if isinstance(kind, _ReferenceType) else arguments[0]
 
 
-#: a record -> a reference to it
-by_reference = intrinsic(_by_reference)
-#: a reference -> the record as a value, for loops that store: after each store LLVM would read a reference again
-by_value = intrinsic(_by_value)
-#: a contiguous vector -> pointer to its numbers, valid while the vector exists; read and written by index
-data_pointer = intrinsic(_data_pointer)
+def _lower_pointer(context, builder, signature, arguments):
+    return context.make_array(signature.args[0])(context, builder, arguments[0]).data
+
+
+def _value_signature(kind):
+    """Return numba's signature of :func:`by_value` for a reference or a record, whose type is ``kind``."""
+    return (kind.record if isinstance(kind, _ReferenceType) else kind)(kind)
+
+
+#: record -> a reference to it.
+by_reference = make_intrinsic(_lower_reference, lambda record: _ReferenceType(record)(record), None)
+#: reference -> the record as a value, for loops that store: after each store LLVM would read a reference again.
+by_value = make_intrinsic(_lower_value, _value_signature, None)
+#: contiguous vector -> pointer to its numbers, valid while the vector exists; read and written by index.
+data_pointer = make_intrinsic(_lower_pointer, lambda array: types.CPointer(array.dtype)(array), None)

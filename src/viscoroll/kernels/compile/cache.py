@@ -4,10 +4,8 @@ numba's own cache stamps a function with the file it is defined in and does not 
 function it calls from another module.  Here the cache folder is named after a hash of *all* kernel
 sources, their coefficient table and the versions of numba and llvmlite.  It holds one file for each function,
 signature and choice of numba's settings, behind a SHA-256 of itself.  Anything unreadable, or that others may have
-written (:mod:`folder`), is compiled anew and replaced, never trusted and never fatal.
+written (:mod:`folder`), is compiled again and replaced: it is never trusted and never ends the process.
 """
-
-from __future__ import annotations
 
 import hashlib
 import pickle
@@ -18,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Callable
+from typing import Callable
 
 import llvmlite
 import numba
@@ -27,22 +25,32 @@ from numba.core.serialize import dumps
 
 from .folder import cache_root, make_private_folder, read_private, write_private
 
-#: where all kernels lie
+#: Folder of all kernels.
 KERNELS = Path(__file__).parents[1]
-#: settings of numba (environment: NUMBA_...) that its machine code follows, beside those of the processor
-_SETTINGS = (
-    "BOUNDSCHECK", "OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DISABLE_INTEL_SVML", "DEBUGINFO_DEFAULT",
-    "EXTEND_VARIABLE_LIFETIMES", "ENABLE_PROFILING", "NRT_STATS", "DEBUG_NRT", "LLVM_REFPRUNE_PASS",
+#: Settings of numba (environment: NUMBA_...) on which its machine code depends, beside those of the processor.
+_SETTINGS = [
+    "BOUNDSCHECK",
+    "OPT",
+    "LOOP_VECTORIZE",
+    "SLP_VECTORIZE",
+    "DISABLE_INTEL_SVML",
+    "DEBUGINFO_DEFAULT",
+    "EXTEND_VARIABLE_LIFETIMES",
+    "ENABLE_PROFILING",
+    "NRT_STATS",
+    "DEBUG_NRT",
+    "LLVM_REFPRUNE_PASS",
     "LLVM_REFPRUNE_FLAGS",
-)  # fmt: skip
-#: Seconds after which a process compiles what another one seems to: more than any kernel takes on a busy machine.
+]
+#: Seconds after which a process no longer waits for another one to compile: more than a kernel takes on a busy machine.
 PATIENCE = 120.0
+#: Bytes of the checksum in front of a file.
 _DIGEST_SIZE = hashlib.sha256().digest_size
 
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """Hash of the kernel sources, of their coefficients and of the versions of numba and llvmlite."""
+    """Return a hash of the kernel sources, of their coefficients and of the versions of numba and llvmlite."""
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
         digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + path.read_bytes())
@@ -51,12 +59,15 @@ def sources_digest() -> str:
 
 @lru_cache(maxsize=2)
 def warn_once(trouble: str) -> None:
-    """Once for each kind of trouble."""
+    """Warn of a problem with the cache, ``trouble``, once for each."""
     warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
 
 
 class DiskCache:
-    """What numba's dispatcher of one function asks for its machine code before it compiles."""
+    """The machine code of one function on disk, in the interface of the caches of numba's dispatchers.
+
+    function : the Python function.
+    """
 
     def __init__(self, function: Callable) -> None:
         self._function = function
@@ -64,10 +75,11 @@ class DiskCache:
         self.cache_path = str(self._folder)
 
     @contextmanager
-    def alone(self, signature: Any, codegen: Any) -> Iterator[None]:
-        """Have other processes wait for the machine code that this one is about to store, at most :data:`PATIENCE`.
+    def exclusive(self, signature, codegen) -> Iterator[None]:
+        """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE`.
 
-        Where it is stored already, or no lock can be had, nobody waits.
+        signature : types of the arguments.  codegen : numba's code generator, which knows the processor.
+        If the code is stored already, or if no lock can be made, nobody waits.
         """
         path = self._path(signature, codegen)
         if path.exists():
@@ -76,7 +88,7 @@ class DiskCache:
         from filelock import FileLock
 
         lock = FileLock(f"{path}.lock", timeout=PATIENCE)
-        with suppress(OSError):  # also of the time being over
+        with suppress(OSError):  # also when the time is over
             make_private_folder(path.parent)
             lock.acquire()
         try:
@@ -86,24 +98,30 @@ class DiskCache:
                 Path(lock.lock_file).unlink(missing_ok=True)
             lock.release()
 
-    def load_overload(self, signature: Any, target: Any) -> CompileResult | None:
-        """The machine code for this signature, or None."""
+    def load_overload(self, signature, target) -> CompileResult | None:
+        """Return the machine code for a signature, or None.
+
+        signature : types of the arguments.  target : numba's target context.
+        """
         target.refresh()
         try:
             stored = read_private(self._path(signature, target.codegen()))
-        except OSError:  # not there, not to be read or not ours alone: saving will say so
+        except OSError:  # it does not exist, cannot be read or is not ours alone: saving will warn
             return None
         digest, content = stored[:_DIGEST_SIZE], stored[_DIGEST_SIZE:]
         if hashlib.sha256(content).digest() == digest:
-            with suppress(Exception):  # written by whatever calls itself the same numba
+            with suppress(Exception):  # it was written by another numba of the same version
                 return CompileResult._rebuild(target, *pickle.loads(zlib.decompress(content)))
         warn_once(f"the cache of compiled kernels is damaged ({self._folder})")
         return None  # save_overload then replaces the file
 
-    def save_overload(self, signature: Any, compiled: CompileResult) -> None:
-        """Store machine code."""
+    def save_overload(self, signature, compiled: CompileResult) -> None:
+        """Store machine code, unless it contains addresses of this process; warn if that fails.
+
+        signature : types of the arguments.  compiled : numba's result.
+        """
         if compiled.library.has_dynamic_globals:
-            return  # addresses of this process
+            return
         content = zlib.compress(dumps(compiled._reduce()), 1)
         try:
             write_private(self._path(signature, compiled.codegen), hashlib.sha256(content).digest() + content)
@@ -111,10 +129,13 @@ class DiskCache:
             warn_once(f"compiled kernels are not cached ({self._folder}: {error.strerror})")
 
     def flush(self) -> None:
-        """``recompile`` of numba's dispatcher wants this: nothing is held in memory."""
+        """Do nothing: ``recompile`` of numba's dispatcher calls this, and no code is kept in memory."""
 
-    def _path(self, signature: Any, codegen: Any) -> Path:
-        """Named for people after the function, for certain after all that the machine code depends on."""
+    def _path(self, signature, codegen) -> Path:
+        """Return the path of the machine code: the name of the function, and a hash of all that the code depends on.
+
+        signature : types of the arguments.  codegen : numba's code generator, which knows the processor.
+        """
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"
         settings = [str(getattr(numba.config, setting, None)) for setting in _SETTINGS]

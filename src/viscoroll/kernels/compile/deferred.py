@@ -1,19 +1,16 @@
-"""LLVM once for each call from Python, not once for each function and all those above it.
+"""LLVM runs once for each kernel that Python calls, not once for each function and each of its callers.
 
 numba optimises a function, links it into each of its callers, and optimises it there again, level
 by level.  Here a kernel that another one calls, a *part*, is typed and lowered to LLVM's intermediate
 representation (IR) only; a kernel called from Python, the *whole*, links the IR of all parts below it,
 and LLVM works on that once.
 
-This leans on names inside numba.  Where one of them fails, numba compiles in its own way: the same
-kernels, the same bits, some three times the time.
+This uses private names of numba.  If one of them fails, numba compiles in its own way: the same
+kernels, the same bits, in some three times the time.
 """
-
-from __future__ import annotations
 
 import gc
 import warnings
-from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, Callable
@@ -24,64 +21,30 @@ from numba.core.compiler import Compiler
 
 from .notice import announce_compiling
 
+#: Whether kernels are compiled in this way; False after a failure.
 _deferring = True
-#: passes of numba that look through all of a kernel for what kernels do not have: closures, overloads to be inlined
+#: Passes of numba that search a kernel for what kernels do not have: closures, and overloads to be inlined.
 _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift")
 
 
-class EntryPipeline:
-    """What numba calls to compile a kernel that Python calls."""
-
-    def __init__(self, *given: Any) -> None:
-        self._given = given
-
-    def compile_extra(self, function: Callable) -> Any:
-        """What numba makes of the function."""
-        announce_compiling()
-        with _garbage_kept():
-            return self._compiled(function)
-
-    def _compiled(self, function: Callable) -> Any:
-        """The one guard of the names inside numba."""
-        global _deferring
-        if not _deferring:
-            return Compiler(*self._given).compile_extra(function)
-        try:
-            with _types_kept(self._given[0]):
-                return _pipelines()[1](*self._given).compile_extra(function)
-        except Exception as error:
-            reason = error
-        _deferring = False
-        try:
-            compiled = Compiler(*self._given).compile_extra(function)
-        except Exception:  # numba was right
-            _deferring = True
-            raise
-        told = f"{type(reason).__name__}: {' '.join(str(reason).split())}"
-        warnings.warn(
-            f"numba {numba.__version__} does not compile {function.__name__} with what it calls ({told}); "
-            "kernels are compiled one by one, which takes longer",
-            RuntimeWarning,
-            stacklevel=2,
-        )
-        return compiled
-
-
 @contextmanager
-def _types_kept(typing: Any) -> Iterator[None]:
-    """numba asks every candidate anew at each sum of two floats: here the first answer is kept."""
-    if "resolve_function_type" in vars(typing):  # compiled for a function that is being compiled
+def _memoized_types(typing):
+    """Keep the types of operations on numbers, which numba resolves again at each sum of two floats.
+
+    typing : numba's typing context.
+    """
+    if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
         return
-    known: dict[Any, Any] = {}
+    resolved: dict[Any, Any] = {}
     plain = typing.resolve_function_type
 
-    def resolve_function_type(function: Any, given: tuple, named: dict[str, Any]) -> Any:
-        if named or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in given):
-            return plain(function, given, named)
-        if (function, given) not in known:
-            known[function, given] = plain(function, given, named)
-        return known[function, given]
+    def resolve_function_type(function, args, kws):
+        if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
+            return plain(function, args, kws)
+        if (function, args) not in resolved:
+            resolved[function, args] = plain(function, args, kws)
+        return resolved[function, args]
 
     typing.resolve_function_type = resolve_function_type
     try:
@@ -91,92 +54,134 @@ def _types_kept(typing: Any) -> Iterator[None]:
 
 
 @contextmanager
-def _garbage_kept() -> Iterator[None]:
-    """numba makes millions of small objects that live until it is done: to look for dead ones takes a tenth."""
-    collects = gc.isenabled()
+def _without_garbage_collection():
+    """Switch garbage collection off: numba makes millions of objects that live until it ends, and it took a tenth."""
+    enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        if collects:
+        if enabled:
             gc.enable()
 
 
-def defer(whole: Any, options: dict[str, Any]) -> None:
-    """Let other kernels that call this one see its part."""
+class EntryPipeline:
+    """The compiler of kernels that Python calls, in the interface of numba's compiler classes.
+
+    context : what numba passes to the constructor of a compiler.
+    """
+
+    def __init__(self, *context):
+        self._context = context
+
+    @_without_garbage_collection()
+    def compile_extra(self, function: Callable):
+        """Compile ``function``, and return numba's result; in numba's own way if a private name of numba fails."""
+        announce_compiling()
+        global _deferring
+        if not _deferring:
+            return Compiler(*self._context).compile_extra(function)
+        try:
+            with _memoized_types(self._context[0]):
+                return _pipelines()[1](*self._context).compile_extra(function)
+        except Exception as error:
+            reason = error
+        _deferring = False
+        try:
+            compiled = Compiler(*self._context).compile_extra(function)
+        except Exception:  # the error is that of the function
+            _deferring = True
+            raise
+        text = f"{type(reason).__name__}: {' '.join(str(reason).split())}"
+        warnings.warn(
+            f"numba {numba.__version__} does not compile {function.__name__} with what it calls ({text}); "
+            "kernels are compiled one by one, which takes longer",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        return compiled
+
+
+def defer(whole, options: dict[str, Any]):
+    """Make other kernels that call this one compile with its part.
+
+    whole : the dispatcher of the kernel, changed.  options : of numba, for the part.
+    """
     plain = type(whole)
 
     @lru_cache(maxsize=1)
-    def part() -> Any:
+    def part():
         return numba.njit(
             whole.py_func, pipeline_class=_pipelines()[0], no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
         )
 
-    def get_call_template(given: tuple, named: dict[str, Any]) -> Any:
-        # numba compiles anew for every literal integer among the arguments
-        given = tuple(map(types.unliteral, given))
-        named = {name: types.unliteral(kind) for name, kind in named.items()}
-        return plain.get_call_template(part() if _deferring else whole, given, named)
+    def get_call_template(args, kws):
+        # numba compiles again for every literal integer among the arguments
+        args = tuple(map(types.unliteral, args))
+        kws = {name: types.unliteral(kind) for name, kind in kws.items()}
+        return plain.get_call_template(part() if _deferring else whole, args, kws)
 
-    def get_overload(signature: Any) -> Any:
+    def get_overload(signature):
         return plain.get_overload(part() if _deferring else whole, signature)
 
     whole.get_call_template, whole.get_overload = get_call_template, get_overload
 
 
 @lru_cache(maxsize=1)
-def _pipelines() -> tuple[type, type]:
-    """numba's pipelines for parts and for wholes."""
+def _pipelines():
+    """Return numba's compiler classes for parts and for wholes."""
     from numba.core.codegen import JITCodeLibrary
 
     class Part(JITCodeLibrary):
-        """IR alone."""
+        """A library of IR alone."""
 
         is_part = True
 
-        def finalize(self) -> None:
+        def finalize(self):
             self._finalized = True
 
-        def get_pointer_to_function(self, name: str) -> int:
-            return 1  # never called: the whole of the same function is what Python calls
+        def get_pointer_to_function(self, name):
+            return 1  # never called: Python calls the whole of the same function
 
         @property
-        def codegen(self) -> Part:
+        def codegen(self):
             return self
 
-        def set_env(self, name: str, environment: Any) -> None:
-            """Nothing to set before there is code."""
+        def set_env(self, name, environment):
+            """Do nothing: there is no code yet."""
 
-        def _optimize_functions(self, module: Any) -> None:
-            """Nothing: LLVM works on the whole alone."""
+        def _optimize_functions(self, module):
+            """Optimise nothing: LLVM works on the whole alone."""
             module.data_layout = self._codegen._data_layout
 
-        def _get_module_for_linking(self) -> Any:
-            """For an ordinary jitted function between two kernels, which LLVM compiles by itself: all below."""
+        def _get_module_for_linking(self):
+            """Return the IR with that of all parts below, for an ordinary jitted function between two kernels."""
             module = super()._get_module_for_linking().clone()
             _link(self, module)
             return module
 
     class Whole(JITCodeLibrary):
-        """IR of all parts below, optimised and compiled together."""
+        """A library with the IR of all parts below, optimised and compiled together."""
 
-        def finalize(self) -> None:
+        def finalize(self):
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
             _link(self, module)
-            for function in module.functions:  # nobody else calls the parts: what they are not asked for is left out
+            for function in module.functions:  # nobody else calls the parts: LLVM leaves out what is not used
                 if not function.is_declaration and function.name not in own:
                     function.linkage = "internal"
             self._linking_libraries = []
             super().finalize()
 
-        def _optimize_final_module(self) -> None:
-            """Once: numba works twice through a module, to find references to leave out, which parts do not count."""
+        def _optimize_final_module(self):
+            """Optimise once: numba does it twice, to remove counts of references, which parts do not have."""
             manager, builder = self._codegen._module_pass_manager(opt=2)
             manager.run(self._final_module, builder)
 
-        def _verify_declare_only_symbols(self) -> None:
-            """What is missing ends the process when LLVM links; _ZN begins the names of all that numba compiles."""
+        def _verify_declare_only_symbols(self):
+            """Raise if a function is missing, where LLVM would end the process; _ZN begins the names of numba's
+            functions.
+            """
             for function in self._final_module.functions:
                 if function.is_declaration and function.name.startswith("_ZN"):
                     raise RuntimeError(f"{self.name} calls {function.name}, which was not compiled with it")
@@ -185,22 +190,26 @@ def _pipelines() -> tuple[type, type]:
     return _pipeline(Part), _pipeline(Whole)
 
 
-def _link(library: Any, module: Any) -> None:
-    """Put into a module what this library and the parts below it call, each library once."""
+def _link(library, module):
+    """Link into a module what a library and the parts below it call, each library once.
+
+    library : numba's library.  module : LLVM's module, changed.
+    """
     from numba.core.codegen import JITCodeLibrary
 
-    known, ahead = [], list(library._linking_libraries)
-    while ahead:
-        library = ahead.pop(0)
-        if library not in known:
-            known.append(library)
-            # without what a part links by itself
+    linked: list[Any] = []
+    waiting = list(library._linking_libraries)
+    while waiting:
+        library = waiting.pop(0)
+        if library not in linked:
+            linked.append(library)
+            # the module without what a part links by itself
             module.link_in(JITCodeLibrary._get_module_for_linking(library), preserve=True)
-            ahead.extend(library._linking_libraries if hasattr(library, "is_part") else ())
+            waiting.extend(library._linking_libraries if hasattr(library, "is_part") else ())
 
 
-def _pipeline(library_class: type) -> type:
-    """numba's default pipeline, lowering into this class of library."""
+def _pipeline(library_class: type):
+    """Return numba's default compiler, which lowers into libraries of ``library_class``."""
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass
     from numba.core.typed_passes import NativeLowering
@@ -209,25 +218,25 @@ def _pipeline(library_class: type) -> type:
     class Lowering(NativeLowering):
         _name = f"lowering into {library_class.__name__}"
 
-        def run_pass(self, state: Any) -> bool:
+        def run_pass(self, state):
             state.library = library_class(state.targetctx.codegen(), state.func_id.func_qualname)
             state.library.enable_object_caching()
             return super().run_pass(state)
 
     class ShortFlags(Flags):
-        """numba looks its flags up at every call that it types, all forty of them: here those that are set."""
+        """Flags that are compared by those that are set; numba compares all forty at every call that it types."""
 
-        def __hash__(self) -> int:
+        def __hash__(self):
             return hash(frozenset(self._values))
 
-        def __eq__(self, other: object) -> bool:
+        def __eq__(self, other):
             return isinstance(other, ShortFlags) and self._values == other._values
 
     class Compiler(CompilerBase):
-        def __init__(self, typing: Any, target: Any, library: Any, args: tuple, returns: Any, flags: Any, known: dict):
-            super().__init__(typing, target, library, args, returns, ShortFlags(flags), known)
+        def __init__(self, typing, target, library, args, returns, flags, types_):
+            super().__init__(typing, target, library, args, returns, ShortFlags(flags), types_)
 
-        def define_pipelines(self) -> list[Any]:
+        def define_pipelines(self):
             passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
             steps = [(step, why) for step, why in passes.passes if step.__name__ not in _NOT_NEEDED]
             passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in steps]

@@ -1,14 +1,12 @@
-"""The folder of every cache, and files in it that nobody else has written.
+"""The folder of every cache, and files in it that nobody else can have written.
 
-What lies there is run (:mod:`cache`) or believed (``viscoroll.stored``), and a checksum that a file carries itself
-says nothing of who wrote it.  So a file is used only if it and every folder above it belong to this user or to the
+Its files are run (:mod:`cache`) or trusted (``motion/flow_store.py``), and a checksum that a file carries itself
+does not say who wrote it.  So a file is used only if it and every folder above it belong to this user or to the
 system, and nobody else may write to them.
 
 The folder is ``$VISCOROLL_CACHE_DIR``, else ``$XDG_CACHE_HOME/viscoroll``, else ``~/.cache/viscoroll``, else, of a user
-without a home directory, one of theirs in ``$TMPDIR`` or ``/tmp``.
+without a home directory, a folder of this user in ``$TMPDIR`` or ``/tmp``.
 """
-
-from __future__ import annotations
 
 import errno
 import os
@@ -19,11 +17,12 @@ from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
+#: Number of the superuser's group.
 _SUPERUSERS = 0
 
 
 def cache_root() -> Path:
-    """Folder that holds every cache of the package."""
+    """Return the folder that holds every cache of the package."""
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
     if base := os.environ.get("XDG_CACHE_HOME"):
@@ -36,24 +35,31 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def _without_home() -> Path:
+    """Return the folder of a user without a home directory, and warn of it once."""
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
-    place = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
+    folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
     warnings.warn(
-        f"there is no home directory: caches are in {place} ($VISCOROLL_CACHE_DIR names another place)",
+        f"there is no home directory: caches are in {folder} ($VISCOROLL_CACHE_DIR names another folder)",
         RuntimeWarning,
         stacklevel=2,
     )
-    return place
+    return folder
 
 
 def read_private(path: Path) -> bytes:
-    """A file of the cache; raises OSError where it is not there, cannot be read, or others may have written it."""
+    """Return the content of a file of the cache.
+
+    Raises OSError if the file does not exist, cannot be read, or may have been written by others.
+    """
     refuse_writable_by_others(path)
     return path.read_bytes()
 
 
 def write_private(path: Path, content: bytes) -> None:
-    """Keep a file in the cache, whole or not at all, for others to read alone; raises OSError."""
+    """Write a file of the cache, whole or not at all, which others may only read.
+
+    path : the file.  content : what is written.  Raises OSError.
+    """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
     try:
@@ -66,47 +72,51 @@ def write_private(path: Path, content: bytes) -> None:
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder of the cache and those above it, where they are not there; raises OSError."""
+    """Make a folder of the cache and the folders above it, as far as they do not exist; raises OSError."""
     refuse_writable_by_others(folder)
-    for each in reversed((folder, *folder.parents)):
-        if not each.exists():
-            each.mkdir(mode=0o755, exist_ok=True)
+    for parent in reversed((folder, *folder.parents)):
+        if not parent.exists():
+            parent.mkdir(mode=0o755, exist_ok=True)
 
 
 def refuse_writable_by_others(path: Path) -> None:
-    """Raise PermissionError where others may write to a file or folder, or to one above it, as far as they are there.
+    """Raise PermissionError if others may write to ``path``, or to a folder above it, as far as they exist.
 
-    Sticky folders are as good as one's own: there nobody replaces what is another's.  On Windows, where the user's
-    profile is theirs alone, nothing is looked at.
+    Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile
+    of a user is theirs alone, nothing is tested.
     """
     if not hasattr(os, "geteuid"):
         return
-    # whom "/" belongs to may do anything; in a container that is not always 0
+    # the owner of "/" may do anything; in a container that is not always 0
     trusted = {os.geteuid(), 0, Path("/").stat().st_uid}
     plain, real = path.absolute(), Path(os.path.realpath(path))
-    for place in dict.fromkeys((plain, *plain.parents, real, *real.parents)):
+    for part in dict.fromkeys((plain, *plain.parents, real, *real.parents)):
         try:
-            found = place.stat()
-        except OSError:  # not there yet
+            status = part.stat()
+        except OSError:  # it does not exist yet
             continue
-        group = found.st_mode & stat.S_IWGRP and not _is_private(found.st_gid)
-        shared = (group or found.st_mode & stat.S_IWOTH) and not found.st_mode & stat.S_ISVTX
-        if shared or found.st_uid not in trusted:
+        group = status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid)
+        shared = (group or status.st_mode & stat.S_IWOTH) and not status.st_mode & stat.S_ISVTX
+        if shared or status.st_uid not in trusted:
             problem = "others may write to it" if shared else "it belongs to another user"
-            remedy = f"`chmod go-w {place}`, or " if shared else ""
-            text = f"{place}: {problem}; {remedy}name a folder of your own by VISCOROLL_CACHE_DIR"
+            remedy = f"`chmod go-w {part}`, or " if shared else ""
+            text = f"{part}: {problem}; {remedy}name a folder of your own by VISCOROLL_CACHE_DIR"
             raise PermissionError(errno.EPERM, text)
 
 
 def _is_private(group: int) -> bool:
-    """Whether it is the superuser's group, or that which bears this user's name and has nobody else in it."""
+    """Return whether a group is the superuser's, or has the name of this user and no other member.
+
+    group : number of the group.
+    """
     import grp
     import pwd
 
     if group == _SUPERUSERS:
         return True
     try:
-        user, found = pwd.getpwuid(os.geteuid()).pw_name, grp.getgrgid(group)
+        user = pwd.getpwuid(os.geteuid()).pw_name
+        entry = grp.getgrgid(group)
     except KeyError:
         return False
-    return found.gr_name == user and set(found.gr_mem) <= {user}
+    return entry.gr_name == user and set(entry.gr_mem) <= {user}

@@ -9,12 +9,9 @@ is spent, call :func:`fma`.
 caller. Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from inspect import Parameter, Signature
-from typing import Any
 
 import numba
 import numpy as np
@@ -23,7 +20,7 @@ from numba import carray
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from .jit import kernel
+from .jit import inline_kernel, kernel
 
 #: a 64-bit integer of LLVM, which holds an address
 _WORD = ir.IntType(64)
@@ -31,73 +28,77 @@ _WORD = ir.IntType(64)
 _FUNCTION = ir.FunctionType(ir.VoidType(), [_WORD, _WORD])
 
 
-def make_intrinsic(lower: Callable, returned: Any, *kinds: Any) -> Any:
-    """A function for kernels that is lowered to instructions of LLVM.
+def make_intrinsic(lower: Callable, returned, *kinds):
+    """Return a function for kernels that is lowered to instructions of LLVM.
 
     lower : (context, builder, signature, arguments) -> value of LLVM, as numba calls it.
     returned : numba's type of the value.
     kinds : numba's types of the arguments, None for any type.
     """
 
-    def typed(context: Any, *given: Any) -> Any:
-        return returned(*(kind or own for kind, own in zip(kinds, given, strict=True))), lower
+    def give_signature(context, *arguments):
+        return returned(*(kind or own for kind, own in zip(kinds, arguments, strict=True))), lower
 
     names = ["context", *(f"given_{n}" for n in range(len(kinds)))]
-    typed.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])  # type: ignore[attr-defined]
-    return intrinsic(typed)
+    give_signature.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])
+    return intrinsic(give_signature)
 
 
-def call_llvm(builder: Any, name: str, given: Any) -> Any:
-    """Call the intrinsic ``name`` of LLVM, whose arguments ``given`` and value have one type."""
-    kind = given[0].type
-    function = ir.FunctionType(kind, [kind] * len(given))
-    return builder.call(cgutils.get_or_insert_function(builder.module, function, name), given)
+def call_llvm(builder, name: str, arguments):
+    """Return the call of the intrinsic ``name`` of LLVM, whose ``arguments`` and value have one type."""
+    kind = arguments[0].type
+    function = ir.FunctionType(kind, [kind] * len(arguments))
+    return builder.call(cgutils.get_or_insert_function(builder.module, function, name), arguments)
 
 
-def _to_bits(context, builder, signature, given):
-    return builder.bitcast(given[0], _WORD)
+def _bitcast(context, builder, signature, arguments):
+    return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
 
 
-def _from_bits(context, builder, signature, given):
-    return builder.bitcast(given[0], ir.DoubleType())
-
-
-def _fma(context, builder, signature, given):
+def _fma(context, builder, signature, arguments):
     """An instruction if the processor has one, else a call of the C library."""
-    return builder.fma(*given)
+    return builder.fma(*arguments)
 
 
-def _expect(context, builder, signature, given):
-    return call_llvm(builder, "llvm.expect.i1", [*given, ir.IntType(1)(0)])
+def _expect(context, builder, signature, arguments):
+    return call_llvm(builder, "llvm.expect.i1", [*arguments, ir.IntType(1)(0)])
 
 
-def _call(context, builder, signature, given):
-    builder.call(builder.inttoptr(given[0], _FUNCTION.as_pointer()), given[1:])
+def _call(context, builder, signature, arguments):
+    builder.call(builder.inttoptr(arguments[0], _FUNCTION.as_pointer()), arguments[1:])
     return context.get_dummy_value()
 
 
-def _pointer(context, builder, signature, given):
-    return builder.inttoptr(given[0], context.get_value_type(signature.return_type))
+def _pointer(context, builder, signature, arguments):
+    return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))
 
 
 #: the bits of a double as an integer; numba would compile ``view`` in each kernel, in 0.1 s
-float_to_bits = make_intrinsic(_to_bits, types.int64, types.float64)
+float_to_bits = make_intrinsic(_bitcast, types.int64, types.float64)
 #: the double with these bits
-bits_to_float = make_intrinsic(_from_bits, types.float64, types.int64)
+bits_to_float = make_intrinsic(_bitcast, types.float64, types.int64)
 #: a b + c, rounded once
 fma = make_intrinsic(_fma, *[types.float64] * 4)
 #: ``if unlikely(condition)`` tells LLVM that the branch is rarely taken
 unlikely = make_intrinsic(_expect, types.boolean, types.boolean)
 #: call the kernel at an address: (address, number, address of a record)
 call_address = make_intrinsic(_call, types.void, *[types.int64] * 3)
-#: an address as a pointer to doubles, and to 64-bit integers
-_to_doubles, _to_integers = (
-    make_intrinsic(_pointer, types.CPointer(kind), types.int64) for kind in (types.float64, types.int64)
-)
+#: an address as a pointer to doubles
+_to_doubles = make_intrinsic(_pointer, types.CPointer(types.float64), types.int64)
+#: an address as a pointer to 64-bit integers
+_to_integers = make_intrinsic(_pointer, types.CPointer(types.int64), types.int64)
+
+
+def record_type(integers: str, floats: str = "") -> np.dtype:
+    """Return the dtype of a record of 64-bit integers, among them addresses, and of doubles behind them.
+
+    integers, floats : names of the fields, separated by blanks.
+    """
+    return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in floats.split()])
 
 
 @cache
-def function_address(function: Any, record: np.dtype, returned: Any = types.void, *first: Any) -> int:
+def function_address(function, record: np.dtype, returned=types.void, *first) -> int:
     """Address of the machine code of a kernel.
 
     function : the kernel.  record : dtype of the record to which its last argument points.
@@ -127,7 +128,7 @@ def record_at(pointer):
     return carray(pointer, 1)[0]
 
 
-@kernel(inline=True)
+@inline_kernel
 def septic(t, c):
     """c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme, whose parts are independent of one another."""
     t2 = t * t

@@ -1,8 +1,6 @@
 """One decorator, :func:`kernel`: numba compilation, deferred (:mod:`deferred`) and cached on disk (:mod:`cache`)."""
 
-from __future__ import annotations
-
-from typing import Any, Callable
+from typing import Callable
 
 import numba
 
@@ -14,32 +12,43 @@ if numba.config.DISABLE_JIT:
 
 
 def kernel(function: Callable | None = None, *, inline: bool = False, allocates: bool = False) -> Callable:
-    """Compile ``function`` with numba, lazily, cached on disk.
+    """Compile a function with numba, when it is first called, and keep the machine code on disk.
 
-    LLVM is granted no numerical freedom: a result then depends on the source alone, not on what
-    was compiled together (see :mod:`.intrinsics`).
+    LLVM is granted no numerical freedom: a result then depends on the source alone, not on what was compiled together
+    (see :mod:`.intrinsics`).
 
-    ``inline`` is for the few short functions at the bottom of every loop: a call of a numba
-    function costs as much as a polynomial, and LLVM by itself does not always spare it.
-    ``allocates`` says that arrays are made or assigned as a whole.  Without it no references are
-    counted; numba counts those of constant tables too, which took a fifth of the time of a motion.
+    Parameters
+    ----------
+    function : the function; None, for a decorator with the other arguments.
+    inline : for the few short functions at the bottom of every loop: a call of a numba function costs as much as a
+        polynomial, and LLVM by itself does not always spare it.
+    allocates : the function makes arrays, or assigns to them as a whole.  Without it no references are counted; numba
+        counts those of constant tables too, which took a fifth of the time of a motion.
+
+    Returns
+    -------
+    numba's dispatcher of the function.
     """
     if function is None:
         return lambda f: kernel(f, inline=inline, allocates=allocates)
     options = {"error_model": "numpy", "nogil": True, "forceinline": inline, "_nrt": allocates}
-    whole = numba.njit(function, pipeline_class=EntryPipeline, **options)
-    whole._cache = DiskCache(function)
-    defer(whole, options)
-    _compile_alone(whole)
-    return whole
+    dispatcher = numba.njit(function, pipeline_class=EntryPipeline, **options)
+    dispatcher._cache = DiskCache(function)
+    defer(dispatcher, options)
+    _compile_exclusively(dispatcher)
+    return dispatcher
 
 
-def _compile_alone(whole: Any) -> None:
-    """Let no two processes compile the same at the same time."""
-    plain = whole.compile
+def _compile_exclusively(dispatcher) -> None:
+    """Let no two processes compile the function of ``dispatcher`` for one signature at the same time."""
+    plain = dispatcher.compile
 
-    def compile_alone(signature: Any) -> Any:
-        with whole._cache.alone(signature, whole.targetctx.codegen()):
+    def compile_exclusively(signature):
+        with dispatcher._cache.exclusive(signature, dispatcher.targetctx.codegen()):
             return plain(signature)
 
-    whole.compile = compile_alone
+    dispatcher.compile = compile_exclusively
+
+
+#: Decorator of short functions that are inlined wherever they are called: ``kernel(inline=True)``.
+inline_kernel = kernel(inline=True)

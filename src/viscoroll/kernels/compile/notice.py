@@ -1,17 +1,15 @@
-"""A line for whoever waits while kernels are compiled."""
-
-from __future__ import annotations
+"""One line on standard error for the user who waits while kernels are compiled."""
 
 import multiprocessing
 import os
 import sys
 
-#: whether it has been said
+#: Whether this process has printed the line.
 announced = False
 
 
 def announce_compiling() -> None:
-    """Say, once a process, that compiling begins: the first kernel does not know how many follow."""
+    """Print, once a process, that compiling begins; the first kernel does not know how many follow."""
     global announced
     if announced or is_quiet():
         return
@@ -25,12 +23,12 @@ def announce_compiling() -> None:
 
 
 def is_quiet() -> bool:
-    """Whether nobody waits who could read it."""
+    """Return whether nobody waits who could read the line."""
     return os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker()
 
 
 def is_worker() -> bool:
-    """Whether this process computes for another one, which has said it."""
+    """Return whether this process computes for another one, which prints the line itself."""
     if multiprocessing.parent_process() is not None:
         return True
     distributed = sys.modules.get("distributed")

@@ -4,8 +4,6 @@ Times are tau = gamma t.  Motions are mirrored so that omega > V in full slip an
 form one vector; pairs of functions are interleaved (:mod:`..rows.simd_polynomial`).
 """
 
-from __future__ import annotations
-
 from math import prod
 from typing import Any, NamedTuple
 

@@ -5,16 +5,14 @@ slip.  Behind the onset the boundary layer is a table over (V at onset, E); then
 manifold, a function of the slow logarithm.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.intrinsics import fma
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import gauss
 from ..numerics.simd4 import LANES, broadcast, fma4, make_load, unpack
 from ..rows.evaluate import locate_octave
-from ..rows.simd_polynomial import evaluate_one, evaluate_pair
+from ..rows.simd_polynomial import evaluate_pair, evaluate_single
 from . import layout
 from .layout import LAYER_TERMS, SHAPES, STARTS
 from .records import Asymptote
@@ -57,11 +55,13 @@ _LAYER_OCTAVES = SHAPES.layer[2]
 _LAYER = SHAPES.layer[3] * SHAPES.layer[4]
 #: loads the twelve coefficients of the powers of t, that belong to one power of s, as three vectors of four
 _powers = make_load(LAYER_TERMS // LANES)
-#: nodes and weights of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
-_GAUSS_X, _GAUSS_W = gauss(5)
+#: nodes of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
+_GAUSS_X = gauss(5)[0]
+#: weights of that rule
+_GAUSS_W = gauss(5)[1]
 
 
-@kernel(inline=True)
+@inline_kernel
 def full_slip_integrals(V, level, flow):
     """Time and distance of sliding from rest to V in the mirrored frame.
 
@@ -75,17 +75,17 @@ def full_slip_integrals(V, level, flow):
         return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
     at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * _SLIDE
     T, limit = evaluate_pair(flow.table, at, t)[:2]
-    X = evaluate_one(flow.table, at + layout.SLIDE_X, t)[0] if level >= PATH else 0.0
+    X = evaluate_single(flow.table, at + layout.SLIDE_X, t)[0] if level >= PATH else 0.0
     return T if V > 0.0 else -T, X, limit
 
 
-@kernel(inline=True)
+@inline_kernel
 def speed_at_slide_time(T, flow):
     """V in full slip at the time T since (or before) rest, in the mirrored frame."""
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
         return flow.mu * T
-    V = evaluate_one(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t)[0]
+    V = evaluate_single(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t)[0]
     return V if T > 0.0 else -V
 
 
@@ -106,7 +106,7 @@ def slide_distance(start, tau, flow):
     return x * tau
 
 
-@kernel(inline=True)
+@inline_kernel
 def read_onset(I, level, flow):
     """State at the onset of partial slip of a sliding motion, in the mirrored frame.
 
@@ -120,11 +120,11 @@ def read_onset(I, level, flow):
     row, t, _ = locate_octave(x, layout.LOW)
     at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
     V, T = evaluate_pair(flow.table, at, t)[:2]
-    X = evaluate_one(flow.table, at + layout.ONSET_X, t)[0] if level >= PATH else 0.0
+    X = evaluate_single(flow.table, at + layout.ONSET_X, t)[0] if level >= PATH else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _locate_on_manifold(slow_log):
     """Locate a slow logarithm in the table of the slow manifold.
 
@@ -144,7 +144,7 @@ def _locate_on_manifold(slow_log):
     return STARTS.slow + row * _SLOW, 2.0 * (place - row) - 1.0, share
 
 
-@kernel(inline=True)
+@inline_kernel
 def manifold_speeds(slow_log, table):
     """(V, delta) on the slow manifold at a slow logarithm."""
     at, t, share = _locate_on_manifold(slow_log)
@@ -152,7 +152,7 @@ def manifold_speeds(slow_log, table):
     return share * V, share * delta
 
 
-@kernel(inline=True)
+@inline_kernel
 def _remaining_path(slow_log, table):
     """(distance, angle) that remain to rest on the slow manifold."""
     at, t, share = _locate_on_manifold(slow_log)
@@ -187,7 +187,7 @@ def manifold_path(start, span, rate, table):
 def remaining_slip_loss(slow_log, table):
     """Slip loss that remains to rest at a slow logarithm on the slow manifold; it falls as V^3 as V -> 0."""
     at, t, share = _locate_on_manifold(slow_log)
-    return share**3 * evaluate_one(table, at + layout.SLOW_LOSS, t)[0]
+    return share**3 * evaluate_single(table, at + layout.SLOW_LOSS, t)[0]
 
 
 @kernel
@@ -203,7 +203,7 @@ def asymptote_on_manifold(slow_log):
     return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
 
 
-@kernel(inline=True)
+@inline_kernel
 def read_asymptote(family, v, level, flow):
     """The asymptote of the motion that enters partial slip at v = kappa V.
 
@@ -219,17 +219,17 @@ def read_asymptote(family, v, level, flow):
     if level >= PATH:
         x, angle = evaluate_pair(table, at + layout.ASYMPTOTE_PATH, t)[:2]
     if level >= LOSS:
-        loss = evaluate_one(table, at + layout.ASYMPTOTE_LOSS, t)[0]
-    return Asymptote(slow_log, rate, evaluate_one(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
+        loss = evaluate_single(table, at + layout.ASYMPTOTE_LOSS, t)[0]
+    return Asymptote(slow_log, rate, evaluate_single(table, at + layout.ASYMPTOTE_SPLIT, t)[0], x, angle, loss)
 
 
-@kernel(inline=True)
+@inline_kernel
 def layer_coordinate(E, split):
     """Layer coordinate u at the stiff time E, where the layer is divided at ``split``."""
     return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
 
 
-@kernel(inline=True)
+@inline_kernel
 def locate_in_layer(family, v, u, flow):
     """(position in the table, t, s) in the layer of a family at v = kappa V of the onset and at the layer coordinate
     u.
@@ -239,7 +239,7 @@ def locate_in_layer(family, v, u, flow):
     return STARTS.layer + (((row - 1 + family * _ONSET_OCTAVES) * _LAYER_OCTAVES) + part - 1) * _LAYER, t, s
 
 
-@kernel(inline=True)
+@inline_kernel
 def _evaluate_in_t(p, t):
     """Value at t of a polynomial whose twelve coefficients are three vectors of four."""
     square = t * t
@@ -248,7 +248,7 @@ def _evaluate_in_t(p, t):
     return fma(square, fma(t, d, c), fma(t, b, a))
 
 
-@kernel(inline=True)
+@inline_kernel
 def layer_value_and_slopes(table, column, at, t, s):
     """Value and slopes of one column of a layer.
 

@@ -1,11 +1,9 @@
 """Look up many motions of one scene in its flow map."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from ..compile.jit import kernel
-from ..motion.records import DONE, FULL, PARTIAL, REST, RESTED
+from ..compile.jit import inline_kernel, kernel
+from ..motion.workspace import AT_REST, CAME_TO_REST, COMPLETED, FULL_SLIP, PARTIAL_SLIP
 from ..rows.contact_states import element
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .lookup import (
@@ -33,13 +31,28 @@ from .records import FullSlipStart, Output, Request, StickOnset
 NOT_COVERED = -1
 #: largest ratio of initial speed to speed at onset: V at onset is a difference whose error is 2e-14 of the initial one
 _MAX_SPEED_RATIO = 4096.0
-#: rows of the array of outputs
-_V, _OMEGA, _X, _ANGLE, _DELTA, _REGIME, SLIP_LOSS, ROLLING_LOSS = range(8)
+# Rows of the array of outputs.
+#: speed of the axis
+_V = 0
+#: angular velocity
+_OMEGA = 1
+#: distance
+_X = 2
+#: angle
+_ANGLE = 3
+#: creepage
+_DELTA = 4
+#: regime
+_REGIME = 5
+#: energy lost by slip
+SLIP_LOSS = 6
+#: energy lost by rolling resistance
+ROLLING_LOSS = 7
 #: number of these rows
 ROWS = 8
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_output(out, column, state):
     """Write one output state into a column of ``out`` (ROWS, times)."""
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
@@ -47,14 +60,14 @@ def _write_output(out, column, state):
     out[SLIP_LOSS, column] = state.loss
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_rest(at, x, angle, loss, out):
     """Write outputs at rest, at distance x and angle with this slip loss, from column ``at`` of ``out`` on."""
     for column in range(at, out.shape[1]):
-        _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, REST, loss))
+        _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
 
 
-@kernel(inline=True)
+@inline_kernel
 def _start_in_full_slip(frame, V, omega, start, level, flow):
     """Locate the onset of partial slip of a motion that starts in full slip.
 
@@ -97,7 +110,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     return StickOnset(frame, family, v, stick.tau, -frame * x, -frame * angle, -loss), asymptote, True
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     """Write the outputs before the onset of partial slip, and return the next column.
 
@@ -116,13 +129,13 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
             angle = (x - tau * (w + mu * tau)) * per_j
         delta = (omega - V) / V if V != 0.0 else np.inf
         _write_output(
-            out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x))
+            out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL_SLIP, mu * (angle - x))
         )
         at += 1
     return at
 
 
-@kernel(inline=True)
+@inline_kernel
 def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     """Write the outputs in partial slip up to a time, and return the next column.
 
@@ -150,13 +163,13 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
                 loss = total_loss - remaining_slip_loss(now, flow.table)
         x, angle = stick.x + frame * x, stick.angle + frame * angle
         _write_output(
-            out, at, Output(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL, stick.loss + loss)
+            out, at, Output(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL_SLIP, stick.loss + loss)
         )
         at += 1
     return at
 
 
-@kernel(inline=True)
+@inline_kernel
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     """Write all outputs from the onset of partial slip to the end, or to rest.
 
@@ -174,7 +187,7 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
             return NOT_COVERED, np.nan
     at = _write_partial_slip(at, tau_out, min(rest_time, end), stick, asymptote, request.level, flow, out)
     if end <= rest_time:
-        return DONE, np.nan
+        return COMPLETED, np.nan
     x, angle = manifold_path(asymptote.slow_log, asymptote.slow_log - request.rest_slow_log, flow.slow_rate, flow.table)
     loss = (
         asymptote.loss
@@ -183,10 +196,10 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     )
     x, angle = stick.x + stick.frame * (x + asymptote.x), stick.angle + stick.frame * (angle + asymptote.angle)
     _write_rest(at, x, angle, stick.loss + loss, out)
-    return RESTED, rest_time
+    return CAME_TO_REST, rest_time
 
 
-@kernel(inline=True)
+@inline_kernel
 def look_up_motion(V0, omega0, tau_out, request, flow, out):
     """Look up one motion.
 
@@ -198,19 +211,19 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
         _write_rest(0, 0.0, 0.0, 0.0, out)
-        return RESTED, np.nan, 0.0
+        return CAME_TO_REST, np.nan, 0.0
     if not kappa * abs(V0) < HIGHEST:
         return NOT_COVERED, np.nan, np.nan
     frame = 1.0 if omega0 >= V0 else -1.0
     V, omega = frame * V0, frame * omega0
-    at, first = 0, FULL
+    at, first = 0, FULL_SLIP
     T, X, limit = full_slip_integrals(V, level, flow)
     starts_in_full_slip = omega - V >= limit
     if starts_in_full_slip:
         slide, stick, covered = _start_in_full_slip(frame, V, omega, (T, X), level, flow)
     else:
         stick, asymptote, covered = _start_in_partial_slip(V0, omega0, limit / abs(V), level, flow)
-        first = PARTIAL
+        first = PARTIAL_SLIP
     if not covered or stick.v < 2.0 * kappa * request.rest:
         return NOT_COVERED, np.nan, np.nan
     while at < tau_out.size and tau_out[at] == 0.0:
@@ -220,7 +233,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     if starts_in_full_slip:
         at = _write_full_slip(at, tau_out, stick.tau, slide, level, flow, out)
         if tau_out[tau_out.size - 1] < stick.tau:
-            return DONE, np.nan, np.nan
+            return COMPLETED, np.nan, np.nan
         onset = stick.tau
         asymptote = read_asymptote(stick.family, stick.v, level, flow)
     status, rest_time = _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out)

@@ -2,11 +2,9 @@
 from.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from . import layout
 from .layout import LAYER_CREEP, LAYER_LN_V, MINUS, PLUS
 from .lookup import HIGHEST, LOWEST, SPEEDS, layer_value_and_slopes, locate_in_layer, manifold_at_speed, read_asymptote
@@ -49,7 +47,7 @@ def _initial_u(size, slow, turns):
     return 1.0 + np.log((1.0 - b) / (1.0 + b) * (r + b) / max(r - b, 1e-14)) / b
 
 
-@kernel(inline=True)
+@inline_kernel
 def _clamp(x, low, high):
     """The nearest value to x in [low, high]; low if x is NaN."""
     x = x if x > low else low

@@ -1,7 +1,5 @@
 """Records of the flow map's kernels."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 

@@ -1,7 +1,5 @@
 """Contact states from which a flow map is made."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import kernel

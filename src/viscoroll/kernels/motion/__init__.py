@@ -1,10 +1,19 @@
-"""Motions of any two bodies, free or under force, torque, brake and prescribed speeds: Eq. (22) with what drives it.
+"""Motions of any two bodies, free or under force, torque, brake and prescribed speeds: Eq. (22) with its drive.
 
     V' = Q - M_half_space + f      j omega' = -Q - M_cylinder + q      tau = gamma t
 
-:mod:`rates`, the equations in full and in partial slip, as panels ask for them; :mod:`records`, what is handed on;
-:mod:`load`, the drive at a time; :mod:`collocation`, :mod:`nodes`, what a panel of time holds; :mod:`guess`, where its
-solution begins; :mod:`solve`, a panel; :mod:`origin`, what follows V = omega = 0; :mod:`events`, where a regime ends;
-:mod:`steady`, an equilibrium to the end of its drive; :mod:`phase`, panel after panel in one regime; :mod:`switch`,
-what follows; :mod:`output`; :mod:`integrate`, from regime to regime; :mod:`loop`, what Python calls.
+From the equations to the entry from Python:
+
+- :mod:`workspace`: records, codes and array layouts
+- :mod:`drive`: force, torque, brake and prescribed speed at a time
+- :mod:`rhs`: right-hand side in full and in partial slip, with its derivatives
+- :mod:`collocation`: Radau IIA nodes, matrices, dense output
+- :mod:`predictor`, :mod:`step`, :mod:`error_estimate`, :mod:`step_control`: one step by Newton's iteration, the values
+  that it starts from, its error, its length
+- :mod:`events`: event functions and their location
+- :mod:`departure_from_rest`, :mod:`regimes`: what follows V = omega = 0, and what follows an event
+- :mod:`asymptotics`: equilibrium and exponential decay in closed form
+- :mod:`output`: outputs and quadratures of accepted steps
+- :mod:`regime_solver`, :mod:`driver`: integration within one regime, and from regime to regime
+- :mod:`batch`: all motions of a batch
 """

@@ -1,7 +1,7 @@
 """Radau IIA collocation on [-1, 1], with the left end as node 0: nodes, matrices, interpolants.
 
-What a panel holds of its eight nodes is a row of eight numbers, two vectors of four; a matrix is eight of these, its
-columns one after the other.
+A row holds the values at the eight nodes of a step: eight numbers, two vectors of four.  A matrix is stored by its
+eight columns, one after the other.  Positions on a step are v = 1 + t in [0, 2].
 """
 
 from __future__ import annotations
@@ -15,114 +15,146 @@ from ..compile.jit import kernel
 from ..numerics.interpolation import Interpolation, radau
 from ..numerics.simd4 import LANES, broadcast, fma4, load, store
 
-#: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
+#: number of collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
 N = 7
-#: numbers of a row
-WIDE = N + 1
-assert WIDE == 2 * LANES
-
+#: length of a row: node 0 and the N collocation nodes
+ROW_LENGTH = N + 1
+assert ROW_LENGTH == 2 * LANES
 
 _INNER = Interpolation(radau(N, 1))
 _ALL = Interpolation((Decimal(-1), *_INNER.exact))
+#: positions t of all nodes on [-1, 1]
 NODES = _ALL.nodes
-#: how far along a panel the nodes lie
-SHARES = 0.5 * (1.0 + NODES)
-#: values at nodes 1 ... N to the integral from -1 to 1, and to the value at -1
-INTEGRAL = _INNER.integrals(_INNER.exact)[N - 1].copy()
-TO_START = _INNER.values([Decimal(-1)])[0]
+#: positions of all nodes as fractions of the step
+NODE_FRACTIONS = 0.5 * (1.0 + NODES)
+#: weights of the values at nodes 1 ... N in the integral from -1 to 1
+QUADRATURE_WEIGHTS = _INNER.integrals(_INNER.exact)[N - 1].copy()
+#: weights of the values at nodes 1 ... N in the value that their interpolant has at -1
+EXTRAPOLATION_TO_START = _INNER.values([Decimal(-1)])[0]
 
 
-def _divided(powers: np.ndarray) -> np.ndarray:
-    """Coefficients of polynomials that vanish at -1, [power, which], divided by 1 + t."""
+def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
+    """Divide polynomials that vanish at -1 by 1 + t; powers: coefficients [power, polynomial]."""
     found, quotient = np.zeros_like(powers[1:]), 0.0
     for k in range(len(powers) - 1, 0, -1):
         found[k - 1] = quotient = powers[k] - quotient
     return found
 
 
-def _columns(matrix: np.ndarray) -> np.ndarray:
+def _column_major(matrix: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(matrix.T).ravel()
 
 
-#: values at all nodes to slopes there, of which that at node 0 is not asked for
-SLOPES = _columns(np.vstack([np.zeros(WIDE), _ALL.slopes(_INNER.exact)]))
-#: values at all nodes, less that at node 0, to what :func:`rise_at` takes
-_RISES = _columns(np.vstack([_divided(_ALL.powers()), np.zeros(WIDE)]))
-#: values at all nodes, less that at node 0, to what :func:`integral_at` takes; that of node 0 is then 0
-_INTEGRALS = np.vstack([np.zeros(WIDE), _ALL.powers() / np.arange(1.0, WIDE + 1.0)[:, None]])
-_TO_INTEGRAL = _columns(np.vstack([_divided(_divided(_INTEGRALS)), np.zeros(WIDE)]))
-
-
-#: of every column, the number on the diagonal, and all others
-_ONE = np.eye(WIDE).ravel()
-_OTHERS = 1.0 - _ONE
-
-
-@kernel(inline=True)
-def product(matrix, row, first, values, to, found):
-    """Put the product of a matrix with the ``row`` of values, less ``first``, where ``to`` says."""
-    low = high = broadcast(0.0)
-    for k in range(WIDE):
-        x = broadcast(values[row + k] - first)
-        low = fma4(load(matrix, WIDE * k), x, low)
-        high = fma4(load(matrix, WIDE * k + LANES), x, high)
-    store(found, to, low)
-    store(found, to + LANES, high)
+#: matrix: values at all nodes to slopes of the interpolant there; its row of node 0 is 0, as no slope is needed there
+DIFFERENTIATION = _column_major(np.vstack([np.zeros(ROW_LENGTH), _ALL.slopes(_INNER.exact)]))
+#: matrix: values at all nodes, less that at node 0, to the coefficients of :func:`evaluate_dense_output`
+_DENSE_MATRIX = _column_major(np.vstack([_divide_by_linear(_ALL.powers()), np.zeros(ROW_LENGTH)]))
+_INTEGRALS = np.vstack([np.zeros(ROW_LENGTH), _ALL.powers() / np.arange(1.0, ROW_LENGTH + 1.0)[:, None]])
+#: matrix: values at all nodes, less that at node 0, to the coefficients of :func:`evaluate_integral`
+_INTEGRAL_MATRIX = _column_major(np.vstack([_divide_by_linear(_divide_by_linear(_INTEGRALS)), np.zeros(ROW_LENGTH)]))
+#: the identity matrix
+_IDENTITY = np.eye(ROW_LENGTH).ravel()
+#: 1 off the diagonal, 0 on it
+_OFF_DIAGONAL = 1.0 - _IDENTITY
 
 
 @kernel(inline=True)
-def weighted_slopes(weights, diagonal, nodes, matrix):
-    """The matrix of the slopes, rows times ``weights``, less a ``diagonal``; row and column of node 0 are 0."""
-    low, high = load(nodes, weights), load(nodes, weights + LANES)
-    for k in range(1, WIDE):
-        at, less = WIDE * k, broadcast(-nodes[diagonal + k])
-        store(matrix, at, fma4(less, load(_ONE, at), load(SLOPES, at) * low))
-        store(matrix, at + LANES, fma4(less, load(_ONE, at + LANES), load(SLOPES, at + LANES) * high))
+def multiply_matrix(matrix, row, offset, values, target, result):
+    """Write the product of a matrix and a row, less ``offset``, to ``result`` from index ``target`` on.
 
-
-@kernel(inline=True)
-def invert(matrix):
-    """Put the inverse in place, without pivoting: what that spoils, Newton's convergence shows.
-
-    By vectors alone: one that is loaded behind a number that was just put into it waits for that.
+    matrix: by columns; row: index in ``values`` at which the row begins.
     """
-    for i in range(1, WIDE):
-        at = WIDE * i
-        pivot = broadcast(1.0 / matrix[at + i])
-        others, rest = load(_OTHERS, at), load(_OTHERS, at + LANES)
-        low = fma4(load(_ONE, at), pivot, load(matrix, at) * others * pivot)
-        high = fma4(load(_ONE, at + LANES), pivot, load(matrix, at + LANES) * rest * pivot)
-        for k in range(1, WIDE):
-            if k != i:
-                less = broadcast(-matrix[WIDE * k + i])
-                store(matrix, WIDE * k, fma4(less, low, load(matrix, WIDE * k) * others))
-                store(matrix, WIDE * k + LANES, fma4(less, high, load(matrix, WIDE * k + LANES) * rest))
-        store(matrix, at, low)
-        store(matrix, at + LANES, high)
+    low = high = broadcast(0.0)
+    for k in range(ROW_LENGTH):
+        x = broadcast(values[row + k] - offset)
+        low = fma4(load(matrix, ROW_LENGTH * k), x, low)
+        high = fma4(load(matrix, ROW_LENGTH * k + LANES), x, high)
+    store(result, target, low)
+    store(result, target + LANES, high)
 
 
 @kernel(inline=True)
-def rise_terms(row, to, nodes):
-    """Coefficients for :func:`rise_at` of the interpolant of all nodes less its value at the left end."""
-    product(_RISES, row, nodes[row], nodes, to, nodes)
+def assemble_newton_matrix(weights, diagonal, nodes, matrix):
+    """Write diag(weights) D - diag(diagonal) to ``matrix``, D the differentiation matrix; row and column of node 0
+    are 0.
+
+    weights, diagonal: rows of ``nodes``.
+    """
+    low, high = load(nodes, weights), load(nodes, weights + LANES)
+    for k in range(1, ROW_LENGTH):
+        column, subtracted = ROW_LENGTH * k, broadcast(-nodes[diagonal + k])
+        store(matrix, column, fma4(subtracted, load(_IDENTITY, column), load(DIFFERENTIATION, column) * low))
+        store(
+            matrix,
+            column + LANES,
+            fma4(subtracted, load(_IDENTITY, column + LANES), load(DIFFERENTIATION, column + LANES) * high),
+        )
+
+
+@kernel(inline=True)
+def invert_matrix(matrix):
+    """Invert a matrix in place, without pivoting: where that loses digits, Newton's iteration does not converge.
+
+    Only whole vectors are stored: a vector load behind the store of a single number into it would wait for that store.
+    """
+    for i in range(1, ROW_LENGTH):
+        column = ROW_LENGTH * i
+        pivot = broadcast(1.0 / matrix[column + i])
+        off_low, off_high = load(_OFF_DIAGONAL, column), load(_OFF_DIAGONAL, column + LANES)
+        low = fma4(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
+        high = fma4(load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot)
+        for k in range(1, ROW_LENGTH):
+            if k != i:
+                factor = broadcast(-matrix[ROW_LENGTH * k + i])
+                store(matrix, ROW_LENGTH * k, fma4(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
+                store(
+                    matrix, ROW_LENGTH * k + LANES, fma4(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high)
+                )
+        store(matrix, column, low)
+        store(matrix, column + LANES, high)
+
+
+@kernel(inline=True)
+def fit_dense_output(row, target, nodes):
+    """Store the coefficients of the interpolant of a row, less its value at the left end, for
+    :func:`evaluate_dense_output`.
+
+    row, target: indices in ``nodes`` of the values and of the coefficients.
+    """
+    multiply_matrix(_DENSE_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
 @kernel
-def integral_terms(row, to, nodes):
-    """Coefficients for :func:`integral_at` of the interpolant of all nodes."""
-    product(_TO_INTEGRAL, row, nodes[row], nodes, to, nodes)
+def fit_integral(row, target, nodes):
+    """Store the coefficients of the integral of the interpolant of a row for :func:`evaluate_integral`."""
+    multiply_matrix(_INTEGRAL_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
 @kernel(inline=True)
-def integral_at(v, first, nodes, row):
-    """The integral from the left end, where what is integrated is ``first``, to v = 1 + t: right beside itself."""
-    return v * (first + rise_at(v, nodes, row))
+def evaluate_dense_output(v, nodes, row):
+    """Return the value at v of the interpolant whose coefficients are in ``row``, less its value at the left end.
+
+    v: position in [0, 2]; nodes: array; row: index of the coefficients.
+    """
+    t, value = v - 1.0, 0.0
+    for k in range(ROW_LENGTH - 1, -1, -1):
+        value = fma(t, value, nodes[row + k])
+    return v * value
 
 
 @kernel(inline=True)
-def rise_at(v, nodes, row):
-    """The rise in this row from the left end to v = 1 + t."""
-    t, total = v - 1.0, 0.0
-    for k in range(WIDE - 1, -1, -1):
-        total = fma(t, total, nodes[row + k])
-    return v * total
+def evaluate_integral(v, first, nodes, row):
+    """Return the integral over t from the left end to v of the interpolant with value ``first`` at the left end.
+
+    It is accurate relative to itself as v -> 0.  row: index of the coefficients of :func:`fit_integral`.
+    """
+    return v * (first + evaluate_dense_output(v, nodes, row))
+
+
+@kernel
+def row_range(row, nodes):
+    """Return (smallest, largest) value of a row."""
+    smallest = largest = nodes[row]
+    for i in range(1, N + 1):
+        smallest, largest = min(smallest, nodes[row + i]), max(largest, nodes[row + i])
+    return smallest, largest

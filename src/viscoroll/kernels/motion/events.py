@@ -1,103 +1,136 @@
-"""Where on a panel a regime ends first, as its interpolants show."""
+"""Events: their functions, whose zeros end a regime, and their location on the dense output of a step."""
 
 from __future__ import annotations
 
 from ..compile.by_reference import by_value
 from ..compile.jit import kernel
-from .collocation import NODES, WIDE, N, rise_at, rise_terms
-from .load import BRAKE
-from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, extremes, may_end
-from .rates import creep_at, edge
-from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
-from .records import SPEED as PRESCRIBED_V
+from .collocation import NODES, ROW_LENGTH, N, evaluate_dense_output, fit_dense_output, row_range
+from .drive import load_at_node
+from .rhs import creepage, omega_and_delta, rhs_and_forces_at_node, stick_edge_function
+from .workspace import (
+    BELOW_REST_SPEED,
+    BRAKE_RELEASE,
+    DELTA_ZERO,
+    DRIVE_BRAKE,
+    NO_EVENT,
+    OMEGA_ZERO,
+    PRESCRIBED_V,
+    ROW_DENSE_EVENT,
+    ROW_DRIVE,
+    ROW_OMEGA_OR_D,
+    ROW_SPEED,
+    ROW_V,
+    STICK_EDGE,
+    V_ZERO,
+    State,
+    dense_state,
+)
 
-#: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
-#: function of the event is made of
-_ON, _LEAST = 1e-2, 4e-15
-#: halvings of a bracket of the interpolant
-_HALVINGS = 60
-#: parts of a bracket in which its lowest point is looked for
-_THIRDS = 40
-#: an edge that a panel starts on, to rounding, is not met there
-_ROUNDING = 1e-14
-#: what rounding makes of slip that lies on its edge, over the speeds that it is made of
-_NOISE = 1e-13
-#: v up to which the interpolant is followed beyond the panel, and from which on nothing was found there
-_BEYOND = 3.0
-NOWHERE = 2.99
-#: step of the slope by which a place is found closer, how often, and how far it may move
-_ASIDE, _STEPS, _NEAR_BY = 1e-3, 5, 0.1
+#: an event ends a step where its function is below this times rtol, relative to the scale of the function
+_EVENT_TOLERANCE = 1e-2
+#: smallest such tolerance that rounding allows, relative to the scale of the function
+_EVENT_ROUNDING = 4e-15
+#: largest number of bisections of an interpolant
+_BISECTIONS = 60
+#: steps of the ternary search for the minimum of an interpolant
+_TERNARY_STEPS = 40
+#: relative size of an event function at the start of a step up to which it counts as 0: the step begins on the event
+_START_ROUNDING = 1e-14
+#: rounding error of the function of the stick edge, relative to the speeds
+_EDGE_ROUNDING = 1e-13
+#: v up to which an interpolant is extrapolated beyond the step in search of a zero
+_EXTRAPOLATION_END = 3.0
+#: v from which on no zero was found on the extrapolation
+NOT_FOUND = 2.99
+#: offset in v of the difference quotient by which a zero is refined
+_SECANT_OFFSET = 1e-3
+#: number of refinements
+_SECANT_STEPS = 5
+#: largest correction of v in a refinement
+_MAX_SECANT_MOVE = 0.1
+#: |d| up to which either branch of the law serves, as they differ by d^2: the branch ends this far beyond d = 0
+BRANCH_OVERLAP = 1e-8
+
+
+@kernel(inline=True)
+def is_event_active(event, step, regime, work):
+    """Return whether an event may end the regime on this step.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; step: Step; regime: Regime; work: Workspace.
+    """
+    if event == DELTA_ZERO:
+        return not regime.full_slip
+    if event == OMEGA_ZERO:
+        return regime.spin_sign != 0.0 and not regime.locked
+    if event == BRAKE_RELEASE:
+        return regime.locked
+    return event != BELOW_REST_SPEED or (step.undriven and work.options.rest_speed > 0.0)
+
+
+@kernel(inline=True)
+def evaluate_event_functions(step, regime, work):
+    """Store the event functions at all nodes of a solved step: positive within the regime, 0 at its end.
+
+    step: Step; regime: Regime; work: Workspace with the unknowns at the nodes.
+    """
+    nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
+    for i in range(N + 1):
+        V, omega_or_d = nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i]
+        nodes[V_ZERO + i] = V
+        nodes[STICK_EDGE + i] = stick_edge_function(V, omega_or_d, regime, scene)
+        if not regime.full_slip:
+            nodes[DELTA_ZERO + i] = regime.sigma * omega_or_d + BRANCH_OVERLAP
+        if regime.spin_sign != 0.0 or (step.undriven and rest > 0.0):
+            omega, delta = omega_and_delta(State(V, omega_or_d), regime, scene)
+            # in partial slip omega = V (1 + delta): V = 0 is another event, delta = -1 is this one
+            spin_function = omega if regime.full_slip else 1.0 + delta if V > 0.0 else 1.0
+            nodes[OMEGA_ZERO + i] = regime.spin_sign * spin_function
+            nodes[BELOW_REST_SPEED + i] = max(abs(V), abs(omega)) - rest
+        if regime.locked:  # squares: smooth where the torque of the brake changes its sign
+            limit, torque = load_at_node(i, regime, work).brake, rhs_and_forces_at_node(i, regime, work)[1][2]
+            nodes[BRAKE_RELEASE + i] = limit * limit - torque * torque
 
 
 @kernel
-def _node_of(event, last, nodes):
-    """Node up to the ``last`` at which an event's function first has fallen below 0; 0 for none."""
-    _, most = extremes(EVENT + WIDE * event, nodes)
-    inside = nodes[EVENT + WIDE * event] > _ROUNDING * max(most, 0.0)
+def _first_negative_node(event, last, nodes):
+    """Return the first node, up to ``last``, at which an event function has fallen below 0; 0 for none.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    A function that begins at 0, to rounding, must have been positive before.
+    """
+    _, largest = row_range(event, nodes)
+    positive = nodes[event] > _START_ROUNDING * max(largest, 0.0)
     for i in range(1, last + 1):
-        value = nodes[EVENT + WIDE * event + i]
-        if value < 0.0 and inside and (event != EDGE or value < -_NOISE * _scale(event, nodes)):
+        value = nodes[event + i]
+        if value < 0.0 and positive and (event != STICK_EDGE or value < -_EDGE_ROUNDING * _event_scale(event, nodes)):
             return i
-        inside = inside or value > 0.0
+        positive = positive or value > 0.0
     return 0
 
 
-@kernel(inline=True)
-def first_event(panel, frame, case):
-    """(Event whose function falls below 0 first, v there); NO_EVENT for none.
+@kernel
+def locate_zero(event, node, nodes):
+    """Return the v at which the interpolant of an event function is 0, before ``node``, or beyond the step if that
+    is 0.
 
-    Between the same two nodes the interpolants tell which comes first: behind V = 0 no other counts.
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
     """
-    event, last, v, nodes = NO_EVENT, N, 2.0, case.nodes
-    for row in range(EVENTS):
-        node = _node_of(row, last, nodes) if may_end(row, panel, frame, case) else 0
-        if node == 0:
-            continue
-        here = place_of(row, node, nodes)
-        if event == NO_EVENT or node < last or here < v:
-            event, last, v = row, node, here
-    if event == NO_EVENT and frame.slips:
-        here = _dip(EDGE, nodes)
-        if here > 0.0:
-            return EDGE, here
-    return event, v
-
-
-@kernel(inline=True)
-def passed_over(panel, frame, case):
-    """Event whose function begins at 0 and is negative at all nodes: if the regime lasts at all it has ended before
-    the first of them; NO_EVENT for none."""
-    nodes = case.nodes
-    for row in range(EVENTS):
-        # full slip is a case of the equations of partial slip
-        if row == SLOW or (row == EDGE and not frame.slips) or not may_end(row, panel, frame, case):
-            continue
-        (_, most), scale = extremes(EVENT + WIDE * row, nodes), _scale(row, nodes)
-        # V passes 0 beside omega, but for one that is prescribed: that is known beside itself
-        if row == TURN and case.drive.prescribed != PRESCRIBED_V:
-            scale = max(scale, nodes[SPEED + N])
-        if most <= _ROUNDING * scale and nodes[EVENT + WIDE * row + N] < -_near(case.limits.rtol) * scale:
-            return row
-    return NO_EVENT
+    fit_dense_output(event, ROW_DENSE_EVENT, nodes)
+    low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
+    return _bisect(nodes[event], low, high, nodes)
 
 
 @kernel
-def place_of(event, node, nodes):
-    """v at which the interpolant of an event's function passes 0, before this node or, where that is 0, beyond the
-    panel."""
-    rise_terms(EVENT + WIDE * event, OF_EVENT, nodes)
-    low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _BEYOND)
-    return _zero(nodes[EVENT + WIDE * event], low, high, nodes)
+def _bisect(start, low, high, nodes):
+    """Return the v in [low, high] at which the stored interpolant of an event function falls through 0.
 
-
-@kernel
-def _zero(start, low, high, nodes):
-    """v where the interpolant there falls through 0."""
-    for _ in range(_HALVINGS):
+    start: value of the function at v = 0; nodes: Workspace.nodes with the interpolant.
+    """
+    for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
-        if start + rise_at(middle, nodes, OF_EVENT) > 0.0:
+        if start + evaluate_dense_output(middle, nodes, ROW_DENSE_EVENT) > 0.0:
             low = middle
         else:
             high = middle
@@ -105,70 +138,134 @@ def _zero(start, low, high, nodes):
 
 
 @kernel
-def _dip(event, nodes):
-    """v where an event's function falls through 0 between nodes at all of which it is positive; 0 for nowhere."""
-    at = EVENT + WIDE * event
+def _locate_double_crossing(event, nodes):
+    """Return the v at which an event function falls through 0 between nodes at which it is positive; 0 for none.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    """
     for i in range(1, N):
-        if 0.0 < nodes[at + i] < min(nodes[at + i - 1], nodes[at + i + 1]):
-            rise_terms(at, OF_EVENT, nodes)
+        if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
+            fit_dense_output(event, ROW_DENSE_EVENT, nodes)
             start, low, high = 1.0 + NODES[i - 1], 1.0 + NODES[i - 1], 1.0 + NODES[i + 1]
-            for _ in range(_THIRDS):
+            for _ in range(_TERNARY_STEPS):
                 third = (high - low) / 3.0
-                if rise_at(low + third, nodes, OF_EVENT) < rise_at(high - third, nodes, OF_EVENT):
+                if evaluate_dense_output(low + third, nodes, ROW_DENSE_EVENT) < evaluate_dense_output(
+                    high - third, nodes, ROW_DENSE_EVENT
+                ):
                     high -= third
                 else:
                     low += third
-            if nodes[at] + rise_at(low, nodes, OF_EVENT) < 0.0:
-                return _zero(nodes[at], start, low, nodes)
+            if nodes[event] + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT) < 0.0:
+                return _bisect(nodes[event], start, low, nodes)
     return 0.0
 
 
-@kernel
-def _itself(event, v, frame, case):
-    """An event's function at v by the unknowns there."""
-    nodes = case.nodes
-    speed, second = nodes[V] + rise_at(v, nodes, OF_V), nodes[SECOND] + rise_at(v, nodes, OF_SECOND)
-    if event == SLOW:
-        return max(abs(speed), abs(second)) - case.limits.rest
-    if event == STOP:
-        return frame.spin * (1.0 + creep_at(speed, second, case.scene))
-    return edge(speed, second, frame, by_value(case.scene))
+@kernel(inline=True)
+def find_first_event(step, regime, work):
+    """Return (event whose function falls below 0 first, v there); (NO_EVENT, 2) for none.
+
+    step: Step; regime: Regime; work: Workspace with the event functions.
+    Between the same two nodes the interpolants tell which event is first.
+    """
+    event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
+    for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
+        node = _first_negative_node(candidate, last, nodes) if is_event_active(candidate, step, regime, work) else 0
+        if node == 0:
+            continue
+        v_zero = locate_zero(candidate, node, nodes)
+        if event == NO_EVENT or node < last or v_zero < v:
+            event, last, v = candidate, node, v_zero
+    if event == NO_EVENT and regime.full_slip:
+        v_zero = _locate_double_crossing(STICK_EDGE, nodes)
+        if v_zero > 0.0:
+            return STICK_EDGE, v_zero
+    return event, v
+
+
+@kernel(inline=True)
+def find_missed_event(step, regime, work):
+    """Return the event whose function begins at 0 and is negative at all nodes; NO_EVENT for none.
+
+    step: Step; regime: Regime; work: Workspace with the event functions.
+    The regime has then ended before the first node.
+    """
+    nodes = work.nodes
+    for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
+        # the equations of partial slip continue into full slip: a missed edge does no harm there
+        excluded = candidate == BELOW_REST_SPEED or (candidate == STICK_EDGE and not regime.full_slip)
+        if excluded or not is_event_active(candidate, step, regime, work):
+            continue
+        (_, largest), scale = row_range(candidate, nodes), _event_scale(candidate, nodes)
+        # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself
+        if candidate == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
+            scale = max(scale, nodes[ROW_SPEED + N])
+        if largest <= _START_ROUNDING * scale and nodes[candidate + N] < -_event_tolerance(work.options.rtol) * scale:
+            return candidate
+    return NO_EVENT
 
 
 @kernel
-def located(event, v, frame, case):
-    """The same place by the function itself where that is no polynomial of the unknowns: the edge and the faster of
-    both speeds in full slip, and omega in partial slip."""
-    if not (((event == EDGE or event == SLOW) and frame.slips) or (event == STOP and not frame.slips)):
+def _event_function(event, v, regime, work):
+    """Evaluate an event function at v from the dense output of the unknowns, not from its own interpolant.
+
+    event: STICK_EDGE, OMEGA_ZERO or BELOW_REST_SPEED; regime: Regime; work: Workspace with the dense output.
+    """
+    V, omega_or_d = dense_state(v, work.nodes)
+    if event == BELOW_REST_SPEED:
+        return max(abs(V), abs(omega_or_d)) - work.options.rest_speed
+    if event == OMEGA_ZERO:
+        return regime.spin_sign * (1.0 + creepage(V, omega_or_d, work.scene))
+    return stick_edge_function(V, omega_or_d, regime, by_value(work.scene))
+
+
+@kernel
+def refine_event(event, v, regime, work):
+    """Return the refined v of an event whose function is no polynomial of the unknowns, by the difference quotient
+    of it.
+
+    event, v: the event and its position by the interpolant; regime: Regime; work: Workspace with the dense output.
+    Such functions are the stick edge and the larger speed in full slip, and omega in partial slip; else v is
+    unchanged.
+    """
+    if event not in ((STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)):
         return v
-    rise = _itself(event, v + _ASIDE, frame, case) - _itself(event, v - _ASIDE, frame, case)
-    for _ in range(_STEPS):
-        move = _itself(event, v, frame, case) * (2.0 * _ASIDE) / rise
-        if not abs(move) < _NEAR_BY:
+    difference = _event_function(event, v + _SECANT_OFFSET, regime, work)
+    difference -= _event_function(event, v - _SECANT_OFFSET, regime, work)
+    for _ in range(_SECANT_STEPS):
+        correction = _event_function(event, v, regime, work) * (2.0 * _SECANT_OFFSET) / difference
+        if not abs(correction) < _MAX_SECANT_MOVE:
             break
-        v = min(max(v - move, 0.0), 2.0)
+        v = min(max(v - correction, 0.0), 2.0)
     return v
 
 
 @kernel
-def _scale(event, nodes):
-    """What the function of an event is made of."""
-    least, most = extremes(EVENT + WIDE * event, nodes)
-    most = max(most, -least)
-    if event in (EDGE, STOP, SLOW):
-        return max(most, extremes(SPEED, nodes)[1])
-    return max(most, extremes(DRIVE + WIDE * BRAKE, nodes)[1] ** 2) if event == FREED else most
+def _event_scale(event, nodes):
+    """Return the scale of an event function on a step: the largest modulus of the quantities of which it is a
+    difference.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with event functions, speeds and drive.
+    """
+    smallest, largest = row_range(event, nodes)
+    largest = max(largest, -smallest)
+    if event in (STICK_EDGE, OMEGA_ZERO, BELOW_REST_SPEED):
+        return max(largest, row_range(ROW_SPEED, nodes)[1])
+    if event == BRAKE_RELEASE:
+        return max(largest, row_range(ROW_DRIVE + ROW_LENGTH * DRIVE_BRAKE, nodes)[1] ** 2)
+    return largest
 
 
 @kernel(inline=True)
-def _near(rtol):
-    """Share of that up to which the function counts as 0."""
-    return max(_ON * rtol, _LEAST)
+def _event_tolerance(rtol):
+    """Return the value of an event function, divided by its scale, up to which it counts as 0."""
+    return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)
 
 
 @kernel
-def ends_on(event, nodes, rtol):
-    """Whether a panel ends on an event: its function has fallen to 0, and does not only set out from there."""
-    row, scale = EVENT + WIDE * event, _scale(event, nodes)
-    last, (_, most) = nodes[row + N], extremes(row, nodes)
-    return last < most and most > _NOISE * scale and abs(last) <= _near(rtol) * scale
+def ends_at_event(event, nodes, rtol):
+    """Return whether the step ends at an event: its function has fallen to 0, and has not only started there.
+
+    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions; rtol: relative tolerance.
+    """
+    scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
+    return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

@@ -1,201 +1,199 @@
-"""Outputs of a motion: V, omega, delta and the regime; what acts; what adds up along the way."""
+"""Outputs of a motion: V, omega, delta and the regime; force and torque; quadratures (distance, angle, energies).
+
+Row of outputs: V 0, omega 1, x 2, angle 3, delta 4, regime 5, force 6, torque 7, work of force 8 and of torque 9,
+losses in the brake 10, in slip 11, in rolling 12.
+"""
 
 from __future__ import annotations
 
-import numpy as np
-
-from ..compile.by_reference import by_value
 from ..compile.jit import kernel
-from ..rows.cover import is_cover
-from ..rows.evaluate import limits_at_rest
-from .collocation import WIDE, integral_at, integral_terms, rise_at
-from .load import load_at, needed, threshold
-from .nodes import (
-    NOTED,
-    OF_PATH,
-    OF_SECOND,
-    OF_V,
-    PATH,
-    PATHS,
-    REST_TIME,
-    SECOND,
-    TOTALS,
-    TURNS,
-    V,
-    along,
-    put_path,
-    risen,
+from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
+from .drive import evaluate_load, required_forces
+from .regimes import regime_code
+from .rhs import evaluate_rhs, omega_and_delta, rhs_and_forces_at_node
+from .workspace import (
+    DIRECTION_REVERSED,
+    N_QUADRATURES,
+    N_RECORDED,
+    N_SWITCHES,
+    QUADRATURE_TOTALS,
+    REGIME_AT_REST,
+    ROW_DENSE_QUADRATURES,
+    ROW_INTEGRANDS,
+    ROW_V,
+    StepState,
+    dense_position,
+    dense_state,
+    last_output_tau,
 )
-from .rates import inertia_at, last_pulls, rates_of, speeds
-from .records import DONE, FULL, LOCKED, PARTIAL, REST, RESTED, REVERSED, Clock, Frame, State
 
-#: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
-OUTPUTS = 13
-PATH_FROM, FORCE, WORK = 2, 6, 8
+#: number of output quantities
+N_OUTPUTS = 13
+#: output row of x; that of the angle follows
+OUT_X = 2
+#: output row of the force; that of the torque follows
+OUT_FORCE = 6
+#: output row of the first energy; four others follow
+OUT_WORK = 8
 
 
 @kernel
-def asked_by(rows):
-    """(Whether anything that adds up is asked for, whether what acts)."""
-    paths = acting = False
+def requested_groups(rows):
+    """Return (whether a quadrature is among the requested output rows, whether force or torque is)."""
+    quadratures = forces = False
     for row in rows:
-        paths = paths or PATH_FROM <= row < PATH_FROM + 2 or row >= WORK
-        acting = acting or FORCE <= row < WORK
-    return paths, acting
+        quadratures = quadratures or OUT_X <= row < OUT_X + 2 or row >= OUT_WORK
+        forces = forces or OUT_FORCE <= row < OUT_WORK
+    return quadratures, forces
 
 
 @kernel
-def regime_of(frame):
-    """The regime that outputs give."""
-    return LOCKED if frame.locked else FULL if frame.slips else PARTIAL
+def write_column(column, speeds, code, forces, work):
+    """Write (V, omega, delta), the code of the regime, and (force, torque) to one output column."""
+    out, (V, omega, delta), (force, torque) = work.outputs, speeds, forces
+    out[0, column], out[1, column], out[4, column], out[5, column] = V, omega, delta, code
+    out[OUT_FORCE, column], out[OUT_FORCE + 1, column] = force, torque
 
 
 @kernel
-def _put(column, moving, regime, driving, case):
-    """(V, omega, delta), the regime, and (force, torque), in one column."""
-    out, (speed, omega, delta), (force, torque) = case.out, moving, driving
-    out[0, column], out[1, column], out[4, column], out[5, column] = speed, omega, delta, regime
-    out[FORCE, column], out[FORCE + 1, column] = force, torque
+def write_quadrature(column, n, increase, work):
+    """Write quadrature ``n``, its total so far plus ``increase``, to one output column."""
+    work.outputs[OUT_X + n if n < 2 else OUT_WORK + n - 2, column] = work.nodes[QUADRATURE_TOTALS + n] + increase
 
 
 @kernel
-def _put_path(column, n, rise, case):
-    """Number ``n`` of what adds up, that has risen by this beyond what is kept of it, in one column."""
-    case.out[PATH_FROM + n if n < 2 else WORK + n - 2, column] = case.nodes[TOTALS + n] + rise
+def _write_totals(column, work):
+    """Write the totals of all quadratures to one output column."""
+    for n in range(N_QUADRATURES):
+        write_quadrature(column, n, 0.0, work)
 
 
 @kernel
-def _put_totals(column, case):
-    """What has added up so far, in one column."""
-    for n in range(PATHS):
-        _put_path(column, n, 0.0, case)
+def record_switch(code, step_state, work):
+    """Record a change of regime, or of the sign of V, at the time of the step state.
 
-
-@kernel
-def note(what, clock, case):
-    """Note a change of regime or of the sign of V."""
-    nodes, switches = case.nodes, case.switches
-    noted = int(nodes[NOTED])
-    if noted < switches.shape[0]:
-        switches[noted, 0], switches[noted, 1] = clock.tau / case.scene.gamma, what
-    nodes[NOTED] += 1.0
-    nodes[TURNS] += 0.0 if what == REVERSED else 1.0
-
-
-@kernel
-def put_still(until, closed, regime, clock, case):
-    """Outputs before ``until``, or on it too, of a cylinder that does not move; the clock then."""
-    at, still = clock.at, Frame(False, 1.0, 1.0, 0.0, False)
-    while at < case.tau.size and (case.tau[at] < until or (closed and case.tau[at] == until)):
-        load = load_at(case.tau[at], clock.piece, still, case)
-        _put(at, (0.0, 0.0, 0.0), regime, (load.force, load.torque), case)
-        _put_totals(at, case)
-        at += 1
-    return Clock(until, at, clock.piece, clock.steps + 1, clock.ends, 0.0)
-
-
-@kernel
-def _put_state(column, state, piece, frame, case):
-    """One column but for what adds up."""
-    direction, force, torque = frame.direction, 0.0, 0.0
-    omega, delta = speeds(state, frame, case.scene)
-    if case.acting:
-        load = load_at(case.tau[column], piece, frame, case)
-        rates = rates_of(state, load, frame, case.scene)
-        moments = rates.Q, rates.M_half_space, rates.M_cylinder
-        force, torque, _ = needed((state.V, omega), moments, load, frame, case.scene.j)
-    moving, driving = (direction * state.V, direction * omega, delta), (direction * force, direction * torque)
-    _put(column, moving, regime_of(frame), driving, case)
-
-
-@kernel
-def put_here(state, frame, clock, case):
-    """The outputs at the time that it is, to the tolerance; the clock then."""
-    at = clock.at
-    while at < case.tau.size and case.tau[at] <= clock.tau * (1.0 + case.limits.rtol):
-        _put_state(at, state, clock.piece, frame, case)
-        _put_totals(at, case)
-        at += 1
-    return Clock(clock.tau, at, clock.piece, clock.steps, clock.ends, 0.0)
-
-
-@kernel(inline=True)
-def _way(n, v, panel, nodes):
-    """What number ``n`` of what adds up has risen by at v."""
-    first = nodes[PATH + WIDE * n]
-    return 0.5 * panel.length * integral_at(v, first, nodes, OF_PATH + WIDE * n)
-
-
-@kernel(inline=True)
-def _put_along(column, v, panel, frame, case):
-    """One column from the interpolants of a panel."""
-    nodes = case.nodes
-    state = State(nodes[V] + rise_at(v, nodes, OF_V), nodes[SECOND] + rise_at(v, nodes, OF_SECOND))
-    _put_state(column, state, panel.piece, frame, case)
-    for n in range(PATHS if case.paths else 0):
-        _put_path(column, n, _way(n, v, panel, nodes), case)
-
-
-@kernel(inline=True)
-def pass_panel(end, v, panel, frame, clock, case):
-    """Outputs before the ``end`` of a panel or of what ends at ``v`` on it, and what adds up until then; the clock.
-
-    At its end, where the drive may jump, what follows tells; but the last of the outputs is there.
+    code: regime behind it, or DIRECTION_REVERSED; step_state: StepState; work: Workspace.
     """
-    tau, at = case.tau, clock.at
-    closed = end == tau[tau.size - 1]
-    outputs = at < tau.size and (tau[at] < end or closed)
-    paths = PATHS if case.paths else 0
-    if paths > 0:
-        put_path(frame, case)
-    if outputs or v < 2.0:
-        for n in range(paths):
-            integral_terms(PATH + WIDE * n, OF_PATH + WIDE * n, case.nodes)
-    if outputs:
-        while at < tau.size and (tau[at] < end or closed):
-            _put_along(at, min(along(tau[at], panel), 2.0), panel, frame, case)
-            at += 1
-    if clock.ends < case.ends.size:
-        case.ends[clock.ends] = end / case.scene.gamma
-    for n in range(paths):
-        way = _way(n, v, panel, case.nodes) if v < 2.0 else risen(PATH + WIDE * n, panel, case.nodes)
-        case.nodes[TOTALS + n] += way
-    return Clock(end, at, clock.piece, clock.steps, clock.ends + 1, clock.length)
+    nodes, switches = work.nodes, work.switches
+    n = int(nodes[N_RECORDED])
+    if n < switches.shape[0]:
+        switches[n, 0], switches[n, 1] = step_state.tau / work.scene.gamma, code
+    nodes[N_RECORDED] += 1.0
+    nodes[N_SWITCHES] += 0.0 if code == DIRECTION_REVERSED else 1.0
 
 
 @kernel
-def coast(state, frame, clock, case):
-    """Outputs of the last decay, (1 + j + gamma N) V' = -rate V with delta/V constant: (status, clock)."""
-    scene, direction = case.scene, frame.direction
-    half_space, cylinder, force, torque = last_pulls(case)
-    L, free = limits_at_rest(scene.kappa, by_value(scene.law))
-    spin = 1.0 + free
-    inertia = 1.0 + scene.j * spin + inertia_at(0.0, scene)[0]
-    # V and omega fall together: Q = 4 kappa (delta - delta_0)/L takes what the moments differ by
-    rate, per = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
-    pull = scene.j * spin * (half_space - force) - cylinder + torque
-    creep = state.V * pull / per * L
-    fastest, rest, end = max(state.V, abs(state.V * (spin + creep))), threshold(clock.piece, case), np.inf
-    if rest > 0.0:
-        end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)
-    by_force, by_torque = force / rate, torque / rate
-    energies = 0.0, 0.0, by_force, by_torque, 0.0, 0.0, 1.0 + scene.j + by_force + by_torque
-    if is_cover(by_value(scene.law).cover_rows):
-        rolling, slipping = (half_space + cylinder * spin) / rate, free * pull / (inertia * rate)
-        energies = 0.0, 0.0, by_force, by_torque * spin, 0.0, slipping, rolling
-    for at in range(clock.at, case.tau.size):
-        moves = case.tau[at] <= end
-        gone = np.expm1(-rate * (min(case.tau[at], end) - clock.tau))
-        decay = 1.0 + gone if gone > -0.5 else np.exp(-rate * (case.tau[at] - clock.tau))
-        V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
-        moving = direction * V, direction * (V * (spin + delta)), delta + free
-        _put(at, moving, PARTIAL if moves else REST, (force * direction * V, torque * direction * V), case)
-        way = -direction * state.V * gone / (rate * scene.gamma)
-        lost = 0.5 * state.V * state.V * (-gone * (1.0 + decay) if moves else 1.0)
-        for n in range(PATHS):
-            _put_path(at, n, way * (spin if n == 1 else 1.0) if n < 2 else energies[n] * lost, case)
-    last = case.tau[case.tau.size - 1]
-    clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
-    if end <= last:
-        case.nodes[REST_TIME] = end / scene.gamma
-    return RESTED if end <= last else DONE, clock
+def write_outputs_at_rest(end, inclusive, code, step_state, work):
+    """Write the outputs before a time of a cylinder at rest; return the StepState then.
+
+    end: tau of that time; inclusive: whether an output at ``end`` itself is written too; code: regime in the
+    outputs; step_state: StepState at the present time; work: Workspace.
+    """
+    column, tau = step_state.next_output, work.output_tau
+    while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
+        load = evaluate_load(tau[column], step_state.segment, REGIME_AT_REST, work)
+        write_column(column, (0.0, 0.0, 0.0), code, (load.force, load.torque), work)
+        _write_totals(column, work)
+        column += 1
+    return StepState(end, column, step_state.segment, step_state.n_steps + 1, step_state.n_ended, 0.0)
+
+
+@kernel
+def _write_state(column, state, segment, regime, work):
+    """Write one output column but for the quadratures.
+
+    column: index of the output time; state: State then; segment: index of the segment of the drive; regime: Regime;
+    work: Workspace.
+    """
+    direction, force, torque = regime.direction, 0.0, 0.0
+    omega, delta = omega_and_delta(state, regime, work.scene)
+    if work.with_forces:
+        load = evaluate_load(work.output_tau[column], segment, regime, work)
+        rates = evaluate_rhs(state, load, regime, work.scene)
+        force, torque, _ = required_forces(state.V, omega, rates, load, regime, work.scene.j)
+    speeds, forces = (direction * state.V, direction * omega, delta), (direction * force, direction * torque)
+    write_column(column, speeds, regime_code(regime), forces, work)
+
+
+@kernel
+def write_due_outputs(state, regime, step_state, work):
+    """Write the outputs due at the present time, to the tolerance; return the StepState.
+
+    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    """
+    column = step_state.next_output
+    while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (1.0 + work.options.rtol):
+        _write_state(column, state, step_state.segment, regime, work)
+        _write_totals(column, work)
+        column += 1
+    return StepState(step_state.tau, column, step_state.segment, step_state.n_steps, step_state.n_ended, 0.0)
+
+
+@kernel(inline=True)
+def _quadrature_at(n, v, step, nodes):
+    """Return the increase of quadrature ``n`` from the left end of a step to v."""
+    first = nodes[ROW_INTEGRANDS + ROW_LENGTH * n]
+    return 0.5 * step.h * evaluate_integral(v, first, nodes, ROW_DENSE_QUADRATURES + ROW_LENGTH * n)
+
+
+@kernel(inline=True)
+def _evaluate_integrands(regime, work):
+    """Store the integrands of the quadratures at all nodes of an accepted step.
+
+    regime: Regime; work: Workspace with the unknowns at the nodes.
+    Distance and angle are integrals over t, the energies over tau.
+    """
+    nodes, direction_over_gamma = work.nodes, regime.direction / work.scene.gamma
+    for i in range(N + 1):
+        rates, (force, torque, brake) = rhs_and_forces_at_node(i, regime, work)
+        V, omega = nodes[ROW_V + i], rates.omega
+        integrands = (
+            direction_over_gamma * V, direction_over_gamma * omega, force * V, torque * omega, -brake * omega,
+            (omega - V) * rates.Q, V * rates.M_half_space + omega * rates.M_cylinder,
+        )  # fmt: skip
+        for n in range(N_QUADRATURES):
+            nodes[ROW_INTEGRANDS + ROW_LENGTH * n + i] = integrands[n]
+
+
+@kernel
+def _integral_over_step(row, step, nodes):
+    """Return the integral over tau of a row along a whole step."""
+    total = 0.0
+    for i in range(N):
+        total += QUADRATURE_WEIGHTS[i] * nodes[row + i + 1]
+    return 0.5 * step.h * total
+
+
+@kernel(inline=True)
+def accept_step(end, v, step, regime, step_state, work):
+    """Accept a step up to the position v: write the outputs before its end and add up the quadratures.
+
+    end: tau at v; step: Step; regime: Regime; step_state: StepState at its left end; work: Workspace with the solved
+    step.
+    Returns the StepState at ``end``.  An output at ``end`` itself is written with the next step, as the drive
+    may jump there, but for the last one.
+    """
+    tau, column = work.output_tau, step_state.next_output
+    is_last = end == last_output_tau(work)
+    due = column < tau.size and (tau[column] < end or is_last)
+    n_quadratures = N_QUADRATURES if work.with_quadratures else 0
+    if n_quadratures > 0:
+        _evaluate_integrands(regime, work)
+    if due or v < 2.0:
+        for n in range(n_quadratures):
+            fit_integral(ROW_INTEGRANDS + ROW_LENGTH * n, ROW_DENSE_QUADRATURES + ROW_LENGTH * n, work.nodes)
+    while column < tau.size and (tau[column] < end or is_last):
+        v_output = min(dense_position(tau[column], step), 2.0)
+        _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
+        for n in range(n_quadratures):
+            write_quadrature(column, n, _quadrature_at(n, v_output, step, work.nodes), work)
+        column += 1
+    if step_state.n_ended < work.step_ends.size:
+        work.step_ends[step_state.n_ended] = end / work.scene.gamma
+    for n in range(n_quadratures):
+        if v < 2.0:
+            work.nodes[QUADRATURE_TOTALS + n] += _quadrature_at(n, v, step, work.nodes)
+        else:
+            row = ROW_INTEGRANDS + ROW_LENGTH * n
+            work.nodes[QUADRATURE_TOTALS + n] += _integral_over_step(row, step, work.nodes)
+    return StepState(end, column, step_state.segment, step_state.n_steps, step_state.n_ended + 1, step_state.h)

@@ -1,1 +1,1 @@
-"""What any numerical method needs: nodes and matrices of interpolation, brackets, loops over arrays."""
+"""Numerical methods: interpolation and quadrature, vectors of four doubles, bins of a float, loops over arrays."""

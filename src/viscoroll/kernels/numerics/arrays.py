@@ -1,19 +1,17 @@
-"""Assignments between arrays, element by element: numba's own prepare for shapes that differ."""
-
-from __future__ import annotations
+"""Assignments to arrays, element by element: numba's own would prepare for shapes that differ, and compile longer."""
 
 from ..compile.jit import kernel
 
 
 @kernel
 def copy(source, target):
-    """Put ``source`` into ``target``; both have one axis and the same length."""
+    """Copy ``source`` into ``target``; both have one axis and the same length."""
     for i in range(source.size):
         target[i] = source[i]
 
 
 @kernel
 def fill(value, target):
-    """Put ``value`` into every element of ``target``, which has one axis."""
+    """Write ``value`` into every element of ``target``, which has one axis."""
     for i in range(target.size):
         target[i] = value

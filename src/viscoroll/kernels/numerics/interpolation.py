@@ -1,31 +1,39 @@
-"""Nodes, weights and matrices of polynomial interpolation and quadrature, in 40 digits and rounded once.
+"""Nodes, weights and matrices of polynomial interpolation and quadrature, computed in 40 digits and rounded once.
 
-No library of linear algebra takes part: its last digits differ from machine to machine, and so
-would all that is computed with them.  A polynomial through values at nodes is the sum of the
-values times Lagrange's polynomials, each 1 at one node and 0 at the others; what is wanted of it
-(coefficients, slopes, integrals) is a matrix on the values, from the coefficients of these.
+No library of linear algebra takes part: its last digits differ from machine to machine, and so would all that is
+computed with them.  numpy's polynomials work on arrays of :class:`decimal.Decimal` as they do on floats.
+
+The polynomial through values at nodes is the sum of the values times Lagrange's polynomials, each of which is 1 at one
+node and 0 at the others.  Its coefficients, values, slopes and integrals therefore are matrices times the values.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
 from decimal import Context, Decimal, localcontext
 from functools import wraps
-from typing import Any
 
 import numpy as np
+from numpy.polynomial.chebyshev import cheb2poly
+from numpy.polynomial.legendre import leg2poly
+from numpy.polynomial.polynomial import polyder, polyfromroots, polyint, polyval
 from numpy.typing import NDArray
 
+#: Digits of the Decimals: half of them would do, were nothing lost to cancellation.
 _DIGITS = 40
+#: Digits in the search for zeros, where polynomials of degree 36 lose fourteen to cancellation.
+_DIGITS_OF_SEARCH = 60
+#: Digits behind the point that zeros keep: the last ones would tell how this machine computes a cosine.
+_DIGITS_OF_ZEROS = 36
+#: Newton steps from a start good to two digits: each doubles the digits.
+_NEWTON_STEPS = 5
 _Floats = NDArray[np.float64]
 
 
 def in_40_digits(function: Callable) -> Callable:
-    """``function`` with so many digits of its Decimals, whatever the caller's context."""
+    """Make ``function`` compute with Decimals of 40 digits, whatever the decimal context of its caller."""
 
     @wraps(function)
-    def precise(*arguments: Any) -> Any:
+    def precise(*arguments):
         with localcontext(Context(prec=_DIGITS)):
             return function(*arguments)
 
@@ -33,144 +41,125 @@ def in_40_digits(function: Callable) -> Callable:
 
 
 class Interpolation:
-    """Polynomials through values at ``nodes``, of which a matrix wants these in its columns."""
+    """Matrices that take values at nodes to what the polynomial through them is.
+
+    Parameters
+    ----------
+    nodes : distinct numbers, dimensionless, (n,).
+
+    Attributes
+    ----------
+    exact : the nodes as Decimals, (n,).
+    nodes : the nodes as doubles, (n,).
+    """
 
     @in_40_digits
     def __init__(self, nodes: Sequence[Decimal]) -> None:
+        """Compute Lagrange's polynomials of ``nodes``."""
         self.exact = tuple(nodes)
         self.nodes = to_doubles(nodes)
-        self._basis = [_lagrange(self.exact, i) for i in range(len(self.exact))]
+        lagrange = []
+        for i, node in enumerate(nodes):
+            others = [*nodes[:i], *nodes[i + 1 :]]
+            lagrange.append(polyfromroots(others) / math.prod(node - other for other in others))
+        # [power, node]
+        self._basis = np.array(lagrange).T
 
-    @in_40_digits
     def powers(self) -> _Floats:
-        """To the coefficients of the powers of x, the constant first."""
-        return to_doubles([*zip(*self._basis)])
+        """Return the matrix to the coefficients of the powers of x, the constant first, [power, node]."""
+        return to_doubles(self._basis)
 
     @in_40_digits
     def values(self, points: Iterable[Decimal]) -> _Floats:
-        """To the values at these points."""
-        return _table(self._basis, points)
+        """Return the matrix to the values at ``points``, [point, node]."""
+        return _values(self._basis, points)
 
     @in_40_digits
     def slopes(self, points: Iterable[Decimal]) -> _Floats:
-        """To the slopes at these points."""
-        return _table([[k * c for k, c in enumerate(p)][1:] for p in self._basis], points)
+        """Return the matrix to the slopes at ``points``, [point, node]."""
+        return _values(polyder(self._basis), points)
 
     @in_40_digits
     def integrals(self, points: Iterable[Decimal]) -> _Floats:
-        """To the integrals from -1 to these points."""
-        whole = [[Decimal(0), *(c / (k + 1) for k, c in enumerate(p))] for p in self._basis]
-        return _table([[-horner(p, Decimal(-1)), *p[1:]] for p in whole], points)
+        """Return the matrix to the integrals from -1 to each of ``points``, [point, node]."""
+        return _values(polyint(self._basis, lbnd=-1), points)
 
     @in_40_digits
     def coefficients(self, values: Sequence[Decimal]) -> _Floats:
-        """Of the powers of x, for these values at the nodes."""
-        return to_doubles([sum(v * c for v, c in zip(values, row)) for row in zip(*self._basis)])
+        """Return the coefficients of the powers of x for ``values`` at the nodes, the constant first, (n,)."""
+        return to_doubles(self._basis @ np.array(values))
 
 
 @in_40_digits
 def radau(n: int, side: int) -> list[Decimal]:
-    """Nodes of Radau's rule on [-1, 1]: the end ``side`` (-1 or 1) and n - 1 inside, upward."""
-
-    inner = [_zero(_jacobi, n, (k - 0.25) / n) for k in range(1, n)]
+    """Return the n nodes of Radau's rule on [-1, 1], upward: the end ``side`` (-1 or 1), and n - 1 nodes inside."""
+    inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
     return sorted([Decimal(side), *(-side * x for x in inner)])
 
 
 @in_40_digits
 def gauss(n: int) -> tuple[_Floats, _Floats]:
-    """Nodes and weights of Gauss's and Legendre's rule on [0, 1]."""
-    nodes = _symmetric(n, _legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n // 2 + 1)])
-    weights = [1 / ((1 - x * x) * _legendre(n, x)[1] ** 2) for x in nodes]
-    return to_doubles([(1 + x) / 2 for x in nodes]), to_doubles(weights)
+    """Return (nodes, weights) of the n-point rule of Gauss and Legendre on [0, 1], each (n,)."""
+    legendre = leg2poly(_unit_series(n, 1))
+    nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))
+    weights = 1 / ((1 - nodes * nodes) * polyval(nodes, polyder(legendre)) ** 2)
+    return to_doubles((1 + nodes) / 2), to_doubles(weights)
 
 
 @in_40_digits
 def chebyshev(n: int) -> list[Decimal]:
-    """Zeros of T_n, upward."""
-    return _symmetric(n, _chebyshev, [(k - 0.5) / n for k in range(1, n // 2 + 1)])
+    """Return the n zeros of Chebyshev's T_n on [-1, 1], upward."""
+    return _zeros(cheb2poly(_unit_series(n, 1)), [(k - 0.5) / n for k in range(1, n + 1)])
 
 
 @in_40_digits
 def to_chebyshev(n: int) -> _Floats:
-    """From values at the zeros of T_n to the coefficients of T_0 ... T_(n-1)."""
-    columns = []
-    for x in chebyshev(n):
-        values = [Decimal(1), x]
-        for _ in range(n - 2):
-            values.append(2 * x * values[-1] - values[-2])
-        columns.append([values[0] / n, *(2 * value / n for value in values[1:n])])
-    return to_doubles(columns).T.copy()
+    """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1), [term, node]."""
+    x = np.array(chebyshev(n))
+    terms = [1 + 0 * x, x]
+    for _ in range(n - 2):
+        terms.append(2 * x * terms[-1] - terms[-2])
+    terms[0] /= 2
+    return to_doubles(2 * np.array(terms) / n)
 
 
 def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
-    """[m, k]: coefficient of t^k in T_m(scale t - shift), m < n."""
-    found = np.zeros((n, n))
-    found[0, 0], found[1, :2] = 1.0, [-shift, scale]
+    """Return the matrix [m, k] of the coefficients of t^k in T_m(scale t - shift), m < n, computed in doubles."""
+    matrix = np.zeros((n, n))
+    matrix[0, 0], matrix[1, :2] = 1.0, [-shift, scale]
     for m in range(2, n):
-        found[m] = (0.0 - 2.0 * shift) * found[m - 1] - found[m - 2]
-        found[m, 1:] += 2.0 * scale * found[m - 1, :-1]
-    return found
+        matrix[m] = (0.0 - 2.0 * shift) * matrix[m - 1] - matrix[m - 2]
+        matrix[m, 1:] += 2.0 * scale * matrix[m - 1, :-1]
+    return matrix
 
 
-def to_doubles(values: Any) -> _Floats:
-    """The nearest doubles."""
-    return np.array(values, dtype=np.float64)
+def to_doubles(values) -> _Floats:
+    """Return Decimals as the nearest doubles, of the same shape, in C order: einsum's sums depend on the order."""
+    return np.array(values, dtype=np.float64, order="C")
 
 
-def _symmetric(n: int, family: Callable, turns: list[float]) -> list[Decimal]:
-    """Zeros of an even or odd polynomial, from the cosines of the upper ones, in half turns."""
-    upper = [_zero(family, n, turn) for turn in turns]
-    return [*(-x for x in upper), *([Decimal(0)] if n % 2 else []), *reversed(upper)]
+def _unit_series(degree: int, *last: int) -> list[Decimal]:
+    """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with ``degree`` zeros.
+
+    degree : how many polynomials are left out.  last : coefficients of the next ones.
+    """
+    return [Decimal(c) for c in (*[0] * degree, *last)]
 
 
-def _zero(family: Callable, n: int, turn: float) -> Decimal:
-    """By Newton's iteration, first in double precision; ``family`` gives value and slope."""
-    x: Any = math.cos(turn * math.pi)
-    for kind in (float, float, float, Decimal, Decimal):
-        value, slope = family(n, kind(x))
-        x = kind(x) - value / slope
-    return round(x, _DIGITS - 4)  # the last digits would tell how this machine takes a cosine
+def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
+    """Return zeros of a polynomial, upward, by Newton's iteration.
+
+    polynomial : coefficients of the powers of x, the constant first, Decimals.
+    half_turns : for each zero an angle whose cosine is near it, divided by pi.
+    """
+    x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
+    slope = polyder(polynomial)
+    with localcontext(Context(prec=_DIGITS_OF_SEARCH)):
+        for _ in range(_NEWTON_STEPS):
+            x = x - polyval(x, polynomial) / polyval(x, slope)
+    return sorted(round(zero, _DIGITS_OF_ZEROS) + 0 for zero in x)
 
 
-def _legendre(n: int, x: Any) -> tuple[Any, Any]:
-    """P_n and its slope inside (-1, 1)."""
-    before, value = 0 * x, 1 + 0 * x
-    for k in range(n):
-        before, value = value, ((2 * k + 1) * x * value - k * before) / (k + 1)
-    return value, n * (before - x * value) / (1 - x * x)
-
-
-def _jacobi(n: int, x: Any) -> tuple[Any, Any]:
-    """P_(n-1) + P_n and its slope."""
-    (before, rise), (value, slope) = _legendre(n - 1, x), _legendre(n, x)
-    return before + value, rise + slope
-
-
-def _chebyshev(n: int, x: Any) -> tuple[Any, Any]:
-    """T_n and its slope inside (-1, 1)."""
-    before, value = x, 1 + 0 * x
-    for _ in range(n):
-        before, value = value, 2 * x * value - before
-    return value, n * (before - x * value) / (1 - x * x)
-
-
-def _lagrange(nodes: Sequence[Decimal], i: int) -> list[Decimal]:
-    """Coefficients of the polynomial that is 1 at node ``i`` and 0 at the others."""
-    product, scale = [Decimal(1)], Decimal(1)
-    for node in (*nodes[:i], *nodes[i + 1 :]):
-        product = [a - node * b for a, b in zip([Decimal(0), *product], [*product, Decimal(0)])]
-        scale *= nodes[i] - node
-    return [c / scale for c in product]
-
-
-def horner(polynomial: Sequence[Decimal], x: Decimal) -> Decimal:
-    """The polynomial with these coefficients, the constant first."""
-    total = Decimal(0)
-    for c in reversed(polynomial):
-        total = c + x * total
-    return total
-
-
-def _table(polynomials: Sequence[Sequence[Decimal]], points: Iterable[Decimal]) -> _Floats:
-    """Values [point, polynomial]."""
-    return to_doubles([[horner(p, x) for p in polynomials] for x in points])
+def _values(polynomials: NDArray, points: Iterable[Decimal]) -> _Floats:
+    """Return values [point, polynomial] of polynomials whose coefficients are [power, polynomial]."""
+    return to_doubles(polyval(np.array([*points]), polynomials).T)

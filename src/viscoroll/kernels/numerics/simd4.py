@@ -1,12 +1,10 @@
-"""Four numbers at once: one instruction of the processor adds, multiplies or divides them all, by ``+ - * /``.
+"""Vectors of four doubles for kernels: one instruction of the processor adds, multiplies or divides all four.
 
-Each of the four is rounded as it would be alone; of :func:`fma4`, product and sum together.
+``+ - * /`` work on two vectors, and on a vector and a number.  Each of the four results is rounded as it would be
+alone; :func:`fma4` rounds product and sum together.
 """
 
-from __future__ import annotations
-
 import operator
-from typing import Any, Callable
 
 from llvmlite import ir
 from numba.core import cgutils, types
@@ -14,138 +12,166 @@ from numba.extending import lower_builtin, models, register_model, type_callable
 
 from ..compile.intrinsics import call_llvm, make_intrinsic
 
-#: how many
+#: Numbers of a vector: an AVX2 register holds four doubles.
 LANES = 4
+#: LLVM's type of a vector.
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+#: LLVM's type of an index in a vector.
 _INT = ir.IntType(32)
 
 
 class _FourType(types.Type):
-    def __init__(self) -> None:
+    """numba's type of a vector."""
+
+    def __init__(self):
         super().__init__("four numbers")
 
 
+#: numba's type of a vector.
 FOUR = _FourType()
 
 
 @register_model(_FourType)
 class _FourModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
+    """A vector is represented by LLVM's vector itself."""
+
+    def __init__(self, manager, kind) -> None:
         super().__init__(manager, kind, VECTOR)
 
 
-def shuffle(builder: Any, a: Any, b: Any, order: Any) -> Any:
-    """Instructions that take four of the eight numbers of two vectors."""
+def shuffle(builder, a, b, order):
+    """Return instructions that take four of the eight numbers of vectors ``a`` and ``b``: those numbered in
+    ``order``.
+    """
     return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
 
 
-def broadcast_value(builder: Any, x: Any) -> Any:
-    """Instructions that make a vector of one number, four times."""
+def broadcast_value(builder, x):
+    """Return instructions that make a vector of four times the number ``x``."""
     one = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), x, _INT(0))
     return shuffle(builder, one, one, [0] * LANES)
 
 
-def fma_vectors(builder: Any, *given: Any) -> Any:
-    """The instruction of :func:`fma4`."""
-    return call_llvm(builder, "llvm.fma.v4f64", given)
+def fma_vectors(builder, *vectors):
+    """Return the instruction a b + c of three vectors."""
+    return call_llvm(builder, "llvm.fma.v4f64", vectors)
 
 
-def vector_pointers(context: Any, builder: Any, kind: Any, array: Any, at: Any, count: int) -> list:
-    """Where vectors of an array or behind a pointer stand, the first of their numbers being number ``at``."""
+def vector_pointers(context, builder, kind, array, start, count):
+    """Return pointers to ``count`` vectors that follow each other in an array.
+
+    context, builder : of numba's lowering.  kind : numba's type of ``array``, an array or a pointer to doubles.
+    start : index of the first number of the first vector.
+    """
     data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
-    first = builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
+    first = builder.bitcast(builder.gep(data, [start]), VECTOR.as_pointer())
     return [builder.gep(first, [_INT(n)]) for n in range(count)]
 
 
-def _operator(function: Callable, name: str) -> None:
-    """Have an operator of Python work on fours, and on a number and a four."""
+def load_vectors(context, builder, signature, arguments, count):
+    """Return instructions that load ``count`` vectors.
 
-    def typed(context: Any) -> Callable:
+    context, builder, signature, arguments : of numba's lowering of a function (array, start, ...).
+    """
+    pointers = vector_pointers(context, builder, signature.args[0], *arguments[:2], count)
+    return [builder.load(pointer, align=8) for pointer in pointers]
+
+
+def _define_operator(function, name):
+    """Define an operator of Python for two vectors, and for a number and a vector.
+
+    function : of the module ``operator``.  name : of the method of LLVM's builder.
+    """
+
+    def give_type(context):
         return lambda a, b: FOUR if FOUR in (a, b) and {a, b} <= {FOUR, types.float64} else None
 
-    def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        each = zip(given, signature.args, strict=True)
-        return getattr(builder, name)(*(x if kind is FOUR else broadcast_value(builder, x) for x, kind in each))
+    def lower(context, builder, signature, arguments):
+        operands = zip(arguments, signature.args, strict=True)
+        return getattr(builder, name)(*(x if kind is FOUR else broadcast_value(builder, x) for x, kind in operands))
 
-    type_callable(function)(typed)
+    type_callable(function)(give_type)
     for kinds in ((FOUR, FOUR), (FOUR, types.float64), (types.float64, FOUR)):
         lower_builtin(function, *kinds)(lower)
 
 
 for _name, _instruction in (("add", "fadd"), ("sub", "fsub"), ("mul", "fmul"), ("truediv", "fdiv")):
-    _operator(getattr(operator, _name), _instruction)
-    _operator(getattr(operator, f"i{_name}"), _instruction)
+    _define_operator(getattr(operator, _name), _instruction)
+    _define_operator(getattr(operator, f"i{_name}"), _instruction)
 
 
-def _every(builder: Any, kind: Any, x: Any, count: int) -> list:
-    """The fours of a tuple, or one for each of another's."""
+def _vectors_of(builder, kind, x, count):
+    """Return the vectors of a tuple ``x``, or ``count`` times the vector ``x``; ``kind`` is its type."""
     return cgutils.unpack_tuple(builder, x) if isinstance(kind, types.UniTuple) else [x] * count
 
 
 def _widest(*kinds):
+    """Return numba's signature of :func:`fma4`: a tuple, if one of the arguments is a tuple, else a vector."""
     return next((kind for kind in kinds if isinstance(kind, types.UniTuple)), FOUR)(*kinds)
 
 
-def _whole(context, builder, kind, found):
-    return found[0] if kind is FOUR else context.make_tuple(builder, kind, found)
+def _return_vectors(context, builder, kind, vectors):
+    """Return one vector, or a tuple of vectors, as ``kind`` says."""
+    return vectors[0] if kind is FOUR else context.make_tuple(builder, kind, vectors)
 
 
-def _fused(context, builder, signature, given):
+def _fma4(context, builder, signature, arguments):
     kind = signature.return_type
-    columns = (_every(builder, own, x, getattr(kind, "count", 1)) for own, x in zip(signature.args, given))
-    return _whole(context, builder, kind, [fma_vectors(builder, *each) for each in zip(*columns, strict=True)])
+    columns = (_vectors_of(builder, own, x, getattr(kind, "count", 1)) for own, x in zip(signature.args, arguments))
+    return _return_vectors(context, builder, kind, [fma_vectors(builder, *abc) for abc in zip(*columns, strict=True)])
 
 
-def _slide(context, builder, signature, given):
-    return shuffle(builder, *given, range(LANES - 1, 2 * LANES - 1))
+def _shift_in(context, builder, signature, arguments):
+    return shuffle(builder, *arguments, range(LANES - 1, 2 * LANES - 1))
 
 
-def _spread(context, builder, signature, given):
-    return broadcast_value(builder, *given)
+def _broadcast(context, builder, signature, arguments):
+    return broadcast_value(builder, *arguments)
 
 
-def _four(context, builder, signature, given):
-    whole = ir.Constant(VECTOR, ir.Undefined)
-    for n, one in enumerate(given):
-        whole = builder.insert_element(whole, one, _INT(n))
-    return whole
+def _pack(context, builder, signature, arguments):
+    vector = ir.Constant(VECTOR, ir.Undefined)
+    for n, number in enumerate(arguments):
+        vector = builder.insert_element(vector, number, _INT(n))
+    return vector
 
 
-def _parts(context, builder, signature, given):
-    found = [builder.extract_element(given[0], _INT(n)) for n in range(LANES)]
-    return context.make_tuple(builder, signature.return_type, found)
+def _unpack(context, builder, signature, arguments):
+    numbers = [builder.extract_element(arguments[0], _INT(n)) for n in range(LANES)]
+    return context.make_tuple(builder, signature.return_type, numbers)
 
 
-def _load(context, builder, signature, given):
+def _load(context, builder, signature, arguments):
     kind = signature.return_type
-    places = vector_pointers(context, builder, signature.args[0], *given, getattr(kind, "count", 1))
-    return _whole(context, builder, kind, [builder.load(place, align=8) for place in places])
+    vectors = load_vectors(context, builder, signature, arguments, getattr(kind, "count", 1))
+    return _return_vectors(context, builder, kind, vectors)
 
 
-def _store(context, builder, signature, given):
-    numbers = _every(builder, signature.args[2], given[2], 1)
-    for place, each in zip(vector_pointers(context, builder, signature.args[0], *given[:2], len(numbers)), numbers):
-        builder.store(each, place, align=8)
+def _store(context, builder, signature, arguments):
+    """Store vectors; 8 bytes are all that the address of a double is aligned to."""
+    vectors = _vectors_of(builder, signature.args[2], arguments[2], 1)
+    pointers = vector_pointers(context, builder, signature.args[0], *arguments[:2], len(vectors))
+    for pointer, vector in zip(pointers, vectors):
+        builder.store(vector, pointer, align=8)
     return context.get_dummy_value()
 
 
-#: four numbers as one
-pack = make_intrinsic(_four, FOUR, *[types.float64] * LANES)
-#: the last of one before the first three of another: a load across two stores would wait for both
-shift_in = make_intrinsic(_slide, FOUR, FOUR, FOUR)
-#: a b + c of fours, or of tuples of them and what all of these have in common
-fma4 = make_intrinsic(_fused, _widest, None, None, None)
-#: and back
-unpack = make_intrinsic(_parts, types.UniTuple(types.float64, LANES), FOUR)
-#: a number, four times
-broadcast = make_intrinsic(_spread, FOUR, types.float64)
-#: (array, at) -> its numbers at, at + 1, ...; (array, at, four) puts them there.  Arrays are contiguous vectors
-load, store = (
-    make_intrinsic(_load, FOUR, None, types.int64),
-    make_intrinsic(_store, types.void, None, types.int64, None),
-)
+#: (a, b, c, d) -> the vector of four numbers.
+pack = make_intrinsic(_pack, FOUR, *[types.float64] * LANES)
+#: vector -> its four numbers, a tuple.
+unpack = make_intrinsic(_unpack, types.UniTuple(types.float64, LANES), FOUR)
+#: (a, b) -> the last number of a, then the first three of b.  A load across two stores would wait for both.
+shift_in = make_intrinsic(_shift_in, FOUR, FOUR, FOUR)
+#: (a, b, c) -> a b + c, rounded once, of vectors, or of tuples of vectors and vectors that stand for all of a tuple.
+fma4 = make_intrinsic(_fma4, _widest, None, None, None)
+#: number -> the vector of four times that number.
+broadcast = make_intrinsic(_broadcast, FOUR, types.float64)
+#: (array, start) -> the vector of the numbers start to start + 3 of a contiguous array or behind a pointer.
+load = make_intrinsic(_load, FOUR, None, types.int64)
+#: (array, start, vector) stores a vector, or a tuple of vectors, at start.
+store = make_intrinsic(_store, types.void, None, types.int64, None)
 
 
-def make_load(count: int) -> Any:
-    """A :func:`load` of so many fours, as a tuple."""
+def make_load(count):
+    """Return a function for kernels, (array, start) -> tuple of ``count`` vectors that follow each other."""
     return make_intrinsic(_load, types.UniTuple(FOUR, count), None, types.int64)

@@ -9,22 +9,26 @@ on 4800 arguments from 5e-324 to 1.8e308: at most 2.7 ULP (``ratio_i``, near 25)
 (``ratio_k0k1``, below 1), in 20 to 200 ns.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 
 from ..compile.jit import kernel
 
+#: Euler's constant.
 _EULER_GAMMA = 0.57721566490153286061
+#: ln 2.
 _LN2 = 0.69314718055994530942
-#: from here on the 20th term of Hankel's expansion is below 4e-18
+#: Argument from which on Hankel's expansion is used: its 20th term is below 4e-18 there.
 _HANKEL_FROM = 25.0
 
 
 def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
-    """x^-n coefficients of sqrt(2 pi x) e^-x I(x) (sign = -1) or sqrt(2 x/pi) e^x K(x) (sign = +1)."""
+    """Return the coefficients of Hankel's expansion in 1/x.
+
+    order : 0 or 1, of the Bessel function.  sign : -1 for sqrt(2 pi x) e^-x I(x), +1 for sqrt(2 x/pi) e^x K(x).
+    terms : highest power.
+    """
     a = [1.0]
     for n in range(1, terms + 1):
         a.append(sign * a[-1] * (4 * order**2 - (2 * n - 1) ** 2) / (8 * n))
@@ -32,14 +36,14 @@ def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
 
 
 def _temme_k0(terms: int = 10) -> list[list[float]]:
-    """q^n coefficients of I0 and of K0 + (ln(z/2) + gamma) I0, q = z^2/4."""
+    """Return the first ``terms`` coefficients of q^n, q = z^2/4, in I0 and in K0 + (ln(z/2) + gamma) I0."""
     harmonic = [sum(1 / i for i in range(1, n + 1)) for n in range(terms)]
     plain = [1 / math.factorial(n) ** 2 for n in range(terms)]
     return [plain, [h * p for h, p in zip(harmonic, plain)]]
 
 
 def _temme_k1(terms: int = 10) -> list[list[float]]:
-    """q^n coefficients of z I1 and of z K1 - 1 - (ln(z/2) + gamma) z I1.
+    """Return the first ``terms`` coefficients of q^n, q = z^2/4, in z I1 and in z K1 - 1 - (ln(z/2) + gamma) z I1.
 
     z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... + 1/n.
     """
@@ -50,14 +54,23 @@ def _temme_k1(terms: int = 10) -> list[list[float]]:
     ]
 
 
-_I0_TAIL, _I1_TAIL = np.array(_hankel(0, -1)), np.array(_hankel(1, -1))
-_K0_TAIL, _K1_TAIL = np.array(_hankel(0, +1)), np.array(_hankel(1, +1))
-_K0_LOG, _K0_REST = np.array(_temme_k0())
-_K1_LOG, _K1_REST = np.array(_temme_k1())
+#: Hankel's expansion of I0.
+_I0_TAIL = np.array(_hankel(0, -1))
+#: Hankel's expansion of I1.
+_I1_TAIL = np.array(_hankel(1, -1))
+#: Hankel's expansion of K0.
+_K0_TAIL = np.array(_hankel(0, +1))
+#: Hankel's expansion of K1.
+_K1_TAIL = np.array(_hankel(1, +1))
+#: Temme's series of K0: what the logarithm is multiplied by, and the rest.
+_K0 = np.array(_temme_k0())
+#: Temme's series of z K1, likewise.
+_K1 = np.array(_temme_k1())
 
 
 @kernel
 def _horner(t, coefficients):
+    """Return the polynomial at t with these ``coefficients``, the constant first."""
     total = coefficients[coefficients.size - 1]
     for n in range(coefficients.size - 2, -1, -1):
         total = coefficients[n] + t * total
@@ -66,7 +79,7 @@ def _horner(t, coefficients):
 
 @kernel
 def ratio_i(x):
-    """r = I1/I0 at x >= 0: Gauss's continued fraction from its tail, Hankel's expansion from 25 on."""
+    """Return r = I1/I0 at x >= 0: Gauss's continued fraction from its tail, Hankel's expansion from 25 on."""
     if x >= _HANKEL_FROM:
         u = 1.0 / x
         return _horner(u, _I1_TAIL) / _horner(u, _I0_TAIL)
@@ -80,7 +93,7 @@ def ratio_i(x):
 
 @kernel
 def ratio_k0k1(z):
-    """k = K0/K1 at z >= 0: Temme's series below 1, Steed's CF2 from its tail, Hankel's expansion from 25 on."""
+    """Return k = K0/K1 at z >= 0: Temme's series below 1, Steed's CF2 from its tail, Hankel's expansion from 25 on."""
     if z >= _HANKEL_FROM:
         u = 1.0 / z
         return _horner(u, _K0_TAIL) / _horner(u, _K1_TAIL)
@@ -90,8 +103,8 @@ def ratio_k0k1(z):
         # ln 2 - ln z and not -ln(z/2): half the smallest double is zero
         f = (_LN2 - np.log(z)) - _EULER_GAMMA
         q = 0.25 * z * z
-        k0 = f * _horner(q, _K0_LOG) + _horner(q, _K0_REST)
-        z_k1 = 1.0 + (_horner(q, _K1_REST) - f * _horner(q, _K1_LOG))
+        k0 = f * _horner(q, _K0[0]) + _horner(q, _K0[1])
+        z_k1 = 1.0 + (_horner(q, _K1[1]) - f * _horner(q, _K1[0]))
         return z * (k0 / z_k1)
     # K1/K0 = (z + 1/2 - h)/z with h = (1/4)/(2 (z + 1) - (9/4)/(2 (z + 2) - ...)); error exp(-4 sqrt(2 n z))
     n = 5 + int(44.0 / z)

@@ -1,70 +1,71 @@
 """The contact law as the paper prints it: Eqs. (6), (8)-(10), (15), (16) and two Brent-Dekker roots.
 
-Independent of the modules of ``law`` in the Bessel ratios, in the algebra and in the root finder: the
+Independent of :mod:`..rows` in the Bessel ratios, in the algebra and in the root finder: the
 baseline that the explicit law is timed against and checked against.  The one liberty taken
 is that Eqs. (6) and (10) are divided by I0 K1, so that only r = I1/I0 and k = K0/K1 occur
 and nothing overflows.
 
 The printed forms lose digits in corners where the explicit ones do not.  Differences from
-``law``, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
+:mod:`..rows`, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
 [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu,
 M 2e-13/kappa; the docstrings say where relative digits go.
 """
-
-from __future__ import annotations
 
 import numpy as np
 
 from ..compile.jit import kernel
 from .bessel import ratio_i, ratio_k0k1
 
-#: statuses
-OK, NOT_CONVERGED = 0, 1
-_EQ_6, _EQ_10 = 6, 10
-_MAX_BRENT = 60
+#: Status of a root that was found.
+OK = 0
+#: Status of a root that was not found: a NaN, or more than _MAX_STEPS steps.
+NOT_CONVERGED = 1
+#: Number that selects the residual of Eq. (6).
+_EQ_6 = 6
+#: Number that selects the residual of Eq. (10).
+_EQ_10 = 10
+#: Steps after which a search ends: six times what was ever seen.
+_MAX_STEPS = 60
+#: Distance from 1 to the next double.
 _EPS = 2.0**-52
 
 
 @kernel
-def _residual_6(lam, kappa_V, alpha):
-    """Left side of Eq. (6) over I0(alpha zeta) K1(zeta)."""
-    zeta = lam / (2.0 * kappa_V)
-    r = ratio_i(alpha * zeta)
-    k = ratio_k0k1(zeta)
-    return (1.0 - lam * lam) * (1.0 + k * r) + 2.0 / zeta * (1.0 / alpha - 1.0) * (lam * lam) * r
-
-
-@kernel
-def _residual_10(beta, front, creep, zeta, alpha):
-    """Left side of Eq. (10) over I0(alpha beta zeta) K1(beta zeta).
-
-    front is 1 + epsilon, creep 2 delta kappa/(mu lam).
-    """
-    r = ratio_i(alpha * beta * zeta)
-    k = ratio_k0k1(beta * zeta)
-    return (front - beta - creep) * (1.0 + r * k) + 1.0 / zeta * (1.0 / alpha - 1.0) * r * k
-
-
-@kernel
 def _residual(equation, x, data):
-    """A number picks the equation: numba cannot cache a caller that passes a function."""
+    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it.
+
+    equation : _EQ_6 or _EQ_10; numba cannot cache a caller that passes a function.
+    x : lam in Eq. (6), beta in Eq. (10).
+    data : four numbers: in Eq. (6) kappa V, alpha and two that are not used; in Eq. (10) 1 + epsilon,
+        2 delta kappa/(mu lam), zeta and alpha.
+    """
     if equation == _EQ_6:
-        return _residual_6(x, data[0], data[1])
-    return _residual_10(x, data[0], data[1], data[2], data[3])
+        kappa_V, alpha, _, _ = data
+        zeta = x / (2.0 * kappa_V)
+        r = ratio_i(alpha * zeta)
+        k = ratio_k0k1(zeta)
+        return (1.0 - x * x) * (1.0 + k * r) + 2.0 / zeta * (1.0 / alpha - 1.0) * (x * x) * r
+    front, creep, zeta, alpha = data
+    r = ratio_i(alpha * x * zeta)
+    k = ratio_k0k1(x * zeta)
+    return (front - x - creep) * (1.0 + r * k) + 1.0 / zeta * (1.0 / alpha - 1.0) * r * k
 
 
 @kernel
 def brent(equation, data, low, high, floor):
-    """Root of _residual(equation, x, data) in [low, high] by Brent-Dekker, and a status.
+    """Return (root, status) of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
 
-    Found to floor + 4e-16 |x|.
+    equation, data : arguments of :func:`_residual`.  low, high : ends of the bracket.
+    floor : absolute tolerance; the root is found to floor + 4e-16 |x|.
 
     At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].
     The residual falls from >= 0 at low to <= 0 at high.  An end where rounding spoils that
     sign is itself the root, to rounding.
     """
-    a, fa = low, _residual(equation, low, data)
-    b, fb = high, _residual(equation, high, data)
+    a = low
+    fa = _residual(equation, low, data)
+    b = high
+    fb = _residual(equation, high, data)
     if fb >= 0.0:
         return b, OK
     if fa <= 0.0:
@@ -72,9 +73,10 @@ def brent(equation, data, low, high, floor):
     if not fa > fb:  # a NaN
         return np.nan, NOT_CONVERGED
     # b: best so far; a: the one before; c: the far end of the bracket
-    c, fc = a, fa
+    c = a
+    fc = fa
     d = e = b - a
-    for _ in range(_MAX_BRENT):
+    for _ in range(_MAX_STEPS):
         if abs(fc) < abs(fb):
             a, b, c = b, c, b
             fa, fb, fc = fb, fc, fb
@@ -87,30 +89,35 @@ def brent(equation, data, low, high, floor):
         else:
             s = fb / fa
             if a == c:
-                p, q = 2.0 * half * s, 1.0 - s
+                p = 2.0 * half * s
+                q = 1.0 - s
             else:
-                q, t = fa / fc, fb / fc
+                q = fa / fc
+                t = fb / fc
                 p = s * (2.0 * half * q * (q - t) - (b - a) * (t - 1.0))
                 q = (q - 1.0) * (t - 1.0) * (s - 1.0)
             if p > 0.0:
                 q = -q
             p = abs(p)
             if 2.0 * p < min(3.0 * half * q - abs(tolerance * q), abs(e * q)):
-                e, d = d, p / q
+                e = d
+                d = p / q
             else:
                 d = e = half
-        a, fa = b, fb
+        a = b
+        fa = fb
         b += d if abs(d) > tolerance else np.copysign(tolerance, half)
         fb = _residual(equation, b, data)
         if (fb > 0.0) == (fc > 0.0):
-            c, fc = a, fa
+            c = a
+            fc = fa
             d = e = b - a
     return b, NOT_CONVERGED
 
 
 @kernel
 def direct_contact_length(kappa_V, alpha):
-    """Eqs. (6)-(8) at kappa V > 0: (lam, zeta, epsilon, status).
+    """Return (lam, zeta, epsilon, status) by Eqs. (6)-(8) at kappa V = ``kappa_V`` > 0 and ``alpha`` >= 1.
 
     At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is
     -2 c r/zeta <= 0: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative
@@ -125,13 +132,15 @@ def direct_contact_length(kappa_V, alpha):
 
 @kernel
 def direct_delta_star(kappa, mu, lam, epsilon):
-    """Eq. (9): the creep at which stick ends."""
+    """Return delta_star by Eq. (9), the creepage at which stick ends; arguments in the symbols of the paper."""
     return mu * lam * (1.0 + epsilon) / (2.0 * kappa)
 
 
 @kernel
 def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
-    """Eq. (10) for 0 <= delta_abs < delta_star: (beta, status).
+    """Return (beta, status) by Eq. (10) for 0 <= delta_abs < delta_star.
+
+    delta_abs : |delta|.  kappa, mu, lam, epsilon, zeta, alpha : as printed.
 
     At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is
     -2 delta kappa/(mu lam) (1 + p) <= 0 by Eq. (8).
@@ -143,7 +152,9 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 
 @kernel
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
-    """Eq. (15): Q.
+    """Return |Q| by Eq. (15).
+
+    beta : share of the stick zone.  delta_abs : |delta|.  kappa, mu, lam, epsilon, zeta : as printed.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at
     s = 1e-6 (1e-8 for kappa V = 1e3, where K1/K0 magnifies the rounding of the bracket).
@@ -158,7 +169,7 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
 
 @kernel
 def direct_moment(kappa, lam, epsilon, zeta, alpha):
-    """Eq. (16): M.
+    """Return M > 0 by Eq. (16); kappa, lam, epsilon, zeta, alpha as printed.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by
     9e-14 relative at kappa V = 1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and

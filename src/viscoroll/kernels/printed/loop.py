@@ -1,7 +1,5 @@
 """The contact law as printed, over arrays of states; rows and signs as in :mod:`..rows.contact_states`."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..compile.jit import kernel
@@ -10,40 +8,58 @@ from .law import OK, direct_contact_length, direct_delta_star, direct_moment, di
 
 
 @kernel
-def direct_state(alpha, n, asked):
-    """What is asked for of state n; V = 0 is the limit of Sect. 3.4."""
-    state, to = read_state(asked.states, n), asked.to
-    kappa, mu, speed = state.kappa, state.mu, abs(state.V)
+def direct_state(alpha, n, request):
+    """Evaluate what is requested of one state; V = 0 is the limit of Sect. 3.4.
+
+    alpha : of the material.  n : number of the state.  request : the :class:`Request`, whose output is written.
+
+    Returns OK or NOT_CONVERGED.
+    """
+    to = request.to
+    state = read_state(request.states, n)
+    kappa = state.kappa
+    mu = state.mu
+    speed = abs(state.V)
     slip, delta = slip_and_creepage(state)
     status = stick_status = OK
-    lam, zeta, epsilon, M = 1.0, np.inf, 0.0, 0.0
+    lam = 1.0
+    zeta = np.inf
+    epsilon = M = 0.0
     if speed > 0.0:
         lam, zeta, epsilon, status = direct_contact_length(kappa * speed, alpha)
         M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)
     delta_star = direct_delta_star(kappa, mu, lam, epsilon)
-    full_slip, beta, Q = abs(delta) >= delta_star, 0.0, mu
+    full_slip = abs(delta) >= delta_star
+    beta = 0.0
+    Q = mu
     if not full_slip and speed == 0.0:
         s = abs(delta) / delta_star
-        beta, Q = 1.0 - s, mu * s * (2.0 - s)
+        beta = 1.0 - s
+        Q = mu * s * (2.0 - s)
     elif not full_slip:
         beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, alpha)
         Q = direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
-    write_field(to.lam, lam, n, asked)
-    write_field(to.zeta, zeta, n, asked)
-    write_field(to.epsilon, epsilon, n, asked)
-    write_field(to.delta_star, delta_star, n, asked)
-    write_field(to.delta, delta, n, asked)
-    write_field(to.full_slip, 1.0 if full_slip else 0.0, n, asked)
-    write_field(to.beta, beta, n, asked)
-    write_field(to.Q, np.sign(slip) * Q, n, asked)
-    write_field(to.M, M, n, asked)
+    write_field(to.lam, lam, n, request)
+    write_field(to.zeta, zeta, n, request)
+    write_field(to.epsilon, epsilon, n, request)
+    write_field(to.delta_star, delta_star, n, request)
+    write_field(to.delta, delta, n, request)
+    write_field(to.full_slip, 1.0 if full_slip else 0.0, n, request)
+    write_field(to.beta, beta, n, request)
+    write_field(to.Q, np.sign(slip) * Q, n, request)
+    write_field(to.M, M, n, request)
     return max(status, stick_status)
 
 
 @kernel
-def direct_loop(alpha, asked, count):
-    """What is asked for of ``count`` states."""
+def direct_loop(alpha, request, count):
+    """Evaluate what is requested of ``count`` states.
+
+    alpha : of length 1 or one for each state.  request : the :class:`Request`, whose output is written.
+
+    Returns OK, or NOT_CONVERGED if one state was not solved.
+    """
     worst = OK
     for n in range(count):
-        worst = max(worst, direct_state(element(alpha, n), n, asked))
+        worst = max(worst, direct_state(element(alpha, n), n, request))
     return worst

@@ -1,21 +1,19 @@
-"""Rows of an alpha each, by the axis of alpha: sums of Chebyshev's polynomials, with no root.
+"""Rows for one alpha after another, by the axis of alpha: sums of Chebyshev polynomials, without root finding.
 
-For alpha in [2^N, 2^(N+1)) every power of every function of a row is a sum over T_j(s), s = 2 log2(alpha/2^N) - 1, with
-T_epsilon for the unit of time and M/V and epsilon over c = (alpha - 1)/alpha: their limits as alpha -> 1 are nothing
-special.  Sums stay in registers, 24 numbers side by side.
+For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum over T_j(s), s = 2 log2(alpha/2^N) - 1, with T_epsilon
+as unit of time, and with M/V and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no
+special case.  Sums stay in registers, 24 numbers side by side.
 """
-
-from __future__ import annotations
 
 import math
 
 import numpy as np
 
-from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, integers_at, record_at
-from ..compile.jit import kernel
+from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, integers_at, record_at, record_type
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.simd4 import LANES, load, pack, store
 from .contact_states import element
-from .newton_interpolation import matrix_vector_product
+from .newton_interpolation import sum_of_rows
 from .record import (
     ALPHA,
     FAST_TOTAL,
@@ -28,65 +26,89 @@ from .record import (
     ROW_COUNT,
     ROW_SIZE,
     VERSION,
-)
+)  # fmt: skip
 
-#: terms of a sum; numbers of a part of a row for all alphas of an octave
+#: Chebyshev polynomials of a sum: the 17th changes no digit of a double.
 ALPHA_TERMS = 16
-_PIECE = PART_SIZE * ALPHA_TERMS
-#: parts of a row of the axis: (L, M/V) and (lam, epsilon), two each, H/F^2, eta/F
+#: Numbers of a part of a row for all alphas of an octave.
+_AXIS_SIZE = PART_SIZE * ALPHA_TERMS
+#: Parts of a row on the axis: (L, M/V) and (lam, epsilon), two each, H/F^2, eta/F; moments of like bodies are halves.
 ALPHA_PARTS = 6
-#: exponent of the first row, for all alphas
+#: Exponent of the first row, for all alphas.
 ALPHA_E0 = -4
-#: what these kernels know: addresses of the record's arrays, of alpha, how many (one, or one a state), and for every
-#: octave of alpha the address of its numbers and how many rows it has
-SOURCE = np.dtype([(name, np.int64) for name in ("rows", "marks", "alpha", "state_count", "octaves")])
-#: where T_j begin among the numbers in front of the rows; the mark that is the address of the octave that is held
-_WEIGHTS, _OCTAVE = MAKER_NUMBERS, MAKER_MARKS
-_EXPONENT, _MANTISSA, _ONE = 1023, (1 << 52) - 1, 1023 << 52
-#: the two numbers of the fast limit are c and this times c
-_FAST = math.log(2.0) - float(np.euler_gamma)
+#: What these kernels read.  Addresses: rows and marks of the law; alpha; for each octave of alpha the address of its
+#: axis and its number of rows.  state_count: length of alpha, 1 or one for each state.
+SOURCE = record_type("rows marks alpha state_count octaves")
+#: Index in the head of the rows where the values T_j(s) begin.
+_CHEBYSHEV = MAKER_NUMBERS
+#: Mark that is the address of the axis of the selected octave.
+_AXIS = MAKER_MARKS
+#: Bias of the exponent of a double.
+_BIAS = 1023
+#: Mask of the mantissa of a double.
+_MANTISSA = (1 << 52) - 1
+#: C divided by W of the fast limit, where the one creep time is the unit.
+_FAST_RATIO = math.log(2.0) - float(np.euler_gamma)
 
 
 @kernel(allocates=True)
 def select_alpha(n, source):
-    """:func:`record.hold`."""
-    given = record_at(source)
-    alpha, rows = element(floats_at(given.alpha, given.state_count), n), floats_at(given.rows, ROW_SIZE)
+    """Select the alpha of state ``n``: write the head of rows and marks; ``source``: pointer to a SOURCE record."""
+    source = record_at(source)
+    alpha = element(floats_at(source.alpha, source.state_count), n)
+    rows = floats_at(source.rows, ROW_SIZE)
     if alpha != rows[ALPHA]:
-        word = float_to_bits(alpha)
-        octave = (word >> 52) - _EXPONENT
-        marks, octaves = integers_at(given.marks, PARTS_PER_ROW), integers_at(given.octaves, 2 * octave + 2)
-        s = 2.0 * np.log2(bits_to_float((word & _MANTISSA) | _ONE)) - 1.0
-        rows[_WEIGHTS], rows[_WEIGHTS + 1] = 1.0, s
+        bits = float_to_bits(alpha)
+        octave = (bits >> 52) - _BIAS
+        marks = integers_at(source.marks, PARTS_PER_ROW)
+        octaves = integers_at(source.octaves, 2 * octave + 2)
+        s = 2.0 * np.log2(bits_to_float((bits & _MANTISSA) | (_BIAS << 52))) - 1.0
+        rows[_CHEBYSHEV] = 1.0
+        rows[_CHEBYSHEV + 1] = s
         for j in range(2, ALPHA_TERMS):
-            at = _WEIGHTS + j
+            at = _CHEBYSHEV + j
             rows[at] = 2.0 * rows[at - j // 2] * rows[at - j + j // 2] - rows[at - j + j % 2]
         c = (alpha - 1.0) / alpha
-        rows[ALPHA], rows[LAM_FAST], rows[FAST_TOTAL], rows[FAST_TOTAL + 1] = alpha, 1.0 / np.sqrt(alpha), c, c * _FAST
+        rows[ALPHA] = alpha
+        rows[LAM_FAST] = 1.0 / np.sqrt(alpha)
+        rows[FAST_TOTAL] = c
+        rows[FAST_TOTAL + 1] = c * _FAST_RATIO
         marks[VERSION] += 1
-        marks[_OCTAVE], marks[ROW_COUNT] = octaves[2 * octave], octaves[2 * octave + 1] if alpha > 1.0 else 1
+        marks[_AXIS] = octaves[2 * octave]
+        marks[ROW_COUNT] = octaves[2 * octave + 1] if alpha > 1.0 else 1
 
 
 @kernel(allocates=True)
 def make_part(start, source):
-    """A part of a row, but those of bodies, which are alike; at alpha = 1, where a sum would round, its closed form."""
-    given = record_at(source)
-    rows, marks = floats_at(given.rows, start + 2 * PART_SIZE), integers_at(given.marks, start // PART_SIZE + 1)
-    part, c = start % ROW_SIZE, rows[FAST_TOTAL]
-    piece = part // PART_SIZE - (2 if part >= H_OVER_F2 else 0)
-    axis = floats_at(marks[_OCTAVE] + ((start // ROW_SIZE - 1) * ALPHA_PARTS + piece) * _PIECE * 8, 2 * _PIECE)
+    """Make a part of a row of the selected alpha, except the moments of the bodies, which are alike.
+
+    start : position in the rows.  source : pointer to a SOURCE record.
+    At alpha = 1, where a sum would round, the closed form is written.
+    """
+    source = record_at(source)
+    rows = floats_at(source.rows, start + 2 * PART_SIZE)
+    marks = integers_at(source.marks, start // PART_SIZE + 1)
+    part = start % ROW_SIZE
+    c = rows[FAST_TOTAL]
+    axis_part = part // PART_SIZE - (2 if part >= H_OVER_F2 else 0)
+    address = marks[_AXIS] + ((start // ROW_SIZE - 1) * ALPHA_PARTS + axis_part) * _AXIS_SIZE * 8
+    axis = floats_at(address, 2 * _AXIS_SIZE)
     terms = ALPHA_TERMS if c > 0.0 else 0
-    _sum(axis, 0, terms, c if part < H_OVER_F2 else 1.0, rows, start)
+    _sum_axis(axis, 0, terms, c if part < H_OVER_F2 else 1.0, rows, start)
     if part < H_OVER_F2:
-        _sum(axis, _PIECE, terms, c, rows, start + PART_SIZE)
+        _sum_axis(axis, _AXIS_SIZE, terms, c, rows, start + PART_SIZE)
     if c == 0.0:
         rows[start] = 1.0
     marks[start // PART_SIZE] = marks[VERSION]
 
 
-@kernel(inline=True)
-def _sum(axis, at, terms, c, rows, to):
-    """Twenty-four numbers of a row, every third and fourth times c."""
-    matrix_vector_product(axis, at, terms, _WEIGHTS, to, rows)
+@inline_kernel
+def _sum_axis(axis, first, terms, c, rows, to):
+    """Write 24 numbers of a row: the sum over T_j(s), in which every third and fourth number is multiplied by ``c``.
+
+    axis : numbers of the octave.  first : where those of the part begin.  terms : number of T_j.
+    rows : read and written, from ``to`` on.
+    """
+    sum_of_rows(axis, first, terms, _CHEBYSHEV, to, rows)
     for k in range(0, PART_SIZE, LANES):
         store(rows, to + k, pack(1.0, 1.0, c, c) * load(rows, to + k))

@@ -1,11 +1,10 @@
 """The law of one scene as a C function: ``int law(double V, double omega, double out[8], void *scene)``.
 
-One function, compiled once; ``scene`` is its user data, a :data:`SCENE`.  ``out``: Q, M, its parts in half-space and
-cylinder, then, where the scene asks for slopes, dQ/dV at fixed omega, dQ/domega and the slopes of the parts; NaN where
-the status is not 0.  Nothing is written but ``out``: any number of threads may call.
+The function is compiled once; ``scene`` is its user data, a :data:`SCENE`.  It writes Q, M, and the parts of M in
+half-space and cylinder into ``out``; then, where the scene asks for slopes, dQ/dV at fixed omega, dQ/domega and the
+slopes of the parts over V.  It returns 0, or another number with NaN in ``out``.  It writes nothing else: any number of
+threads may call it.
 """
-
-from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,74 +14,80 @@ from numba import carray
 from numba.core import types
 from numpy.typing import NDArray
 
-from ..compile.intrinsics import floats_at, function_address, integers_at, record_at
-from ..compile.jit import kernel
+from ..compile.intrinsics import floats_at, function_address, integers_at, record_at, record_type
+from ..compile.jit import inline_kernel, kernel
 from .contact import Q_slopes, signed_traction
 from .contact_states import State
 from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE, free_creep_value
 from .evaluate import body_moments, length_and_moment, locate_row, moment_factor
 from .record import PARTS_PER_ROW, ROW_SIZE, Law
 
-#: beyond this kappa |V| the status is not 0
+#: Largest kappa |V|: beyond it zeta is 0 in doubles, or nearly, and the status is not 0.
 MAX_U = 1e300
+#: Numbers that the function writes.
 RESULTS = 8
-#: address of the function; whether slopes are asked for, whether the bodies differ; addresses of the rows and of the
-#: marks of the law, how many these are, and the address of what a cover has beside them; kappa, mu; what 1 of V, omega,
-#: Q and M is to the caller
-SCENE = np.dtype(
-    [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "count", "free")]
-    + [(name, np.float64) for name in ("kappa", "mu", "V", "omega", "Q", "M")]
-)
+#: User data.  function: address of the C function.  slopes: whether slopes are asked for.  unlike: whether the bodies
+#: differ.  rows, marks: addresses of the arrays of the law.  row_count: rows with the head.  cover_rows: address of the
+#: numbers that only a cover has.  kappa, mu: of the scene.  V, omega, Q, M: 1 of each in the units of the caller.
+SCENE = record_type("function slopes unlike rows marks row_count cover_rows", "kappa mu V omega Q M")
 
 
-@kernel(inline=True, allocates=True)
-def _law_of(scene):
-    rows, marks = floats_at(scene.rows, scene.count * ROW_SIZE), integers_at(scene.marks, scene.count * PARTS_PER_ROW)
-    return Law(rows, marks, rows[:0], 0, 0, 0, None)
-
-
-@kernel(inline=True, allocates=True)
-def _law_of_cover(scene):
-    law = _law_of(scene)
-    free = floats_at(scene.free, COVER_FRONT_SIZE + COVER_ROW_SIZE * (scene.count - 1))
-    return Law(law.rows, law.marks, law.N_rows, 0, 0, 0, free)
+@inline_kernel
+def refuse(out):
+    """Fill the results ``out`` with NaN, and return the status of a state at which the law is not defined."""
+    for n in range(RESULTS):
+        out[n] = np.nan
+    return 1
 
 
 @kernel(allocates=True)
-def _loads(speed_of_axis, spin, to, scenes):
-    scene = record_at(scenes)
-    return _found(speed_of_axis, spin, to, scene, _law_of(scene))
+def _half_space_law(V, omega, out, scenes):
+    """The C function of half-spaces; ``out`` and ``scenes`` are pointers."""
+    return _evaluate(V, omega, out, record_at(scenes), None)
 
 
 @kernel(allocates=True)
-def _loads_on_cover(speed_of_axis, spin, to, scenes):
+def _cover_law(V, omega, out, scenes):
+    """The C function of covers; ``out`` and ``scenes`` are pointers."""
     scene = record_at(scenes)
-    return _found(speed_of_axis, spin, to, scene, _law_of_cover(scene))
+    cover_rows = floats_at(scene.cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * (scene.row_count - 1))
+    return _evaluate(V, omega, out, scene, cover_rows)
 
 
 @kernel(inline=True, allocates=True)
-def _found(speed_of_axis, spin, to, scene, law):
-    out = carray(to, RESULTS)
-    V, omega = speed_of_axis / scene.V, spin / scene.omega
+def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
+    """Evaluate the law and return the status.
+
+    caller_V, caller_omega : speed and angular velocity in the units of the caller.
+    pointer : to the results, written.  scene : a SCENE record.  cover_rows : as of :class:`Law`.
+    """
+    out = carray(pointer, RESULTS)
+    rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)
+    law = Law(rows, integers_at(scene.marks, scene.row_count * PARTS_PER_ROW), rows[:0], 0, 0, 0, cover_rows)
+    V = caller_V / scene.V
+    omega = caller_omega / scene.omega
     u = scene.kappa * abs(V)
     if not (u <= MAX_U and abs(V) < np.inf and abs(omega) < np.inf):
-        for n in range(RESULTS):
-            out[n] = np.nan
-        return 1
+        return refuse(out)
     state = State(scene.kappa, scene.mu, V, omega, True)
-    here = locate_row(u, law)
-    found = length_and_moment(here, u, law)
-    way, free = moment_factor(here, u, found.scale, state), free_creep_value(here, u, law.cover_rows)
-    out[0], out[1] = signed_traction(u, found.L, free, state, law), way * found.m
+    position = locate_row(u, law)
+    functions = length_and_moment(position, u, law)
+    factor = moment_factor(position, u, functions.scale, state)
+    free_creep = free_creep_value(position, u, cover_rows)
+    out[0] = signed_traction(u, functions.L, free_creep, state, law)
+    out[1] = factor * functions.m
     out[2] = out[3] = 0.5 * out[1]
-    out[6] = out[7] = 0.5 * found.d_um
+    out[6] = out[7] = 0.5 * functions.d_um
     if scene.unlike:
-        half_space, cylinder, out[6], out[7] = body_moments(here, u, law)
-        out[2], out[3] = way * half_space, way * cylinder
+        half_space, cylinder, out[6], out[7] = body_moments(position, u, law)
+        out[2] = factor * half_space
+        out[3] = factor * cylinder
     if scene.slopes:
-        out[4], _, out[5] = Q_slopes(u, found.L, found.dL, free, state, law)
-        out[4], out[5] = out[4] * scene.Q / scene.V, out[5] * scene.Q / scene.omega
-        out[6], out[7] = out[6] * scene.M / scene.V, out[7] * scene.M / scene.V
+        out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, free_creep, state, law)
+        out[4] = out[4] * scene.Q / scene.V
+        out[5] = out[5] * scene.Q / scene.omega
+        for n in range(6, RESULTS):
+            out[n] = out[n] * scene.M / scene.V
     out[0] *= scene.Q
     for n in range(1, 4):
         out[n] *= scene.M
@@ -90,22 +95,19 @@ def _found(speed_of_axis, spin, to, scene, law):
 
 
 def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> NDArray[Any]:
-    """Scenes without slopes and with; the law is to outlive them."""
-    found = np.zeros(2, SCENE)
-    found["function"], found["slopes"] = law_address(law.cover_rows is not None), [0, 1]
-    found["free"] = 0 if law.cover_rows is None else law.cover_rows.ctypes.data
-    found["rows"], found["marks"], found["count"] = (
-        law.rows.ctypes.data,
-        law.marks.ctypes.data,
-        law.rows.size // ROW_SIZE,
-    )
-    found["unlike"], found["kappa"], found["mu"] = unlike, kappa, mu
-    for name in ("V", "omega", "Q", "M"):
-        found[name] = scale[name]
-    return found
+    """Return two SCENE records: without slopes, and with.
+
+    law : of one material; its arrays must outlive the records.  unlike : whether the two bodies differ.
+    kappa, mu : of the scene.  scale : for V, omega, Q and M what 1 is in the units of the caller.
+    """
+    cover_rows = law.cover_rows
+    function, address = (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)
+    arrays = law.rows.ctypes.data, law.marks.ctypes.data, law.rows.size // ROW_SIZE, address
+    numbers = unlike, *arrays, kappa, mu, *(scale[name] for name in ("V", "omega", "Q", "M"))
+    return np.array([(c_function_address(function, SCENE), slopes, *numbers) for slopes in (0, 1)], SCENE)
 
 
-def law_address(of_cover: bool) -> int:
-    """Address of the function, of half-spaces or of covers."""
-    loads = _loads_on_cover if of_cover else _loads
-    return function_address(loads, SCENE, types.int32, types.float64, types.float64, types.CPointer(types.float64))
+def c_function_address(function, record: np.dtype) -> int:
+    """Return the address of a kernel (V, omega, pointer to results, pointer to a ``record``) -> status."""
+    arguments = types.float64, types.float64, types.CPointer(types.float64)
+    return function_address(function, record, types.int32, *arguments)

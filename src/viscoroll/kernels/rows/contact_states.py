@@ -1,50 +1,28 @@
-"""States of the contact as the law is given them, and what it finds of them, by name."""
+"""Records of contact states: what the law is given, and which quantities are written where."""
 
-from __future__ import annotations
-
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel
 
-
-class Fields(NamedTuple):
-    """The row that each quantity goes to, -1 for none."""
-
-    lam: int = -1
-    zeta: int = -1
-    epsilon: int = -1
-    delta_star: int = -1
-    delta: int = -1
-    full_slip: int = -1
-    beta: int = -1
-    grip: int = -1
-    Q: int = -1
-    M: int = -1
-    dQ_dV: int = -1
-    dQ_ddelta: int = -1
-    dQ_domega: int = -1
-    dM_dV: int = -1
-    M_half_space: int = -1
-    M_cylinder: int = -1
-    dM_half_space_dV: int = -1
-    dM_cylinder_dV: int = -1
-    delta_0: int = -1
+#: The row of the output that each quantity is written to; -1 for a quantity that is not requested.  The names are those
+#: of the fields of ``contact``.
+Fields = namedtuple(
+    "Fields",
+    "lam zeta epsilon delta_star delta full_slip beta grip Q M dQ_dV dQ_ddelta dQ_domega dM_dV "
+    "M_half_space M_cylinder dM_half_space_dV dM_cylinder_dV delta_0",
+    defaults=[-1] * 19,
+)
 
 
 class State(NamedTuple):
-    """kappa, mu, V, and the creep as delta or as omega."""
+    """One state of the contact, dimensionless; or arrays of states, each of length 1 or with one value for each.
 
-    kappa: float
-    mu: float
-    V: float
-    creep: float
-    creep_is_omega: bool
-
-
-class States(NamedTuple):
-    """Arrays of what a :class:`State` holds: one value, or one a state."""
+    kappa : R/l0, slenderness.  mu : coefficient of friction.  V : speed of the axis.
+    creep : creepage delta, or angular velocity omega.  creep_is_omega : whether ``creep`` is omega; one for all.
+    """
 
     kappa: Any
     mu: Any
@@ -54,9 +32,11 @@ class States(NamedTuple):
 
 
 class Request(NamedTuple):
-    """States, in an order or, where that is empty, in theirs, and what is asked of them: its rows in ``out``.
+    """States, and the quantities of them that are requested.
 
-    first : the column of state 0
+    states : a :class:`State` of arrays.
+    order : numbers of the states in the order of evaluation; empty: in their own order.
+    to : :class:`Fields`.  out : (quantities, states), written.  first : column of ``out`` for state 0.
     """
 
     states: Any
@@ -66,32 +46,40 @@ class Request(NamedTuple):
     first: int
 
 
-@kernel(inline=True)
+@inline_kernel
 def element(values, n):
-    """Number n of an array of one value, or of one each."""
+    """Return element ``n`` of an array that has one value for all or one each."""
     return values[np.uint64(n * (values.size > 1))]
 
 
-@kernel(inline=True)
+@inline_kernel
 def read_state(states, n):
-    """State number n."""
+    """Return the :class:`State` with number ``n`` of ``states``, a :class:`State` of arrays."""
     return State(
         element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
         states.creep_is_omega,
     )  # fmt: skip
 
 
-@kernel(inline=True)
-def write_field(row, value, n, asked):
-    """A quantity of state n into its row, if it has one."""
+@inline_kernel
+def write_field(row, value, n, request):
+    """Write a quantity of a state, if it is requested.
+
+    row : row of the output, a field of :class:`Fields`.  value : the quantity.  n : number of the state.
+    request : the :class:`Request`.
+    """
     if row >= 0:
-        asked.out[np.uint64(row), np.uint64(n + asked.first)] = value
+        request.out[np.uint64(row), np.uint64(n + request.first)] = value
 
 
-@kernel(inline=True)
+@inline_kernel
 def slip_and_creepage(state):
-    """(a number with the sign of omega - V, creep ratio); V = 0 counts as V -> 0+."""
-    V, creep = state.V, state.creep
+    """Return (slip, delta) of ``state``, a :class:`State`.
+
+    slip : a number with the sign of omega - V.  delta : the creepage (omega - V)/V; V = 0 counts as V -> 0+.
+    """
+    V = state.V
+    creep = state.creep
     if not state.creep_is_omega:
         return -creep if V < 0.0 else creep, creep
     slip = creep - V

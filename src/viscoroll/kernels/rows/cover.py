@@ -1,100 +1,40 @@
-"""What the law of a cover of finite thickness has beside its rows: the creep of free rolling, and its own fast limit.
+"""What the law of a cover of finite thickness has beside its rows: the creep of free rolling and its own fast limit.
 
-``free`` is None of half-spaces: then every function here returns what it was given or 0, and nothing of a cover is
-compiled.  Of a cover it holds numbers in front, then a row each of 2 kappa delta_0 over u = kappa |V|
-(:mod:`simd_polynomial`):
-by itself, and twice as a pair, which has the second slope.
+``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
+nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law
+2 kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`): as one polynomial, and twice as a pair, which has the
+second derivative.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..compile.jit import kernel
-from .simd_polynomial import TERMS, evaluate_one, evaluate_pair
+from ..compile.jit import inline_kernel
+from .simd_polynomial import TERMS, evaluate_pair, evaluate_single
 
-#: numbers in front: lam and 2 kappa delta_0 as u -> infinity, each with its factor of 1/u; epsilon u; M u^2/V times 2
-#: over L; eta/F as v -> infinity and its factor of 1/v
-_LAM, _LAM_SLOPE, _FREE, _FREE_SLOPE, _EPSILON, _MOMENT, _SHARE, _SHARE_SLOPE = range(8)
-#: how many these are, and how long a row is
-COVER_FRONT_SIZE, COVER_ROW_SIZE = 8, 3 * TERMS
-
-
-@kernel(inline=True)
-def fast_moment(shift, u, free):
-    """M/V over its scale behind the last row; ``shift``: that of a half-space."""
-    if free is None:
-        return shift
-    return free[_MOMENT] / u
-
-
-@kernel(inline=True)
-def fast_lengths(lam, shift, u, free):
-    """(lam, epsilon) behind the last row."""
-    if free is None:
-        return lam, shift
-    return free[_LAM] + free[_LAM_SLOPE] / u, free[_EPSILON] / u
-
-
-@kernel(inline=True)
-def fast_share(share, v, free):
-    """eta/F behind the last row."""
-    if free is None:
-        return share
-    return free[_SHARE] + free[_SHARE_SLOPE] / v
-
-
-@kernel(inline=True)
-def free_creep_at(at, u, free):
-    """(2 kappa delta_0 at u, its slope over u, and the slope of that)."""
-    if free is None:
-        return 0.0, 0.0, 0.0
-    if at.row < 0:
-        fall = free[_FREE_SLOPE] / u
-        return free[_FREE] + fall, -fall / u, 2.0 * fall / (u * u)
-    value, _, slope, _, bend, _ = evaluate_pair(free, COVER_FRONT_SIZE + COVER_ROW_SIZE * at.row + TERMS, at.t)
-    return value, slope * at.dt_dx, bend * at.dt_dx * at.dt_dx
-
-
-@kernel(inline=True)
-def sliding_creep(slip, delta, shift, state, free):
-    """(A number with the sign of the traction, the creep that makes it): delta less that of free rolling.
-
-    ``slip``: a number with the sign of omega - V; ``shift``: 2 kappa delta_0.
-    """
-    if free is None:
-        return slip, delta
-    own = delta - 0.5 * shift / state.kappa
-    return own * np.copysign(1.0, state.V), own
-
-
-@kernel(inline=True)
-def slope_over_speed(over_V, over_delta, rise, free):
-    """dQ/dV at fixed creep of which ``over_V`` is that at fixed creep less that of free rolling; ``rise``: the slope of
-    2 kappa delta_0 over u."""
-    if free is None:
-        return over_V
-    return over_V - 0.5 * over_delta * rise
-
-
-@kernel(inline=True)
-def free_creep_value(at, u, free):
-    """2 kappa delta_0 at u; 0 of half-spaces."""
-    if free is None:
-        return 0.0
-    if at.row < 0:
-        return free[_FREE] + free[_FREE_SLOPE] / u
-    return evaluate_one(free, COVER_FRONT_SIZE + COVER_ROW_SIZE * at.row, at.t)[0]
+#: Index in the head: lam as u -> infinity; behind it the coefficient of 1/u.
+_LAM = 0
+#: Index in the head: 2 kappa delta_0 as u -> infinity; behind it the coefficient of 1/u.
+_FREE = 2
+#: Index in the head: epsilon u as u -> infinity.
+_EPSILON = 4
+#: Index in the head: 2 M u^2/(V L) as u -> infinity.
+_MOMENT = 5
+#: Index in the head: eta/F as v -> infinity; behind it the coefficient of 1/v.
+_SHARE = 6
+#: Numbers of the head.
+COVER_FRONT_SIZE = 8
+#: Numbers of a row.
+COVER_ROW_SIZE = 3 * TERMS
 
 
 class FreeCreep(NamedTuple):
     """What the creep of free rolling adds to the kinematics omega = V (1 + delta_0 + k L d), k = mu/(2 kappa).
 
     creep : delta_0.
-    aside : d(V delta_0)/dV over k d(u L)/du, a shift of d.
-    bend : d^2(u delta_0)/du^2 over k.
+    aside : d(V delta_0)/dV divided by k d(u L)/du, a shift of d.
+    bend : d^2(u delta_0)/du^2 divided by k.
     """
 
     creep: float
@@ -102,32 +42,109 @@ class FreeCreep(NamedTuple):
     bend: float
 
 
-@kernel(inline=True)
-def free_kinematics(at, u, kappa, k, spread, free):
-    """:class:`FreeCreep` at u; ``spread``: d(u L)/du.  Of half-spaces -0.0, which a compiler leaves out of sums."""
-    if free is None:
-        return FreeCreep(-0.0, -0.0, -0.0)
-    value, slope, bend = free_creep_at(at, u, free)
-    per = 0.5 / kappa
-    return FreeCreep(per * value, per * (value + u * slope) / (k * spread), per * (2.0 * slope + u * bend) / k)
+@inline_kernel
+def is_cover(cover_rows):
+    """Return whether the law is that of a cover."""
+    return cover_rows is not None
 
 
-@kernel(inline=True)
-def is_cover(free):
-    """Whether the law is that of a cover."""
-    return free is not None
+@inline_kernel
+def fast_moment(shift, u, cover_rows):
+    """Return M/V, divided by its scale, in the fast limit.
+
+    shift : M/V of a half-space, which is the result if ``cover_rows`` is None.  u : kappa |V|.
+    """
+    if cover_rows is None:
+        return shift
+    return cover_rows[_MOMENT] / u
 
 
-@kernel(inline=True)
-def keep_free(room, at, place, u, free):
-    """Put 2 kappa delta_0 at u where ``room`` has its place."""
-    if free is not None:
-        room[3, at] = free_creep_value(place, u, free)
+@inline_kernel
+def fast_lengths(lam, shift, u, cover_rows):
+    """Return (lam, epsilon) in the fast limit.
+
+    lam, shift : lam and epsilon of a half-space, which are the result if ``cover_rows`` is None.  u : kappa |V|.
+    """
+    if cover_rows is None:
+        return lam, shift
+    return cover_rows[_LAM] + cover_rows[_LAM + 1] / u, cover_rows[_EPSILON] / u
 
 
-@kernel(inline=True)
-def kept_free(room, at, free):
-    """2 kappa delta_0 from there; 0 of half-spaces."""
-    if free is None:
+@inline_kernel
+def fast_eta_over_F(eta_over_F, v, cover_rows):
+    """Return eta/F in the fast limit.
+
+    eta_over_F : eta/F of a half-space, which is the result if ``cover_rows`` is None.  v : 1/F(eta).
+    """
+    if cover_rows is None:
+        return eta_over_F
+    return cover_rows[_SHARE] + cover_rows[_SHARE + 1] / v
+
+
+@inline_kernel
+def free_creep_at(position, u, cover_rows):
+    """Return 2 kappa delta_0 and its first two derivatives over u; zeros of half-spaces.
+
+    position : of u in the rows of the law.  u : kappa |V|.  cover_rows : as of :class:`Law`.
+    """
+    if cover_rows is None:
+        return 0.0, 0.0, 0.0
+    if position.row < 0:
+        change = cover_rows[_FREE + 1] / u
+        return cover_rows[_FREE] + change, -change / u, 2.0 * change / (u * u)
+    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + TERMS
+    value, _, slope, _, second_derivative, _ = evaluate_pair(cover_rows, start, position.t)
+    return value, slope * position.dt_dx, second_derivative * position.dt_dx * position.dt_dx
+
+
+@inline_kernel
+def free_creep_value(position, u, cover_rows):
+    """Return 2 kappa delta_0 alone, 0 of half-spaces; arguments as of :func:`free_creep_at`."""
+    if cover_rows is None:
         return 0.0
-    return room[3, at]
+    if position.row < 0:
+        return cover_rows[_FREE] + cover_rows[_FREE + 1] / u
+    return evaluate_single(cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row, position.t)[0]
+
+
+@inline_kernel
+def sliding_creep(slip, delta, free_creep, state, cover_rows):
+    """Return (a number with the sign of the traction, the creepage that makes it): delta less that of free rolling.
+
+    slip : a number with the sign of omega - V.  delta : creepage.  free_creep : 2 kappa delta_0.
+    state : a :class:`State`.  cover_rows : as of :class:`Law`.
+    """
+    if cover_rows is None:
+        return slip, delta
+    own = delta - 0.5 * free_creep / state.kappa
+    return own * np.copysign(1.0, state.V), own
+
+
+@inline_kernel
+def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
+    """Return dQ/dV at fixed creepage.
+
+    dQ_dV : slope at fixed creepage less that of free rolling.  dQ_ddelta : slope over the creepage.
+    free_slope : slope of 2 kappa delta_0 over u.  cover_rows : as of :class:`Law`; None leaves dQ_dV as it is.
+    """
+    if cover_rows is None:
+        return dQ_dV
+    return dQ_dV - 0.5 * dQ_ddelta * free_slope
+
+
+@inline_kernel
+def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
+    """Return :class:`FreeCreep` at u; of half-spaces -0.0, which a compiler leaves out of sums.
+
+    position : of u in the rows of the law.  u : kappa |V|.  kappa : slenderness R/l0.  k : mu/(2 kappa).
+    uL_slope : d(u L)/du.  cover_rows : as of :class:`Law`.
+    """
+    if cover_rows is None:
+        return FreeCreep(-0.0, -0.0, -0.0)
+    value, slope, second_derivative = free_creep_at(position, u, cover_rows)
+    factor = 0.5 / kappa
+    return FreeCreep(
+        factor * value,
+        factor * (value + u * slope) / (k * uL_slope),
+        factor * (2.0 * slope + u * second_derivative) / k,
+    )

@@ -1,32 +1,29 @@
-"""The law as kernels read it: places in its rows, and its functions there and in the fast limit.
+"""The functions of the law, evaluated from its rows and, behind the last row, by the fast limit.
 
-    record.hold(law, n)                  the law is now that of motion or state n
-    at = place(x, law)                   of x = u = kappa |V|, or x = v = 1/F(eta) = 2 u/(L - D)
-    speed(at, u, law)                    L, M/V and their slopes
-    press(at, v, law)                    H/F^2 and its slope
-    lengths, bodies, share, press_secants likewise
+    record.select_material(law, n)          ``law`` is now that of motion or state n
+    position = locate_row(x, law)           row of x = u = kappa |V|, or of x = v = 1/F(eta) = 2 u/(L - D)
+    length_and_moment(position, u, law)     L, M/V and their slopes over u
+    H_over_F2(position, v, law)             H/F^2 and its slope over v
 
-``law`` is one record (:class:`record.Law`) of three arrays and three numbers, whatever made its rows, so that its
-readers are compiled once: ``LawTable.record`` of one material, whose rows all stand and which all threads share; that
-of an alpha each (``materials.law_each.law_of_alphas``) or of a series or pair each (``law_of_materials``), which is one
-thread's own, made once for a block of motions.
+``law`` is a :class:`record.Law` whatever made its rows, so that its readers are compiled once.  The law of one material
+(``LawTable.record``) has all its rows, and all threads share it.  The law of one alpha for each state
+(``materials.law.per_element.record_of_alphas``) or one material for each (``record_of_materials``) belongs to one thread, which
+makes it for a block of states or motions.
 
-Such a law holds one material at a time.  ``hold`` gives a new material the next stamp and puts its numbers in front of
-the rows; nothing else is touched.  A part of a row bears the stamp that it was made for: a reader that finds another
-has the maker write it, by its address, once a motion.  So nothing is cleared from motion to motion, a motion pays for
-the parts that it meets, and one whose material is held finds them there.  A part depends on its material alone, not on
-what was met before.  Hold what a motion needs before its first ``locate_row``; places of another material mean nothing.
+Such a law has one material selected at a time.  ``select_material`` gives a new material the next version number and
+writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader that finds
+another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion pays only for
+the parts that it reads.  A part depends on its material alone, not on what was read before.  Select the material before
+the first ``locate_row``: positions of another material mean nothing.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
 
 from ..compile.intrinsics import bits_to_float, float_to_bits, unlikely
-from ..compile.jit import kernel
-from .cover import fast_lengths, fast_moment, fast_share, free_creep_at
+from ..compile.jit import inline_kernel, kernel
+from .cover import fast_eta_over_F, fast_lengths, fast_moment, free_creep_at
 from .record import (
     ALPHA,
     BODY_MOMENTS,
@@ -42,54 +39,36 @@ from .record import (
     ROW_COUNT,
     ensure_part,
 )  # fmt: skip
-from .simd_polynomial import evaluate_one, evaluate_pair, evaluate_secants
+from .simd_polynomial import evaluate_pair, evaluate_secants, evaluate_single
 
-#: row of a place behind the last
+#: Row of a position behind the last row, where the fast limit holds.
 FAST_LIMIT = -1
-
-#: exponents of 1/2 and of 4 as the bits of a double have them, and the bits of 3
-_MIDDLE, _FOUR, _THREE = 1022, 1025, 0x4008 << 48
+#: Biased exponent of 1/2 in the bits of a double.
+_EXPONENT_OF_HALF = 1022
+#: Biased exponent of 4 in the bits of a double.
+_EXPONENT_OF_4 = 1025
+#: Bits of the double 3.
+_BITS_OF_3 = 0x4008 << 48
 
 
 class RowPosition(NamedTuple):
-    """A row, or :data:`FAST_LIMIT`; argument of its polynomials, and its slope over x."""
+    """Position of a variable x = u or v in the rows.
+
+    row : number of the row, or :data:`FAST_LIMIT`.  t : argument of its polynomials, in [-1, 1), of row 0 in [0, 1).
+    dt_dx : slope of t over x.
+    """
 
     row: int
     t: float
     dt_dx: float
 
 
-@kernel(inline=True)
-def locate_octave(x, e0):
-    """(row, t, dt/dx) of x >= 0."""
-    row = (float_to_bits(x) >> 52) - _MIDDLE - e0
-    # by arithmetic, not by a branch: that would be mispredicted on scattered speeds
-    slow = (row - 1) >> 63
-    row &= ~slow
-    per = bits_to_float((_FOUR - e0 - row + 2 * slow) << 52)
-    return row, x * per - bits_to_float(_THREE & ~slow), per
-
-
-@kernel(inline=True)
-def locate_row(x, law):
-    """Where x >= 0 lies."""
-    row, t, per = locate_octave(x, law.marks[E0])
-    return RowPosition(row if row < law.marks[ROW_COUNT] else FAST_LIMIT, t, per)
-
-
-@kernel(inline=True)
-def in_fast_limit(at):
-    """Whether a place is in the fast limit."""
-    return unlikely(at.row < 0)
-
-
-# --- over u = kappa |V| ---
-
-
 class LengthAndMoment(NamedTuple):
-    """L, its slope over u and the slope of that; M/V over ``scale``; d(u M/V)/du.
+    """L = 2 kappa delta_star/mu and M/V at one speed, dimensionless.
 
-    Where the fast limit holds M/V may underflow: z is taken out of it, the scale.
+    L, dL, ddL : L and its first two derivatives over u.
+    m : M/V divided by ``scale``.  scale : 1, or z in the fast limit, where M/V itself may underflow.
+    d_um : d(u M/V)/du = dM/dV.
     """
 
     L: float
@@ -100,139 +79,204 @@ class LengthAndMoment(NamedTuple):
     d_um: float
 
 
-@kernel(inline=True)
-def _fast(u, body, law):
-    """(z, (alpha z/2) (C - W ln z), alpha z W/8) of the whole or a body, by the fast limit."""
-    alpha, W, C = law.rows[ALPHA], law.rows[body], law.rows[body + 1]
+@inline_kernel
+def locate_octave(x, e0):
+    """Return (row, t, dt/dx) of x >= 0 in rows of which row 0 ends at 2^e0."""
+    row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
+    # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
+    slow = (row - 1) >> 63
+    row &= ~slow
+    dt_dx = bits_to_float((_EXPONENT_OF_4 - e0 - row + 2 * slow) << 52)
+    return row, x * dt_dx - bits_to_float(_BITS_OF_3 & ~slow), dt_dx
+
+
+@inline_kernel
+def locate_row(x, law):
+    """Return the :class:`RowPosition` of x >= 0, which is u or v, in the rows of ``law``."""
+    row, t, dt_dx = locate_octave(x, law.marks[E0])
+    return RowPosition(row if row < law.marks[ROW_COUNT] else FAST_LIMIT, t, dt_dx)
+
+
+@inline_kernel
+def in_fast_limit(position):
+    """Return whether a :class:`RowPosition` lies behind the last row."""
+    return unlikely(position.row < 0)
+
+
+# --- functions of u = kappa |V| ---
+
+
+@inline_kernel
+def _fast_terms(u, body, law):
+    """Return (z, shift, part) of the fast limit at u.
+
+    u : kappa |V|.  body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER.  law : a :class:`Law`.
+
+    z = zeta.  shift = (alpha z/2) (C - W ln z), the epsilon of a half-space.  part = alpha z W/8.
+    """
+    alpha = law.rows[ALPHA]
+    W = law.rows[body]
+    C = law.rows[body + 1]
     z = 0.5 * law.rows[LAM_FAST] / u
     return z, 0.5 * alpha * z * (C - W * np.log(z)), 0.125 * alpha * z * W
 
 
-@kernel(inline=True)
-def length_and_moment(at, u, law):
-    """What depends on the speed alone at u: what a caller does not take is not computed."""
-    if in_fast_limit(at):
-        z, free_creep_and_slopes, part = _fast(u, FAST_TOTAL, law)
-        per, fall = law.rows[LAM_FAST] / u, free_creep_and_slopes - 4.0 * part
-        bend = per * (2.0 * fall - 4.0 * part) / u
-        own = fast_moment(free_creep_and_slopes, u, law.cover_rows)
-        return LengthAndMoment(
-            law.rows[LAM_FAST] * (1.0 + free_creep_and_slopes), -per * fall, bend, own + part, z, z * (3.0 * part - own)
-        )
-    L, m, dL, dm, ddL, _ = evaluate_pair(law.rows, ensure_part(LENGTH_MOMENT, at.row, law), at.t)
-    return LengthAndMoment(L, dL * at.dt_dx, ddL * at.dt_dx * at.dt_dx, m, 1.0, m + u * at.dt_dx * dm)
+@inline_kernel
+def length_and_moment(position, u, law):
+    """Return :class:`LengthAndMoment` at u; the compiler leaves out the fields that a caller does not read.
 
-
-@kernel(inline=True)
-def moment_factor(at, u, scale, state):
-    """What M/V over its scale is to be multiplied by: V, or V z."""
-    return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(at) else state.V
-
-
-@kernel(inline=True)
-def lam_and_epsilon(at, u, law):
-    """(lam, epsilon) at u."""
-    if in_fast_limit(at):
-        _, free_creep_and_slopes, _ = _fast(u, FAST_TOTAL, law)
-        return fast_lengths(law.rows[LAM_FAST], free_creep_and_slopes, u, law.cover_rows)
-    return evaluate_pair(law.rows, ensure_part(LAM_EPSILON, at.row, law), at.t)[:2]
-
-
-@kernel(inline=True)
-def body_moments(at, u, law):
-    """Parts of M/V, over the scale of :func:`length_and_moment`, in the half-space and in the cylinder; d(u M/V)/du
-    of either.
+    position : of u, by :func:`locate_row`.  u : kappa |V|.  law : a :class:`Law`.
     """
-    if in_fast_limit(at):
-        z, half_space, part = _fast(u, FAST_HALF_SPACE, law)
-        _, cylinder, other = _fast(u, FAST_CYLINDER, law)
-        per_half_space, per_cylinder = z * (3.0 * part - half_space), z * (3.0 * other - cylinder)
-        return half_space + part, cylinder + other, per_half_space, per_cylinder
-    found = evaluate_pair(law.rows, ensure_part(BODY_MOMENTS, at.row, law), at.t)
-    half_space, cylinder, d_half_space, d_cylinder, _, _ = found
-    per = u * at.dt_dx
-    return half_space, cylinder, half_space + per * d_half_space, cylinder + per * d_cylinder
+    if in_fast_limit(position):
+        lam = law.rows[LAM_FAST]
+        z, shift, part = _fast_terms(u, FAST_TOTAL, law)
+        decrease = shift - 4.0 * part
+        dL = -(lam / u) * decrease
+        ddL = lam / u * (2.0 * decrease - 4.0 * part) / u
+        moment = fast_moment(shift, u, law.cover_rows)
+        return LengthAndMoment(lam * (1.0 + shift), dL, ddL, moment + part, z, z * (3.0 * part - moment))
+    dt = position.dt_dx
+    L, m, dL, dm, ddL, _ = evaluate_pair(law.rows, ensure_part(LENGTH_MOMENT, position.row, law), position.t)
+    return LengthAndMoment(L, dL * dt, ddL * dt * dt, m, 1.0, m + u * dt * dm)
 
 
-@kernel(inline=True)
+@inline_kernel
+def moment_factor(position, u, scale, state):
+    """Return the factor that turns m, which is M/V divided by ``scale``, into M: V, or V z in the fast limit.
+
+    position : of u.  u : kappa |V|.  scale : that of :class:`LengthAndMoment`.  state : a :class:`State`.
+    """
+    return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
+
+
+@inline_kernel
+def lam_and_epsilon(position, u, law):
+    """Return (lam, epsilon): length of the contact divided by l0, and its shift in half lengths.
+
+    position : of u, by :func:`locate_row`.  u : kappa |V|.  law : a :class:`Law`.
+    """
+    if in_fast_limit(position):
+        _, shift, _ = _fast_terms(u, FAST_TOTAL, law)
+        return fast_lengths(law.rows[LAM_FAST], shift, u, law.cover_rows)
+    return evaluate_pair(law.rows, ensure_part(LAM_EPSILON, position.row, law), position.t)[:2]
+
+
+@inline_kernel
+def body_moments(position, u, law):
+    """Return (m_half_space, m_cylinder, d_um_half_space, d_um_cylinder): the parts of M/V and of d(u M/V)/du.
+
+    position : of u, by :func:`locate_row`.  u : kappa |V|.  law : a :class:`Law`.
+    The first two are divided by the scale of :class:`LengthAndMoment`.
+    """
+    if in_fast_limit(position):
+        z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
+        _, cylinder, other = _fast_terms(u, FAST_CYLINDER, law)
+        return half_space + part, cylinder + other, z * (3.0 * part - half_space), z * (3.0 * other - cylinder)
+    start = ensure_part(BODY_MOMENTS, position.row, law)
+    half_space, cylinder, d_half_space, d_cylinder, _, _ = evaluate_pair(law.rows, start, position.t)
+    factor = u * position.dt_dx
+    return half_space, cylinder, half_space + factor * d_half_space, cylinder + factor * d_cylinder
+
+
+@inline_kernel
 def free_creep_and_slopes(u, law):
-    """(2 kappa delta_0 at u, its slope over u, and the slope of that); 0 of half-spaces, without looking."""
-    if law.cover_rows is None:
-        return 0.0, 0.0, 0.0
+    """Return 2 kappa delta_0 and its first two derivatives over u = kappa |V|; zeros of half-spaces, at no cost."""
     return free_creep_at(locate_row(u, law), u, law.cover_rows)
 
 
-@kernel(inline=True)
+@inline_kernel
 def limits_at_rest(kappa, law):
-    """(L, delta_0) as V -> 0: 1 and -0.0 of half-spaces."""
+    """Return (L, delta_0) in the limit V -> 0: (1, -0.0) of half-spaces.
+
+    kappa : slenderness R/l0.  law : a :class:`Law`.
+    """
     if law.cover_rows is None:
         return 1.0, -0.0
-    at = locate_row(0.0, law)
-    return length_and_moment(at, 0.0, law).L, 0.5 * free_creep_at(at, 0.0, law.cover_rows)[0] / kappa
+    position = locate_row(0.0, law)
+    free_creep = free_creep_at(position, 0.0, law.cover_rows)[0]
+    return length_and_moment(position, 0.0, law).L, 0.5 * free_creep / kappa
 
 
-# --- over v = 1/F(eta), y = 1/v ---
+# --- functions of v = 1/F(eta), y = 1/v ---
 
 
-@kernel(inline=True)
-def _fast_share(y, law):
-    """(eta/F, its slope over -y) in the fast limit."""
-    half, W, C = 0.5 * law.rows[ALPHA], law.rows[FAST_TOTAL], law.rows[FAST_TOTAL + 1]
-    bracket = C - W * np.log(y) if y > 0.0 else 0.0
+@inline_kernel
+def _half_space_eta_over_F(y, law):
+    """Return eta/F and minus its slope over y = F(eta) in the fast limit of ``law``."""
+    half = 0.5 * law.rows[ALPHA]
+    W = law.rows[FAST_TOTAL]
+    bracket = law.rows[FAST_TOTAL + 1] - W * np.log(y) if y > 0.0 else 0.0
     return 1.0 - half * y * bracket, half * (bracket - W)
 
 
-@kernel(inline=True)
-def eta_over_F(at, v, law):
-    """eta/F at v."""
-    if in_fast_limit(at):
-        return fast_share(_fast_share(1.0 / v, law)[0], v, law.cover_rows)
-    return evaluate_one(law.rows, ensure_part(ETA_OVER_F, at.row, law), at.t)[0]
+@inline_kernel
+def eta_over_F(position, v, law):
+    """Return eta/F, which times F gives the half length of the stick zone.
 
-
-@kernel(inline=True)
-def H_over_F2(at, v, law):
-    """(H/F^2, its slope) at v."""
-    if in_fast_limit(at):
-        y = 1.0 / v
-        eta, d_eta = _fast_share(y, law)
-        return law.rows[ALPHA] * eta * eta, 2.0 * law.rows[ALPHA] * eta * d_eta * y * y
-    value, slope = evaluate_one(law.rows, ensure_part(H_OVER_F2, at.row, law), at.t)
-    return value, slope * at.dt_dx
-
-
-@kernel(inline=True)
-def H_over_F2_secants(at, near, v, x, law):
-    """(H/F^2 and its slope at v, mean slopes of either between v and v/(1 + x), whose place is ``near``), x >= 0.
-
-    No digits cancel.
+    position : of v, by :func:`locate_row`.  v : 1/F(eta).  law : a :class:`Law`.
     """
-    per, other = at.dt_dx, near.dt_dx
-    if in_fast_limit(at):
-        value, slope = H_over_F2(at, v, law)
-        rise, bend = _fast_secants(v, x, law)
-        return value, slope, rise, bend
-    end = near.t if near.row == at.row else -1.0
-    value, rise, slope, bend = evaluate_secants(law.rows, ensure_part(H_OVER_F2, at.row, law), at.t, end)
-    rise, bend = rise * per, bend * per * per
-    if near.row != at.row:
-        _, there, _, bend_there = evaluate_secants(law.rows, ensure_part(H_OVER_F2, near.row, law), 1.0, near.t)
-        # of the way that lies in the row of v
-        part = min((at.t + 1.0) * (1.0 + x) / (per * v * x), 1.0)
-        rise = part * rise + (1.0 - part) * there * other
-        bend = part * bend + (1.0 - part) * bend_there * other * other
-    return value, slope * per, rise, bend
+    if in_fast_limit(position):
+        return fast_eta_over_F(_half_space_eta_over_F(1.0 / v, law)[0], v, law.cover_rows)
+    return evaluate_single(law.rows, ensure_part(ETA_OVER_F, position.row, law), position.t)[0]
+
+
+@inline_kernel
+def H_over_F2(position, v, law):
+    """Return H/F^2 and its slope over v.
+
+    position : of v, by :func:`locate_row`.  v : 1/F(eta).  law : a :class:`Law`.
+    """
+    if in_fast_limit(position):
+        alpha = law.rows[ALPHA]
+        y = 1.0 / v
+        eta, d_eta = _half_space_eta_over_F(y, law)
+        return alpha * eta * eta, 2.0 * alpha * eta * d_eta * y * y
+    value, slope = evaluate_single(law.rows, ensure_part(H_OVER_F2, position.row, law), position.t)
+    return value, slope * position.dt_dx
+
+
+@inline_kernel
+def H_over_F2_secants(position, near, v, x, law):
+    """Return H/F^2 and its slope at v, and the mean slopes of both between v/(1 + x) and v, without cancellation.
+
+    position : of v, by :func:`locate_row`.  near : position of v/(1 + x), in the same row or in the one before.
+    v : 1/F(eta).  x : >= 0, dimensionless.  law : a :class:`Law`.
+
+    Returns (value, slope, mean slope of the value, mean slope of the slope).
+    """
+    if in_fast_limit(position):
+        return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
+    dt = position.dt_dx
+    end = near.t if near.row == position.row else -1.0
+    value, secant, slope, slope_secant = evaluate_secants(
+        law.rows, ensure_part(H_OVER_F2, position.row, law), position.t, end
+    )
+    secant *= dt
+    slope_secant *= dt * dt
+    if near.row != position.row:
+        near_dt = near.dt_dx
+        start = ensure_part(H_OVER_F2, near.row, law)
+        _, near_secant, _, near_slope_secant = evaluate_secants(law.rows, start, 1.0, near.t)
+        # fraction of the interval that lies in the row of v
+        part = min((position.t + 1.0) * (1.0 + x) / (dt * v * x), 1.0)
+        secant = part * secant + (1.0 - part) * near_secant * near_dt
+        slope_secant = part * slope_secant + (1.0 - part) * near_slope_secant * near_dt * near_dt
+    return value, slope * dt, secant, slope_secant
 
 
 @kernel
 def _fast_secants(v, x, law):
-    """Mean slopes of :func:`H_over_F2_secants` in the fast limit."""
-    alpha, W = law.rows[ALPHA], law.rows[FAST_TOTAL]
+    """Return the mean slopes of H/F^2 and of its slope between v/(1 + x) and v in the fast limit.
+
+    v : 1/F(eta).  x : >= 0, dimensionless.  law : a :class:`Law`.
+    """
+    alpha = law.rows[ALPHA]
+    W = law.rows[FAST_TOTAL]
     y = 1.0 / v
-    other = y * (1.0 + x)
-    eta, d_eta = _fast_share(y, law)
-    near, d_near = _fast_share(other, law)
+    near_y = y * (1.0 + x)
+    eta, d_eta = _half_space_eta_over_F(y, law)
+    near_eta, near_d_eta = _half_space_eta_over_F(near_y, law)
     mean = W * (np.log1p(x) / x if x > 0.0 else 1.0)
-    rise = y * other * (d_near + 0.5 * alpha * (W - mean))
-    bend = other * (0.5 * alpha * other * other * mean - y * (y + other) * d_eta)
-    return alpha * (eta + near) * rise, 2.0 * alpha * (eta * bend + d_near * other * other * rise)
+    secant = y * near_y * (near_d_eta + 0.5 * alpha * (W - mean))
+    slope_secant = near_y * (0.5 * alpha * near_y * near_y * mean - y * (y + near_y) * d_eta)
+    return alpha * (eta + near_eta) * secant, 2.0 * alpha * (eta * slope_secant + near_d_eta * near_y * near_y * secant)

@@ -1,14 +1,10 @@
-"""A bound scene for jitted code: a value that is called, with the function of :mod:`c_function` and the scene behind
-it.
+"""The law of one scene for jitted code: a value that is called, the address of the user data of a C function.
 
-All scenes have one numba type, so that a user's function that is given a law is compiled once for all of them.
+All such laws have one numba type, so that a user's function that is given a law is compiled once for all of them.
 """
-
-from __future__ import annotations
 
 import ctypes
 import inspect
-from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, NoReturn
 
@@ -17,60 +13,81 @@ from numba.core import cgutils, types
 from numba.core.imputils import lower_constant
 from numba.core.typing import signature
 from numba.extending import NativeValue, lower_builtin, models, register_model, unbox
+from numpy.typing import NDArray
 
-from .c_function import RESULTS, law_address, pack_scenes
+from .c_function import RESULTS
 from .loads import LoadsAndSlopes
-from .record import Law
 
-#: room for what the function finds
+#: Array of the results of the C function.
 ResultBuffer = ctypes.c_double * RESULTS
-_C = ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p
-_WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
-_DOUBLES = _DOUBLE.as_pointer()
-_FUNCTION = ir.FunctionType(ir.IntType(32), [_DOUBLE, _DOUBLE, _DOUBLES, _DOUBLES])
-_CALL = inspect.signature(lambda V, omega: None)
-#: laws that are constants of somebody's machine code, which nothing else keeps alive
-_in_code: list[Any] = []
+#: Types of the C function for ctypes: its status, then its arguments.
+_C_TYPES = ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p
+#: LLVM's 64-bit integer, which holds an address.
+_WORD = ir.IntType(64)
+#: LLVM's double.
+_DOUBLE = ir.DoubleType()
+#: LLVM's pointer to doubles.
+_POINTER = _DOUBLE.as_pointer()
+#: LLVM's type of the C function.
+_FUNCTION = ir.FunctionType(ir.IntType(32), [_DOUBLE, _DOUBLE, _POINTER, _POINTER])
+#: Signature of a law in jitted code.
+_SIGNATURE = inspect.signature(lambda V, omega: None)
+#: Laws that are constants of somebody's machine code, which nothing else keeps alive.
+_constants: list[Any] = []
 
 
 class LawType(types.Callable):
-    """(V, omega) -> :class:`LoadsAndSlopes`, in jitted code."""
+    """numba's type of a law: (V, omega) -> :class:`LoadsAndSlopes`."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         super().__init__("viscoroll.law")
 
-    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
-        """Its one signature, for two real numbers."""
+    def get_call_type(self, context, args, kws):
+        """Return the signature of a call with two real numbers, or None for other arguments.
+
+        context : of numba.  args, kws : types of the positional and of the named arguments.
+        """
         try:
-            given = _CALL.bind(*args, **kws).args
+            kinds = _SIGNATURE.bind(*args, **kws).args
         except TypeError:
             return None
-        if not all(isinstance(types.unliteral(kind), types.Integer | types.Float) for kind in given):
+        if not all(isinstance(types.unliteral(kind), types.Integer | types.Float) for kind in kinds):
             return None
-        found = types.NamedUniTuple(types.float64, RESULTS, LoadsAndSlopes)
-        return signature(found, types.float64, types.float64, recvr=self).replace(pysig=_CALL)
+        returned = types.NamedUniTuple(types.float64, RESULTS, LoadsAndSlopes)
+        return signature(returned, types.float64, types.float64, recvr=self).replace(pysig=_SIGNATURE)
 
-    def get_call_signatures(self) -> tuple[list[Any], bool]:
-        """For numba's messages."""
+    def get_call_signatures(self):
+        """Return the signatures that numba names in its messages, and that they have no parameters."""
         return [signature(types.float64, types.float64, types.float64)], False
 
-    def get_impl_key(self, _: Any) -> type:
-        """What it is lowered by."""
+    def get_impl_key(self, _):
+        """Return the key under which numba finds :func:`_lower_call`."""
         return LawType
 
 
 class Jitted:
-    """The law of one scene, for jitted code: ``law.jitted(V, omega)``, NaN where the input is none of its business."""
+    """A law for jitted code: ``law.jitted(V, omega)``, NaN where the law is not defined.
+
+    Parameters
+    ----------
+    scenes : two records of user data, without slopes and with, whose first field is the address of the C function.
+    owner : what the addresses in ``scenes`` point to, which is kept.
+
+    Attributes
+    ----------
+    plain, address : addresses of the user data without slopes and with.
+    function : the C function for calls from Python, with the GIL: to release it takes longer than the law.
+    function_address : its address.
+    """
 
     _numba_type_ = LawType()
 
-    def __init__(self, law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> None:
-        self._law = law  # whose rows the scenes point to
-        self._scenes = pack_scenes(law, unlike, kappa, mu, scale)
-        self.plain, self.address = (int(self._scenes[n:].ctypes.data) for n in (0, 1))
-        # with the GIL: to release it takes longer than the law
-        self.function_address = law_address(law.cover_rows is not None)
-        self.function = ctypes.PYFUNCTYPE(_C[0], *_C[1:3], ctypes.c_void_p, _C[4])(self.function_address)
+    def __init__(self, scenes: NDArray[Any], owner):
+        self._scenes = scenes
+        self._owner = owner
+        self.plain, self.address = (int(scenes[n:].ctypes.data) for n in (0, 1))
+        self.function_address = int(scenes["function"][0])
+        self.function = ctypes.PYFUNCTYPE(*_C_TYPES[:3], ctypes.c_void_p, ctypes.c_void_p)(self.function_address)
 
     def __call__(self, V: float, omega: float) -> LoadsAndSlopes:
         out = ResultBuffer()
@@ -82,22 +99,24 @@ class Jitted:
 
     @cached_property
     def ctypes(self) -> tuple[Any, ctypes.c_void_p]:
-        """The C function and its user data."""
-        called, scene = ctypes.CFUNCTYPE(*_C)(self.function_address), ctypes.c_void_p(self.address)
-        called.law = scene.law = self  # type: ignore[attr-defined]
-        return called, scene
+        """The C function and its user data, for ctypes; each keeps this law alive."""
+        function = ctypes.CFUNCTYPE(*_C_TYPES)(self.function_address)
+        scene = ctypes.c_void_p(self.address)
+        function.law = scene.law = self  # type: ignore[attr-defined]
+        return function, scene
 
 
 @register_model(LawType)
-class _Model(models.PrimitiveModel):
-    """The address of the scene's numbers."""
+class _LawModel(models.PrimitiveModel):
+    """A law is represented by the address of its user data."""
 
-    def __init__(self, manager: Any, kind: Any) -> None:
+    def __init__(self, manager, kind):
         super().__init__(manager, kind, _WORD)
 
 
 @unbox(LawType)
-def _unbox(kind: Any, law: Any, c: Any) -> NativeValue:
+def _unbox(kind, law, c):
+    """Return the address of the law that Python passes; arguments as numba gives them."""
     address = c.pyapi.object_getattr_string(law, "address")
     value = c.pyapi.long_as_ulonglong(address)
     c.pyapi.decref(address)
@@ -105,18 +124,22 @@ def _unbox(kind: Any, law: Any, c: Any) -> NativeValue:
 
 
 @lower_constant(LawType)
-def _constant(context: Any, builder: Any, kind: Any, law: Any) -> Any:
-    _in_code.append(law)
-    # numba then keeps the code out of its cache: the next process has other addresses
+def _lower_constant(context, builder, kind, law):
+    """Return the address of a law that is a constant of the code; numba then keeps the code out of its cache."""
+    _constants.append(law)
     return builder.ptrtoint(context.add_dynamic_addr(builder, law.address, info="law"), _WORD)
 
 
 @lower_builtin(LawType, LawType, types.float64, types.float64)
-def _call(context: Any, builder: Any, kinds: Any, given: Any) -> Any:
-    law, V, omega = given
-    numbers = builder.inttoptr(law, _DOUBLES)
-    law_address = builder.load(builder.bitcast(numbers, _FUNCTION.as_pointer().as_pointer()))
+def _lower_call(context, builder, signature, arguments):
+    """Return instructions that call the C function of a law, whose address begins the user data.
+
+    context, builder, signature : of numba.  arguments : values of the law, V and omega.
+    """
+    law, V, omega = arguments
+    scene = builder.inttoptr(law, _POINTER)
+    function = builder.load(builder.bitcast(scene, _FUNCTION.as_pointer().as_pointer()))
     out = cgutils.alloca_once(builder, _DOUBLE, size=_WORD(RESULTS))
-    builder.call(law_address, [V, omega, out, numbers])
-    found = [builder.load(builder.gep(out, [_WORD(n)])) for n in range(RESULTS)]
-    return context.make_tuple(builder, kinds.return_type, found)
+    builder.call(function, [V, omega, out, scene])
+    numbers = [builder.load(builder.gep(out, [_WORD(n)])) for n in range(RESULTS)]
+    return context.make_tuple(builder, signature.return_type, numbers)

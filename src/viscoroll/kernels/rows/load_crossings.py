@@ -1,10 +1,8 @@
-"""The speeds at which M(V) - gain V meets a load, over arrays.
+"""The speeds at which M(V) - gain V equals a load, over arrays.
 
-kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one equation between two nodes where its
-left side is monotone.
+kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one equation between two nodes between
+which its left side is monotone.
 """
-
-from __future__ import annotations
 
 from typing import Any, NamedTuple
 
@@ -13,65 +11,76 @@ import numpy as np
 from ..compile.jit import kernel
 from .evaluate import length_and_moment, locate_row
 
-#: a load this close to an extremum, relative, is at it
+#: A load this close to an extremum, relative, is taken to be at it: some ulp of kappa M.
 EXTREMUM_RTOL = 1e-15
+#: Newton steps after which an iteration ends; with bisection in its bracket it needs fewer.
 _MAX_STEPS = 40
-#: a step of Newton's iteration of this size in ln u, over the distance from an extremum, leaves its square
-_SQUARED = 1e-8
+#: A Newton step of this size in ln u, divided by the distance from an extremum, leaves its square, which is rounding.
+_LAST_STEP = 1e-8
 
 
 class LoadCurve(NamedTuple):
-    """Nodes of kappa (M - gain V) by rising speed: u, value, whether it is an extremum; gain."""
+    """Nodes of kappa (M - gain V) by rising speed.
+
+    u : kappa V, (n,).  value : kappa (M - gain V), (n,).  is_extremum : whether it is an extremum, (n,).
+    gain : slope of the load over the speed.
+    """
 
     u: Any
-    rise: Any
-    flat: Any
+    value: Any
+    is_extremum: Any
     gain: float
 
 
 @kernel
-def _on_curve(u, gain, law):
-    """(kappa (M - gain V), its slope over ln u) at u."""
-    found = length_and_moment(locate_row(u, law), u, law)
-    return u * found.scale * found.m - u * gain, u * (found.d_um - gain)
+def _find_crossing(load, n, curve, law):
+    """Return u between the nodes ``n`` and n + 1 where the curve equals ``load``: Newton's iteration in a bracket.
 
+    load : value of kappa (M - gain V) between those of the nodes.  curve : a :class:`LoadCurve`.  law : a :class:`Law`.
 
-@kernel
-def _crossing(load, n, curve, law):
-    """u between the nodes n and n + 1 where the curve meets the load: Newton's iteration in a closed bracket.
-
-    Beside an extremum steps may end in rounding, not below the bound: the last is then as near as others, 4e-15 of the
-    load, measured.
+    Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others: 4e-15 of
+    the load, measured.
     """
-    low, high = curve.u[n], curve.u[n + 1]
-    if curve.flat[n + 1] and abs(load - curve.rise[n + 1]) <= EXTREMUM_RTOL * abs(load):
+    low = curve.u[n]
+    high = curve.u[n + 1]
+    rise = curve.value[n + 1] - curve.value[n]
+    if curve.is_extremum[n + 1] and abs(load - curve.value[n + 1]) <= EXTREMUM_RTOL * abs(load):
         return high
-    part = (load - curve.rise[n]) / (curve.rise[n + 1] - curve.rise[n])
+    part = (load - curve.value[n]) / rise
     top = 0.0
-    if curve.flat[n]:  # beside an extremum the curve is a parabola
-        part, top = np.sqrt(part), low
-    elif curve.flat[n + 1]:
-        part, top = 1.0 - np.sqrt(1.0 - part), high
+    if curve.is_extremum[n]:  # beside an extremum the curve is a parabola
+        part = np.sqrt(part)
+        top = low
+    elif curve.is_extremum[n + 1]:
+        part = 1.0 - np.sqrt(1.0 - part)
+        top = high
     u = low * (high / low) ** part
-    rising = curve.rise[n + 1] > curve.rise[n]
     for _ in range(_MAX_STEPS):
-        value, slope = _on_curve(u, curve.gain, law)
-        if (value <= load) == rising:
+        functions = length_and_moment(locate_row(u, law), u, law)
+        value = u * functions.scale * functions.m - u * curve.gain
+        slope = u * (functions.d_um - curve.gain)  # over ln u
+        if (value <= load) == (rise > 0.0):
             low = u
         else:
             high = u
         step = (load - value) / slope
         new = u * np.exp(step)
         if not low <= new <= high:
-            new, step = np.sqrt(low) * np.sqrt(high), 1.0
-        old, u = u, new
-        if abs(step) <= _SQUARED * min(1.0, abs(old - top) / old):
+            new = np.sqrt(low) * np.sqrt(high)
+            step = 1.0
+        old = u
+        u = new
+        if abs(step) <= _LAST_STEP * min(1.0, abs(old - top) / old):
             break
     return u
 
 
 @kernel
 def crossing_loop(law, curve, load, node, out, start, stop):
-    """u where the curve meets each load between a node and the next."""
+    """Find u = kappa V where the curve equals each load.
+
+    law : a :class:`Law`.  curve : a :class:`LoadCurve`.  load : loads, (n,).
+    node : for each load the node below the crossing, (n,).  out : (n,), written from ``start`` to ``stop`` - 1.
+    """
     for n in range(start, stop):
-        out[n] = _crossing(load[n], node[n], curve, law)
+        out[n] = _find_crossing(load[n], node[n], curve, law)

@@ -1,7 +1,5 @@
 """What a bound law returns, to Python and to jitted code alike."""
 
-from __future__ import annotations
-
 from typing import Generic, NamedTuple, TypeVar
 
 #: numbers, or arrays

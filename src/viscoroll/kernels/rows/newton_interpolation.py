@@ -1,97 +1,117 @@
-"""Newton's polynomial through scattered points, read at the 24 nodes of a row and turned into powers of t."""
+"""Newton's polynomial through scattered points, evaluated at the 24 nodes of a row and turned into powers of t.
 
-from __future__ import annotations
+All of it works on one vector ``scratch``: the arguments of :data:`POINT_COUNT` points; for each of up to two functions
+their values, and behind them the leading divided differences; values at the nodes; Chebyshev coefficients.  In front of
+arguments and values four numbers are kept free, so that vectors may reach below the first point.
+"""
 
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import chebyshev, powers_of_chebyshev, to_chebyshev, to_doubles
 from ..numerics.simd4 import LANES, broadcast, fma4, load, make_load, shift_in, store
 from .simd_polynomial import TERMS
 
-#: points of a polynomial
+#: Points of a polynomial; with 10 points an octave the error then is that of rounding.
 POINT_COUNT = 36
-#: where scratch is in ``numbers``, four that are no points in front of each: arguments of the points, then values and
-#: differences of one function, and those of another; values at the nodes of a row; Chebyshev coefficients; its end
-_ROOM = LANES + POINT_COUNT
-FUNCTION_STRIDE = 2 * _ROOM
-ARGUMENTS, VALUES, NODE_VALUES, _C, SCRATCH_SIZE = (
-    LANES,
-    LANES + _ROOM,
-    5 * _ROOM,
-    5 * _ROOM + TERMS,
-    5 * _ROOM + 2 * TERMS,
-)
-#: the 24 numbers of a row
+#: Numbers of one vector over the points, with the four in front.
+_BLOCK = LANES + POINT_COUNT
+#: Position in ``scratch`` of the arguments of the points.
+ARGUMENTS = LANES
+#: Position of the values of the first function; its divided differences are one block behind.
+VALUES = LANES + _BLOCK
+#: Distance from the values of the first function to those of the second.
+FUNCTION_STRIDE = 2 * _BLOCK
+#: Position of the values at the nodes of a row, and later of the powers of t.
+NODE_VALUES = 5 * _BLOCK
+#: Position of the Chebyshev coefficients.
+_COEFFICIENTS = NODE_VALUES + TERMS
+#: Numbers of ``scratch``.
+SCRATCH_SIZE = _COEFFICIENTS + TERMS
+#: (array, start) -> 24 numbers, as six vectors of four.
 load_row = make_load(TERMS // LANES)
+#: Nodes of a row: the zeros of T_24 on [-1, 1].
 NODES = to_doubles(chebyshev(TERMS))
-#: in the slow row a Chebyshev coefficient below this share of the function is rounding
+#: In the slow row a Chebyshev coefficient below this fraction of the function is rounding and is set to zero.
 _ROUNDING = 4e-16
-#: a row a node: what its value adds to the coefficients
+#: From values at the nodes to Chebyshev coefficients: for each node, 24 numbers.
 _TO_CHEBYSHEV = np.ascontiguousarray(to_chebyshev(TERMS).T).ravel()
-_POWERS, _SLOW_POWERS = (powers_of_chebyshev(TERMS, shift, 1.0 + shift).ravel() for shift in (0.0, 1.0))
+#: From Chebyshev coefficients to powers of t in [-1, 1]: for each coefficient, 24 numbers.
+_POWERS = powers_of_chebyshev(TERMS, 0.0, 1.0).ravel()
+#: The same for t in [0, 1], in the slow row.
+_SLOW_POWERS = powers_of_chebyshev(TERMS, 1.0, 2.0).ravel()
 
 
 @kernel
-def divided_differences(count, numbers):
-    """Newton's divided differences, four at a time, from the last point down: behind the values of every function.
+def divided_differences(count, scratch):
+    """Compute the leading divided differences of ``count`` functions from arguments and values in ``scratch``.
 
-    What lies below an order's first difference is spoilt, and not asked for any more.
+    Each order is computed in place, four at a time, from the last point down.  What lies below the first difference of
+    an order is spoilt, and is not read any more.
     """
-    for which in range(count):
-        at = VALUES + FUNCTION_STRIDE * which
-        numbers[at + _ROOM] = numbers[at]
-    for order in range(1, POINT_COUNT):
+    for order in range(POINT_COUNT):
         first = POINT_COUNT - LANES
-        while first > order - LANES:
-            here = ARGUMENTS + first
-            per = 1.0 / (load(numbers, here) - load(numbers, here - order))
+        while order > 0 and first > order - LANES:
+            x = ARGUMENTS + first
+            inverse = 1.0 / (load(scratch, x) - load(scratch, x - order))
             for which in range(count):
-                at = VALUES + FUNCTION_STRIDE * which + first
-                known = load(numbers, at)
-                store(numbers, at, (known - shift_in(load(numbers, at - LANES), known)) * per)
+                start = VALUES + FUNCTION_STRIDE * which + first
+                upper = load(scratch, start)
+                store(scratch, start, (upper - shift_in(load(scratch, start - LANES), upper)) * inverse)
             first -= LANES
         for which in range(count):
-            at = VALUES + FUNCTION_STRIDE * which + order
-            numbers[at + _ROOM] = numbers[at]
+            start = VALUES + FUNCTION_STRIDE * which + order
+            scratch[start + _BLOCK] = scratch[start]
 
 
 @kernel
-def evaluate_at_nodes(nodes, which, numbers):
-    """Values of a function's polynomial at the nodes of a row."""
-    at = VALUES + FUNCTION_STRIDE * which + _ROOM
-    x, last = load_row(nodes, 0), broadcast(numbers[at + POINT_COUNT - 1])
+def evaluate_at_nodes(nodes, which, scratch):
+    """Write the values of a polynomial at the nodes of a row into ``scratch``.
+
+    nodes : arguments, (24,).  which : 0 or 1, the function.  scratch : holds its divided differences.
+    """
+    start = VALUES + FUNCTION_STRIDE * which + _BLOCK
+    x = load_row(nodes, 0)
+    last = broadcast(scratch[start + POINT_COUNT - 1])
     value = last, last, last, last, last, last
     for n in range(POINT_COUNT - 2, -1, -1):
-        away = fma4(x, broadcast(1.0), broadcast(-numbers[ARGUMENTS + n]))
-        value = fma4(away, value, broadcast(numbers[at + n]))
-    store(numbers, NODE_VALUES, value)
+        distance = fma4(x, broadcast(1.0), broadcast(-scratch[ARGUMENTS + n]))
+        value = fma4(distance, value, broadcast(scratch[start + n]))
+    store(scratch, NODE_VALUES, value)
 
 
-@kernel(inline=True)
-def matrix_vector_product(matrix, first, terms, given, to, numbers):
-    """Of so many numbers and a matrix whose rows of 24 stand one after another from ``first`` on."""
+@inline_kernel
+def sum_of_rows(matrix, first, terms, factors, to, numbers):
+    """Write the sum of rows of 24 numbers, each times a factor.
+
+    matrix : vector in which the rows follow each other from ``first`` on.  terms : how many there are.
+    factors, to : where in ``numbers`` the factors begin, and the sum.
+    """
     zero = broadcast(0.0)
     total = zero, zero, zero, zero, zero, zero
     for n in range(terms):
-        total = fma4(load_row(matrix, first + TERMS * n), broadcast(numbers[given + n]), total)
+        total = fma4(load_row(matrix, first + TERMS * n), broadcast(numbers[factors + n]), total)
     store(numbers, to, total)
 
 
 @kernel
-def to_powers(slow, limit, numbers):
-    """From values at the nodes to powers of t; in the slow row, of values less ``limit``, without rounding."""
+def to_powers(slow, limit, scratch):
+    """Replace values at the nodes by the coefficients of the powers of t.
+
+    slow : whether this is the slow row, where t is in [0, 1] and coefficients that are rounding become zero.
+    limit : in the slow row, the value at t = 0, from which the values count.  scratch : read and written.
+    """
     if not slow:
-        limit = numbers[NODE_VALUES + TERMS // 2]
+        limit = scratch[NODE_VALUES + TERMS // 2]
         for k in range(TERMS):
-            numbers[NODE_VALUES + k] -= limit
-    matrix_vector_product(_TO_CHEBYSHEV, 0, TERMS, NODE_VALUES, _C, numbers)
+            scratch[NODE_VALUES + k] -= limit
+    sum_of_rows(_TO_CHEBYSHEV, 0, TERMS, NODE_VALUES, _COEFFICIENTS, scratch)
     if slow:
-        least = limit
+        largest = limit
         for k in range(TERMS):
-            least = max(least, abs(numbers[_C + k]))
+            largest = max(largest, abs(scratch[_COEFFICIENTS + k]))
         for k in range(TERMS):
-            if k == TERMS - 1 or abs(numbers[_C + k]) < _ROUNDING * least:
-                numbers[_C + k] = 0.0
-    matrix_vector_product(_SLOW_POWERS if slow else _POWERS, 0, TERMS, _C, NODE_VALUES, numbers)
-    numbers[NODE_VALUES] += limit
+            if k == TERMS - 1 or abs(scratch[_COEFFICIENTS + k]) < _ROUNDING * largest:
+                scratch[_COEFFICIENTS + k] = 0.0
+    sum_of_rows(_SLOW_POWERS if slow else _POWERS, 0, TERMS, _COEFFICIENTS, NODE_VALUES, scratch)
+    scratch[NODE_VALUES] += limit

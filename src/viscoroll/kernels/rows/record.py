@@ -1,42 +1,75 @@
-"""The record of a law that every reader takes, and where its numbers stand.
+"""The record of a law that every kernel reads, and the layout of its arrays: the one place where columns have names.
 
-Rows of one material all stand there; of one of many materials a part of a row is made where it is met.  Readers do not
-know which (:mod:`evaluate`).
+``rows`` holds one head, as long as a row, and then the rows.  A row has :data:`ROW_SIZE` numbers in
+:data:`PARTS_PER_ROW` parts of :data:`PART_SIZE`; the constants from :data:`LENGTH_MOMENT` to :data:`ETA_OVER_F` are
+offsets in a row.  Two functions whose powers are interleaved (:mod:`simd_polynomial`) take two neighbouring parts.
+
+``marks`` holds one head, as long as a row has parts, and then for every part of every row the version of the material
+that it was made for.  The rows of one material are complete.  Of many materials a part is made when it is first read;
+who reads it need not know which (:mod:`evaluate`).
 """
-
-from __future__ import annotations
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.intrinsics import call_address, unlikely
-from ..compile.jit import kernel
+from ..compile.intrinsics import call_address, integers_at, unlikely
+from ..compile.jit import inline_kernel, kernel
+from .contact_states import element
 from .simd_polynomial import TERMS
 
-#: where the functions of a row begin: pairs over u = kappa |V|, then what is over v = 1/F(eta), and how long a row is
-LENGTH_MOMENT, LAM_EPSILON, BODY_MOMENTS, H_OVER_F2, ETA_OVER_F, ROW_SIZE = 0, 48, 96, 144, 168, 192
-#: parts of a row, each with a mark of its own
+#: Numbers of a part: the coefficients of one polynomial.
 PART_SIZE = TERMS
+#: Offset of L and M/V, interleaved, over u = kappa |V|.
+LENGTH_MOMENT = 0
+#: Offset of lam and epsilon, interleaved, over u.
+LAM_EPSILON = 48
+#: Offset of M_half_space/V and M_cylinder/V, interleaved, over u.
+BODY_MOMENTS = 96
+#: Offset of H/F^2 over v = 1/F(eta).
+H_OVER_F2 = 144
+#: Offset of eta/F over v.
+ETA_OVER_F = 168
+#: Numbers of a row.
+ROW_SIZE = 192
+#: Parts of a row, each with a mark of its own.
 PARTS_PER_ROW = ROW_SIZE // PART_SIZE
-#: numbers in front of the rows: instantaneous over long-time modulus and its root's inverse; of the fast limit
-#: W = sum J_j/T_j and then C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all and of either body; what the maker keeps
-ALPHA, LAM_FAST, FAST_TOTAL, FAST_HALF_SPACE, FAST_CYLINDER, MAKER_NUMBERS = 0, 1, 2, 4, 6, 8
-#: marks in front: that of the material that is held, how many rows it has, the exponent of the first; then the maker's
-VERSION, ROW_COUNT, E0, MAKER_MARKS = range(4)
+
+#: Index in the head of ``rows``: alpha, the instantaneous divided by the long-time modulus.
+ALPHA = 0
+#: Index in the head: lam in the fast limit, alpha^(-1/2).
+LAM_FAST = 1
+#: Index in the head: W = sum J_j/T_j of both bodies; behind it C = sum J_j/T_j (ln 2 T_j - 0.5772...).
+FAST_TOTAL = 2
+#: Index in the head: W and C of the half-space.
+FAST_HALF_SPACE = 4
+#: Index in the head: W and C of the cylinder.
+FAST_CYLINDER = 6
+#: Index in the head: the first of the numbers that belong to the kernels that make rows.
+MAKER_NUMBERS = 8
+
+#: Index in the head of ``marks``: the version of the selected material.
+VERSION = 0
+#: Index in the head of ``marks``: how many rows the selected material has.
+ROW_COUNT = 1
+#: Index in the head of ``marks``: exponent e0 of the first row, which spans 0 <= x < 2^e0.
+E0 = 2
+#: Index in the head of ``marks``: the selected material among those of a block, -1 if there is none yet.
+SELECTED = 3
+#: Index in the head of ``marks``: the first of the marks that belong to the kernels that make rows.
+MAKER_MARKS = 4
 
 
 class Law(NamedTuple):
-    """The law of a material, or of one of many at a time.
+    """The law of one material, or of many materials of which one is selected at a time.
 
-    rows : the numbers in front, as long as a row; then the rows, each (L, M/V), (lam, epsilon),
-        (M_half_space/V, M_cylinder/V), H/F^2, eta/F
-    marks : those in front, as many as a row has; then of every part of every row the stamp of the material that it was
-        made for
-    added : rows of N and of its integral (:func:`...materials.law_build.added`); none of a law of steady rolling
-    free : of a cover the numbers of :mod:`cover`, and None of half-spaces, whose kernels are compiled without
-    hold, make, source : addresses of the kernels (n, source) and (where a part begins, source), and of what these know
-        (:mod:`..compile.intrinsics`); 0 where all rows stand
+    rows : head and rows, (1 + number of rows) * ROW_SIZE numbers, dimensionless.
+    marks : head and versions of the parts, (1 + number of rows) * PARTS_PER_ROW integers.
+    N_rows : rows of N and of its integral (:func:`...materials.law.pack.pack_unsteady`); empty for steady rolling.
+    selector : address of the kernel (n, source) that selects the material of state n; 0 if all rows are complete.
+    maker : address of the kernel (position in ``rows``, source) that makes a part; 0 if all rows are complete.
+    source : address of the record that these kernels read (:mod:`..compile.intrinsics`).
+    cover_rows : numbers that only a cover has (:mod:`cover`); None of half-spaces, whose kernels are compiled without.
     """
 
     rows: Any
@@ -48,17 +81,37 @@ class Law(NamedTuple):
     cover_rows: Any = None
 
 
-@kernel(inline=True)
+@inline_kernel
 def select_material(law, n):
-    """Have the law be that of state or motion n: nothing where all have one, or n the one that is held."""
+    """Make ``law`` that of state or motion ``n``; no work if all have one law or that of n is selected already."""
     if law.selector != 0:
         call_address(law.selector, n, law.source)
 
 
-@kernel(inline=True)
+@inline_kernel
 def ensure_part(part, row, law):
-    """Where a part of a row begins, made if it was not."""
+    """Return the position in ``law.rows`` of a part of a row, after making the part if it is not up to date.
+
+    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.  row : number of the row, from 0.  law : a :class:`Law`.
+    """
     start = (row + 1) * ROW_SIZE + part
     if unlikely(law.marks[np.uint64((row + 1) * PARTS_PER_ROW + part // PART_SIZE)] != law.marks[VERSION]):
         call_address(law.maker, start, law.source)
     return start
+
+
+@kernel(inline=True, allocates=True)
+def select_index(n, addresses, state_count, marks):
+    """Mark the material of state ``n`` as selected.
+
+    n : number of the state.  addresses : address of the index of the material of each state.
+    state_count : length of that array; 1 if all states have one material.  marks : those of the law, written.
+
+    Returns the index of the material, or -1 if it was selected already.
+    """
+    index = element(integers_at(addresses, state_count), n)
+    if marks[SELECTED] == index:
+        return -1
+    marks[SELECTED] = index
+    marks[VERSION] += 1
+    return index

@@ -1,4 +1,4 @@
-"""What rows are made of, of any series: g/z, h/z and the parts of m by the modes' formulas, at four places of z.
+"""The functions that rows are made of, of any Prony series, by the formulas of its modes: g/z, h/z and the parts of m.
 
 With E(t) = 1 + sum E_i exp(-a_i t) and J(t) = 1 - sum J_j exp(-b_j t), the two forms of one material,
 
@@ -14,29 +14,38 @@ All sums but the last are of positive terms.  What a creep mode has in m, all of
 
 makes the parts of two bodies that deform unlike each other: the contact sees their sum, one series.
 
-Four numbers are those of four places, or those of a **jet** at one: value, d/dz, d/ds, d2/dz ds, s being taken from
-all rates a_i and b_j while E_i a_i, J_j b_j and Q stay what they are (:mod:`modes`).
+Every number is a vector of four (:mod:`..numerics.simd4`).  The four are values at four places z, or, where ``jets`` is
+True, a **jet** at one place: value, d/dz, d/ds, d2/dz ds.  The parameter s is subtracted from all rates a_i and b_j
+while E_i a_i, J_j b_j and Q stay what they are (:mod:`modes`).
 """
-
-from __future__ import annotations
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.simd4 import LANES, broadcast, fma4, load, pack, store, unpack
 
-#: functions of z that rows are made of: g/z, h/z, m of the half-space and of the cylinder
-G_OVER_Z, H_OVER_Z, M_HALF_SPACE, M_CYLINDER = range(4)
+#: Position of the four values of g/z among the results.
+G_OVER_Z = 0
+#: Position of h/z.
+H_OVER_Z = 4
+#: Position of m of the half-space.
+M_HALF_SPACE = 8
+#: Position of m of the cylinder.
+M_CYLINDER = 12
+#: Number of functions.
 FUNCTIONS = 4
 
 
 class Series(NamedTuple):
-    """Rates of relaxation and creep; strengths of relaxation times time, of creep times time, under roots; Q.
+    """A Prony series of n modes in both forms, all times in one unit.
 
-    weights : what of the strength of each creep mode is the half-space's; none where the bodies are alike.
+    a, b : rates of relaxation and of creep, (n,).
+    e, t : sqrt(E_i tau_i) and sqrt(J_j T_j), (n,).
+    weights : fraction of each creep mode that is the half-space's, (n,); empty if the bodies are alike.
+    Q : the orthogonal matrix, (n, n).
     """
 
     a: Any
@@ -48,72 +57,79 @@ class Series(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """What an evaluation keeps, four numbers each, of every mode: 1/r, k, i2, y and then X, k f; a right side.
+    """Arrays of an evaluation, four numbers for each mode.
 
-    matrix : 1/r + Q^T k Q.  found : four numbers a function.
+    inverse_r, k, i2 : 1/r, k and i2.  y : y and, after the evaluation, X.  kf : k f.  right : a right side.
+    matrix : 1/r + Q^T k Q, four numbers an element.  functions : the results, four numbers a function.
     """
 
-    per_r: Any
+    inverse_r: Any
     k: Any
     i2: Any
     y: Any
     kf: Any
     right: Any
     matrix: Any
-    found: Any
+    functions: Any
 
 
+#: Fields of :class:`Workspace` with four numbers for each mode.
 _VECTORS = len(Workspace._fields) - 2
-_FOUND = LANES * FUNCTIONS
 
 
 def series_size(modes: int) -> int:
-    """How many numbers a series has, packed: its vectors, then Q."""
+    """Return the number of doubles of a series of ``modes`` modes: its vectors, then Q."""
     return modes * (len(Series._fields) - 1 + modes)
 
 
 def workspace_size(modes: int) -> int:
-    """How many numbers its room has, likewise."""
-    return LANES * modes * (_VECTORS + modes) + _FOUND
+    """Return the number of doubles of the workspace of a series of ``modes`` modes."""
+    return LANES * (modes * (_VECTORS + modes) + FUNCTIONS)
 
 
-@kernel(inline=True)
+@inline_kernel
 def unpack_series(numbers, n, unlike):
-    """A series of n modes."""
+    """Return the :class:`Series` of ``n`` modes in the vector ``numbers``; ``unlike``: whether it has weights."""
     row = numbers[: (5 + n) * n].reshape(5 + n, n)
     return Series(row[0], row[1], row[2], row[3], row[4, : n if unlike else 0], row[5:])
 
 
-@kernel(inline=True)
-def split_workspace(work, modes):
-    """Room for the evaluations of one."""
+@inline_kernel
+def split_workspace(numbers, modes):
+    """Return the :class:`Workspace` of a series of ``modes`` modes in the vector ``numbers``."""
     n = LANES * modes
     end = (_VECTORS + modes) * n
-    row, matrix = work[: _VECTORS * n].reshape(_VECTORS, n), work[_VECTORS * n : end]
-    return Workspace(row[0], row[1], row[2], row[3], row[4], row[5], matrix, work[end:])
+    row = numbers[: _VECTORS * n].reshape(_VECTORS, n)
+    return Workspace(row[0], row[1], row[2], row[3], row[4], row[5], numbers[_VECTORS * n : end], numbers[end:])
 
 
 def new_workspace(modes: int) -> Workspace:
-    """Room for the evaluations of a series of so many modes."""
+    """Return a new :class:`Workspace` for a series of ``modes`` modes."""
     return split_workspace.py_func(np.empty(workspace_size(modes)), modes)
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_ratios(places, series, work):
-    """The ratios of every mode at four places."""
+    """Write 1/r, k and i2 of every mode at four places z.
+
+    places : vector of four z > 0.  series : a :class:`Series`.  work : its :class:`Workspace`, written.
+    """
+    z = unpack(places)
     for at in range(LANES * series.a.size):
-        i, z = at // LANES, places[at % LANES]
-        r, _ = ratio_r(series.a[i] * z)
-        work.per_r[at], work.i2[at] = 1.0 / r, ratio_i2(series.a[i] * z, r)
-        work.k[at], _ = ratio_k(series.b[i] * z)
+        i = at // LANES
+        x = series.a[i] * z[at % LANES]
+        r, _ = ratio_r(x)
+        work.inverse_r[at] = 1.0 / r
+        work.i2[at] = ratio_i2(x, r)
+        work.k[at], _ = ratio_k(series.b[i] * z[at % LANES])
 
 
-# --- four places or a jet ---
+# --- arithmetic of four values or of a jet ---
 
 
-@kernel(inline=True)
+@inline_kernel
 def multiply(jets, p, q):
-    """The product."""
+    """Return the product of two vectors, which are jets if ``jets``."""
     if not jets:
         return p * q
     p0, p1, p2, p3 = unpack(p)
@@ -121,90 +137,100 @@ def multiply(jets, p, q):
     return pack(p0 * q0, p1 * q0 + p0 * q1, p2 * q0 + p0 * q2, p3 * q0 + p1 * q2 + p2 * q1 + p0 * q3)
 
 
-@kernel(inline=True)
+@inline_kernel
 def reciprocal(jets, p):
-    """1/p."""
-    per = 1.0 / p
+    """Return 1/p of a vector, which is a jet if ``jets``."""
+    inverse = 1.0 / p
     if not jets:
-        return per
-    w, _, _, _ = unpack(per)
+        return inverse
+    w, _, _, _ = unpack(inverse)
     _, dz, ds, dzds = unpack(p)
     return pack(w, -w * w * dz, -w * w * ds, w * w * (2.0 * w * dz * ds - dzds))
 
 
-@kernel(inline=True)
+@inline_kernel
 def _strength(jets, strength, rate):
-    """e_i or t_j."""
+    """Return e_i, or t_j, as a vector; of a jet its slope over s is the strength divided by the rate."""
     return pack(strength, 0.0, strength / rate, 0.0) if jets else broadcast(strength)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _value(jets, p):
-    """Of a jet, its value four times."""
+    """Return the value of a jet, four times; without ``jets`` p itself."""
     return broadcast(unpack(p)[0]) if jets else p
 
 
-@kernel(inline=True)
+@inline_kernel
 def _factorize(matrix, count):
-    """A triangle times its diagonal, and 1 over that, in the lower half of a symmetric positive definite matrix."""
-    row_of = LANES * count
-    for i in range(0, LANES * count, LANES):
-        per = 1.0 / load(matrix, i * count + i)
-        store(matrix, i * count + i, per)
-        for row in range(i + LANES, row_of, LANES):
-            share = load(matrix, row * count + i) * (0.0 - per)
+    """Factorize a symmetric positive definite matrix as L D L^T in its lower half, with 1/D on the diagonal.
+
+    matrix : (count, count) vectors of four, flat.  count : number of rows.
+    """
+    row_size = LANES * count
+    for i in range(0, row_size, LANES):
+        inverse = 1.0 / load(matrix, i * count + i)
+        store(matrix, i * count + i, inverse)
+        for row in range(i + LANES, row_size, LANES):
+            factor = load(matrix, row * count + i) * (0.0 - inverse)
             for column in range(i + LANES, row + LANES, LANES):
                 at = row * count + column
-                store(matrix, at, fma4(share, load(matrix, column * count + i), load(matrix, at)))
+                store(matrix, at, fma4(factor, load(matrix, column * count + i), load(matrix, at)))
 
 
-@kernel(inline=True)
+@inline_kernel
 def _substitute(matrix, right, count):
-    """Solve a linear system in place of its right side, from the factors of the matrix."""
-    row_of = LANES * count
-    for i in range(0, row_of, LANES):
-        known = load(matrix, i * count + i) * load(right, i)
-        for row in range(i + LANES, row_of, LANES):
-            store(right, row, load(right, row) - load(matrix, row * count + i) * known)
-    for row in range(row_of - LANES, -1, -LANES):
-        known = load(matrix, row * count + row) * load(right, row)
-        store(right, row, known)
-        for i in range(0, row, LANES):
-            store(right, i, load(right, i) - load(matrix, row * count + i) * known)
+    """Solve a linear system in place of its right side.
 
-
-@kernel(inline=True)
-def solve_modes(jets, series, work):
-    """y and k f, from the ratios.
-
-    A jet takes the factors of the matrix's value for those of all of it, which leaves an error with d/dz or d/ds as a
-    factor: the second time with both, the third time none.
+    matrix : factors by :func:`_factorize`.  right : ``count`` vectors of four, flat.  count : number of unknowns.
     """
-    count, matrix = series.a.size, work.matrix
+    row_size = LANES * count
+    for i in range(0, row_size, LANES):
+        unknown = load(matrix, i * count + i) * load(right, i)
+        for row in range(i + LANES, row_size, LANES):
+            store(right, row, load(right, row) - load(matrix, row * count + i) * unknown)
+    for row in range(row_size - LANES, -1, -LANES):
+        unknown = load(matrix, row * count + row) * load(right, row)
+        store(right, row, unknown)
+        for i in range(0, row, LANES):
+            store(right, i, load(right, i) - load(matrix, row * count + i) * unknown)
+
+
+@inline_kernel
+def solve_modes(jets, series, work):
+    """Solve (1/r + Q^T k Q) y = e, and write y and k f.
+
+    jets : whether vectors are jets.  series : a :class:`Series`.  work : its :class:`Workspace` with the ratios.
+
+    The factors are those of the value of the matrix.  Of a jet that leaves an error with d/dz or d/ds as a factor: the
+    second turn leaves one with both, and the third none.
+    """
+    count = series.a.size
     for i in range(count):
         for j in range(count):
             store(work.kf, LANES * j, series.Q[j, i] * load(work.k, LANES * j))
         for n in range(0, i + 1, 2):  # two sums that do not wait for one another
-            other, at = min(n + 1, i), LANES * i * count
-            one = two = broadcast(0.0)
+            other = min(n + 1, i)
+            at = LANES * i * count
+            first = second = broadcast(0.0)
             for j in range(count):
                 x = load(work.kf, LANES * j)
-                one, two = fma4(broadcast(series.Q[j, n]), x, one), fma4(broadcast(series.Q[j, other]), x, two)
-            store(matrix, at + LANES * n, _value(jets, one))
-            store(matrix, at + LANES * other, _value(jets, two))
+                first = fma4(broadcast(series.Q[j, n]), x, first)
+                second = fma4(broadcast(series.Q[j, other]), x, second)
+            store(work.matrix, at + LANES * n, _value(jets, first))
+            store(work.matrix, at + LANES * other, _value(jets, second))
         at = LANES * i * (count + 1)
-        store(matrix, at, load(matrix, at) + _value(jets, load(work.per_r, LANES * i)))
+        store(work.matrix, at, load(work.matrix, at) + _value(jets, load(work.inverse_r, LANES * i)))
         store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]))
         store(work.y, LANES * i, broadcast(0.0))
-    _factorize(matrix, count)
+    _factorize(work.matrix, count)
     for turn in range(3 if jets else 1):
         if turn > 0:
             for i in range(count):
-                total = multiply(jets, load(work.per_r, LANES * i), load(work.y, LANES * i))
+                total = multiply(jets, load(work.inverse_r, LANES * i), load(work.y, LANES * i))
                 for j in range(count):
                     total = fma4(broadcast(series.Q[j, i]), load(work.kf, LANES * j), total)
                 store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]) - total)
-        _substitute(matrix, work.right, count)
+        _substitute(work.matrix, work.right, count)
         for at in range(0, LANES * count, LANES):
             store(work.y, at, load(work.y, at) + load(work.right, at))
         for j in range(count):
@@ -215,53 +241,64 @@ def solve_modes(jets, series, work):
 
 
 @kernel
-def _shares(jets, lam2, series, work):
-    """(Of the half-space, of the cylinder): their creep modes' parts of m; no slopes over s."""
-    count, half_space, cylinder = series.a.size, broadcast(0.0), broadcast(0.0)
+def _split_moment(jets, lam2, series, work):
+    """Return (half-space, cylinder): what the creep modes of either body have in m; without slopes over s.
+
+    jets : whether vectors are jets.  lam2 : lam^2.  series : a :class:`Series` with weights.
+    work : its :class:`Workspace` with X in place of y.
+    """
+    count = series.a.size
+    half_space = cylinder = broadcast(0.0)
     for i in range(count):
-        own, a = load(work.i2, LANES * i), series.a[i]
-        u = load(work.i2, LANES * i)
+        own = u = load(work.i2, LANES * i)
+        a = series.a[i]
         for n in range(count):
             weight = a * series.a[n] / (a + series.a[n])
             u += weight * multiply(jets, load(work.y, LANES * n), own - load(work.i2, LANES * n))
-        pressed = multiply(jets, multiply(jets, load(work.y, LANES * i), u), lam2)
-        store(work.right, LANES * i, (1.0 / series.e[i]) * pressed)
+        v = multiply(jets, multiply(jets, load(work.y, LANES * i), u), lam2)
+        store(work.right, LANES * i, (1.0 / series.e[i]) * v)
     for j in range(count):
-        share = load(work.kf, LANES * j)
+        moment = load(work.kf, LANES * j)
         for i in range(count):
-            share += series.Q[j, i] * load(work.right, LANES * i)
-        half_space += series.weights[j] * series.t[j] * share
-        cylinder += (1.0 - series.weights[j]) * series.t[j] * share
+            moment += series.Q[j, i] * load(work.right, LANES * i)
+        half_space += series.weights[j] * series.t[j] * moment
+        cylinder += (1.0 - series.weights[j]) * series.t[j] * moment
     return half_space, cylinder
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_functions(jets, z, series, work):
-    """(g, h, sum X_i i2_i) at z > 0, from the ratios there; ``found``.
+    """Write g/z, h/z and m of both bodies at z > 0 into ``work.functions``.
 
-    What the two bodies together differ from m by, roundings of alpha times the size of one, they take in proportion.
+    jets : whether vectors are jets.  z : vector of four z, or the jet of one.  series : a :class:`Series`.
+    work : its :class:`Workspace` with the ratios at z, written.
+
+    Returns (g, h, sum X_i i2_i).  The moments of the two bodies are scaled so that their sum is m: they differ from it
+    by roundings of alpha times the size of one.
     """
     solve_modes(jets, series, work)
-    one = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)
-    g, h, pressed = broadcast(0.0), broadcast(0.0), broadcast(0.0)
+    unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)
+    g = h = pressed = broadcast(0.0)
     for i in range(series.a.size):
         at = LANES * i
-        e, t = _strength(jets, series.e[i], series.a[i]), _strength(jets, series.t[i], series.b[i])
-        ey = multiply(jets, e, load(work.y, at))
-        X = multiply(jets, ey, load(work.per_r, at))
+        ey = multiply(jets, _strength(jets, series.e[i], series.a[i]), load(work.y, at))
+        X = multiply(jets, ey, load(work.inverse_r, at))
         store(work.y, at, X)
-        h, g, pressed = h + ey, g + multiply(jets, t, load(work.kf, at)), pressed + multiply(jets, X, load(work.i2, at))
-    per_z = reciprocal(jets, z)
-    rise = multiply(jets, h, per_z)
-    lam2 = reciprocal(jets, one + 2.0 * rise)
+        h += ey
+        g += multiply(jets, _strength(jets, series.t[i], series.b[i]), load(work.kf, at))
+        pressed += multiply(jets, X, load(work.i2, at))
+    inverse_z = reciprocal(jets, z)
+    h_over_z = multiply(jets, h, inverse_z)
+    lam2 = reciprocal(jets, unit + 2.0 * h_over_z)
     m = g + multiply(jets, lam2, pressed)
     half_space = cylinder = 0.5 * m
     if series.weights.size > 0:
-        half_space, cylinder = _shares(jets, lam2, series, work)
-        whole = multiply(jets, m, reciprocal(jets, half_space + cylinder))
-        half_space, cylinder = multiply(jets, half_space, whole), multiply(jets, cylinder, whole)
-    store(work.found, LANES * G_OVER_Z, multiply(jets, g, per_z))
-    store(work.found, LANES * H_OVER_Z, rise)
-    store(work.found, LANES * M_HALF_SPACE, half_space)
-    store(work.found, LANES * M_CYLINDER, cylinder)
+        half_space, cylinder = _split_moment(jets, lam2, series, work)
+        factor = multiply(jets, m, reciprocal(jets, half_space + cylinder))
+        half_space = multiply(jets, half_space, factor)
+        cylinder = multiply(jets, cylinder, factor)
+    store(work.functions, G_OVER_Z, multiply(jets, g, inverse_z))
+    store(work.functions, H_OVER_Z, h_over_z)
+    store(work.functions, M_HALF_SPACE, half_space)
+    store(work.functions, M_CYLINDER, cylinder)
     return g, h, pressed

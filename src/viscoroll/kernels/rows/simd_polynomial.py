@@ -1,124 +1,147 @@
-"""Polynomials of 24 powers by vectors of four: the powers of two functions, even and odd, or of one, modulo four.
+"""Polynomials of 24 coefficients, evaluated by vectors of four numbers.
 
-A polynomial of ``evaluate_one`` function is its powers in their order, six vectors in t^4; of a ``evaluate_pair`` of
-functions a and b it is a0 a1 b0 b1, a2 a3 b2 b3, ..., twelve vectors in t^2.  So a row costs no more than an eighth
-of its octave with half as many powers would.  All take (table, where the row begins, t).
+One function is stored as its coefficients in their order: six vectors, each a polynomial in t^4.  A pair of functions a
+and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...: twelve vectors, polynomials in t^2 of the even and odd coefficients.
+So a polynomial over an octave costs no more than one over an eighth of the octave with half as many coefficients.
+
+All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``.
 """
-
-from __future__ import annotations
-
-from typing import Any
 
 from llvmlite import ir
 from numba.core import types
 
 from ..compile.intrinsics import fma, make_intrinsic
-from ..compile.jit import kernel
-from ..numerics.simd4 import FOUR, LANES, VECTOR, broadcast_value, fma_vectors, shuffle, unpack, vector_pointers
+from ..compile.jit import inline_kernel
+from ..numerics.simd4 import FOUR, LANES, VECTOR, broadcast_value, fma_vectors, load_vectors, shuffle, unpack
 
+#: Coefficients of a polynomial: over an octave 24 leave the rounding of doubles.
 TERMS = 24
-_ONE, _PAIR = TERMS // LANES, 2 * TERMS // LANES
+#: Vectors of one function.
+_ONE = TERMS // LANES
 
 
-def _row(context: Any, builder: Any, signature: Any, given: Any, count: int) -> list:
-    places = vector_pointers(context, builder, signature.args[0], *given[:2], count)
-    return [builder.load(place, align=8) for place in places]
-
-
-def _constant(numbers: Any) -> Any:
+def _constant(numbers):
+    """Return a constant vector of LLVM with four ``numbers``."""
     return ir.Constant(VECTOR, [float(x) for x in numbers])
 
 
-def _sums(count: int, orders: int) -> Any:
-    """(table, at, power) -> the sum of so many vectors times powers, its slope over the power, and that of this."""
+def _make_sums(count: int, orders: int):
+    """Return a function for kernels, (table, start, x) -> polynomial in x with vectors for coefficients, derivatives.
 
-    def lower(context, builder, signature, given):
-        terms, found = _row(context, builder, signature, given, count), []
+    count : number of coefficients.  orders : how many values are returned: the polynomial, its first derivative, ...
+    """
+
+    def lower(context, builder, signature, arguments):
+        terms = load_vectors(context, builder, signature, arguments, count)
+        sums = []
         for _ in range(orders):
-            level, power = terms, broadcast_value(builder, given[2])
-            while len(level) > 1:  # by Estrin's scheme: its parts do not wait for one another
+            level = terms
+            power = broadcast_value(builder, arguments[2])
+            while len(level) > 1:  # by Estrin's scheme, whose parts do not wait for one another
                 pairs = [level[n : n + 2] for n in range(0, len(level), 2)]
-                level = [
-                    fma_vectors(builder, evaluate_pair[1], power, evaluate_pair[0])
-                    if len(evaluate_pair) > 1
-                    else evaluate_pair[0]
-                    for evaluate_pair in pairs
-                ]
+                level = [fma_vectors(builder, odd[0], power, even) if odd else even for even, *odd in pairs]
                 power = builder.fmul(power, power)
-            found.append(level[0])
+            sums.append(level[0])
             terms = [builder.fmul(_constant([k] * LANES), term) for k, term in enumerate(terms)][1:]
-        return context.make_tuple(builder, signature.return_type, found)
+        return context.make_tuple(builder, signature.return_type, sums)
 
     return make_intrinsic(lower, types.UniTuple(FOUR, orders), None, types.int64, types.float64)
 
 
-def _secants(context, builder, signature, given):
-    """Of one function and of its slope: sums at a power, and their differences from those at another over that."""
-    terms, found = _row(context, builder, signature, given, _ONE), []
-    power, other = (broadcast_value(builder, x) for x in given[2:])
+def _lower_secants(context, builder, signature, arguments):
+    """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its slope.
+
+    context, builder, signature, arguments : of numba's lowering.
+    p is the polynomial with vectors for coefficients, x and z are fourth powers of two arguments.
+    """
+    terms = load_vectors(context, builder, signature, arguments, _ONE)
+    sums = []
+    x, z = (broadcast_value(builder, power) for power in arguments[2:])
     for _ in range(2):
         value = total = terms[-1]
         for term in terms[-2:0:-1]:
-            value = fma_vectors(builder, power, value, term)
-            total = fma_vectors(builder, other, total, value)
-        found += [fma_vectors(builder, power, value, terms[0]), total]
+            value = fma_vectors(builder, x, value, term)
+            total = fma_vectors(builder, z, total, value)
+        sums += [fma_vectors(builder, x, value, terms[0]), total]
+        # the coefficients of the slope: each moves down by one power
         following = zip(terms, [*terms[1:], _constant([0.0] * LANES)])
-        terms = [shuffle(builder, a, b, range(1, LANES + 1)) for a, b in following]
-        powers = [range(LANES * k + 1, LANES * (k + 1) + 1) for k in range(_ONE)]
-        terms = [builder.fmul(_constant(each), term) for each, term in zip(powers, terms, strict=True)]
-    return context.make_tuple(builder, signature.return_type, found)
+        moved = [shuffle(builder, *neighbours, range(1, LANES + 1)) for neighbours in following]
+        terms = [builder.fmul(_constant(range(n, n + LANES)), term) for n, term in zip(range(1, TERMS, LANES), moved)]
+    return context.make_tuple(builder, signature.return_type, sums)
 
 
-_pair_sums, _one_sums = _sums(_PAIR, 3), _sums(_ONE, 2)
-_one_secants = make_intrinsic(_secants, types.UniTuple(FOUR, 4), None, types.int64, types.float64, types.float64)
+_pair_sums = _make_sums(2 * _ONE, 3)
+_one_sums = _make_sums(_ONE, 2)
+_one_secants = make_intrinsic(_lower_secants, types.UniTuple(FOUR, 4), None, types.int64, types.float64, types.float64)
 
 
-@kernel(inline=True)
-def evaluate_pair(table, at, t):
-    """Values of two functions, their slopes, and the slopes of these: what is not taken is not computed."""
-    twice, square = 2.0 * t, t * t
-    value, rise, bend = _pair_sums(table, at, square)
+@inline_kernel
+def evaluate_pair(table, start, t):
+    """Return (a, b, a', b', a'', b'') at t of a pair of functions; the compiler leaves out what is not read.
+
+    table : vector of coefficients.  start : where those of the pair begin.  t : argument, dimensionless.
+    """
+    twice = 2.0 * t
+    square = t * t
+    value, first_derivative, second_derivative = _pair_sums(table, start, square)
+    # each function is E + t O, with polynomials E and O of t^2
     a_even, a_odd, b_even, b_odd = unpack(value)
-    # f = E + t O of t^2
-    a_even_1, a_odd_1, b_even_1, b_odd_1 = unpack(rise)
-    a_even_2, a_odd_2, b_even_2, b_odd_2 = unpack(bend)
-    a_1, b_1 = fma(t, a_odd_1, a_even_1), fma(t, b_odd_1, b_even_1)
+    a_even_1, a_odd_1, b_even_1, b_odd_1 = unpack(first_derivative)
+    a_even_2, a_odd_2, b_even_2, b_odd_2 = unpack(second_derivative)
+    a_1 = fma(t, a_odd_1, a_even_1)
+    b_1 = fma(t, b_odd_1, b_even_1)
     a_2 = 2.0 * fma(twice, a_odd_1 + fma(square, a_odd_2, t * a_even_2), a_1)
     b_2 = 2.0 * fma(twice, b_odd_1 + fma(square, b_odd_2, t * b_even_2), b_1)
-    values = fma(t, a_odd, a_even), fma(t, b_odd, b_even)
-    return *values, fma(twice, a_1, a_odd), fma(twice, b_1, b_odd), a_2, b_2
+    return fma(t, a_odd, a_even), fma(t, b_odd, b_even), fma(twice, a_1, a_odd), fma(twice, b_1, b_odd), a_2, b_2
 
 
-@kernel(inline=True)
-def _joined(sums, t, square):
-    """One number from the sums of its powers modulo four."""
+@inline_kernel
+def _join(sums, t, square):
+    """Return the value at t from the four polynomials of the coefficients modulo four.
+
+    sums : their values at t^4, one vector.  square : t^2.
+    """
     a, b, c, d = unpack(sums)
     return fma(square, fma(t, d, c), fma(t, b, a))
 
 
-@kernel(inline=True)
-def evaluate_one(table, at, t):
-    """Value of one function, and its slope."""
+@inline_kernel
+def evaluate_single(table, start, t):
+    """Return (value, slope) at t of one function.
+
+    table : vector of coefficients.  start : where those of the function begin.  t : argument, dimensionless.
+    """
     square = t * t
-    value, rise = _one_sums(table, at, square * square)
+    value, first_derivative = _one_sums(table, start, square * square)
     _, b, c, d = unpack(value)
-    slope = fma(4.0 * t * square, _joined(rise, t, square), fma(t, fma(3.0 * t, d, 2.0 * c), b))
-    return _joined(value, t, square), slope
+    slope = fma(4.0 * t * square, _join(first_derivative, t, square), fma(t, fma(3.0 * t, d, 2.0 * c), b))
+    return _join(value, t, square), slope
 
 
-@kernel(inline=True)
-def _secant(sums, rises, t, s):
-    square, other = t * t, s * s
+@inline_kernel
+def _join_secant(sums, secants, t, s):
+    """Return p(t) and (p(t) - p(s))/(t - s) from the four polynomials of the coefficients modulo four.
+
+    sums : their values at t^4, one vector.  secants : theirs between t^4 and s^4.  t, s : the arguments.
+    """
+    square = t * t
+    s_square = s * s
     # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
     _, first, second, third = unpack(sums)
-    first = fma(fma(t, s, square + other), third, fma(t + s, second, first))
-    return _joined(sums, t, square), (t + s) * (square + other) * _joined(rises, s, other) + first
+    first = fma(fma(t, s, square + s_square), third, fma(t + s, second, first))
+    return _join(sums, t, square), (t + s) * (square + s_square) * _join(secants, s, s_square) + first
 
 
-@kernel(inline=True)
-def evaluate_secants(table, at, t, s):
-    """p(t) and (p(t) - p(s))/(t - s) of one function, then of its slope."""
-    square, other = t * t, s * s
-    sums, rises, slope_sums, slope_rises = _one_secants(table, at, square * square, other * other)
-    value, rise = _secant(sums, rises, t, s)
-    return value, rise, *_secant(slope_sums, slope_rises, t, s)
+@inline_kernel
+def evaluate_secants(table, start, t, s):
+    """Return p(t) and (p(t) - p(s))/(t - s) of one function p, and the same of its slope p', without cancellation.
+
+    table : vector of coefficients.  start : where those of the function begin.  t, s : arguments, dimensionless.
+
+    Returns (p(t), secant of p, p'(t), secant of p').
+    """
+    square = t * t
+    s_square = s * s
+    sums, secants, slope_sums, slope_secants = _one_secants(table, start, square * square, s_square * s_square)
+    value, first_derivative = _join_secant(sums, secants, t, s)
+    return value, first_derivative, *_join_secant(slope_sums, slope_secants, t, s)

@@ -14,11 +14,9 @@ then removes the speed from the formulas, and V = 0 is zeta = inf: Hertz.
 With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = alpha z.  Only the
 part of [0, phi] with a D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40
 digits S is within 3e-15 of its peak and 2e-14 of itself for a from 1e-8 to 1e8, alpha from 1.01
-to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum: a memory each, of
-weight a_i X_i (:mod:`series`) in place of alpha B.
+to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum over
+the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
 """
-
-from __future__ import annotations
 
 from typing import Any, NamedTuple
 
@@ -32,14 +30,48 @@ from .contact_states import element
 from .modes import set_alpha_of_state
 from .series import evaluate_functions, evaluate_ratios, new_workspace
 
-_NODES, _WEIGHTS = gauss(28)
-#: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
+#: Nodes of the Gauss-Legendre rule on [0, 1]: 24 nodes leave 1e-11 of the peak, 28 leave rounding.
+_NODES = gauss(28)[0]
+#: Weights of that rule.
+_WEIGHTS = gauss(28)[1]
+#: Exponent beyond which the integrand is nothing: exp(-38) = 3e-17.
 _DEEP = 38.0
 
 
+class MemoryWeights(NamedTuple):
+    """What the memory integrals of a series have in common at one z; filled by :func:`unit_shape`.
+
+    weight : a_i X_i of each mode.  complement : 1 - r(a_i z) of each mode.  z : the z, (1,).  work : a workspace.
+    """
+
+    weight: Any
+    complement: Any
+    z: Any
+    work: Any
+
+
+class Points(NamedTuple):
+    """Arrays of length 1, for all points, or with one value for each point.
+
+    x : position in l0 from the foot of the axis, positive in the direction of V.  kappa, mu : of the scene.
+    lam, epsilon, beta, zeta : state of the contact; zeta = inf at V = 0.
+    """
+
+    x: Any
+    kappa: Any
+    mu: Any
+    lam: Any
+    epsilon: Any
+    beta: Any
+    zeta: Any
+
+
 @kernel
-def _memory(u, w, a, r_complement):
-    """Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1, 1 - r given.
+def _memory_integral(u, w, a, r_complement):
+    """Return Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.
+
+    u, w : distances from the front and the rear edge in half contacts, u + w = 2.  a : alpha z.
+    r_complement : 1 - r(a).
 
     The integral over [0, pi] is zero.  Near the rear edge it is therefore taken over the small
     rest [phi, pi], with the other sign, where a (cos phi - cos t) <= a w < 1.
@@ -66,92 +98,64 @@ def _memory(u, w, a, r_complement):
     return sign * span * total
 
 
-class MemoryWeights(NamedTuple):
-    """Of a series at z, those of its modes: the weight a X and 1 - r of each; z; room."""
-
-    weight: Any
-    complement: Any
-    z: Any
-    room: Any
-
-
-def new_memory_weights(series: Any) -> MemoryWeights:
-    """Those of no z yet."""
+def new_memory_weights(series) -> MemoryWeights:
+    """Return :class:`MemoryWeights` of a :class:`Series` that belong to no z yet."""
     n = series.a.size
     return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))
 
 
 @kernel
-def _remember(z, series, known):
-    """Have those at z."""
-    if known.z[0] == z:
-        return
-    known.z[0] = z
-    evaluate_ratios((z, z, z, z), series, known.room)
-    evaluate_functions(False, broadcast(z), series, known.room)
-    for i in range(series.a.size):
-        known.weight[i] = series.a[i] * known.room.y[LANES * i]
-        _, known.complement[i] = ratio_r(series.a[i] * z)
+def unit_shape(u, w, z, series, weights):
+    """Return S/z, the shape of the pressure, at one point; 0 outside the contact.
 
-
-@kernel
-def unit_shape(u, w, z, series, known):
-    """S/z at the distances u from the front and w from the rear edge, u + w = 2; 0 outside.
-
-    z = inf is the elastic limit V = 0.
+    u, w : distances from the front and the rear edge in half contacts, u + w = 2.
+    z : half transit time, dimensionless; inf is the elastic limit V = 0.
+    series : a :class:`Series`.  weights : its :class:`MemoryWeights`, computed again if they belong to another z.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
     shape = np.sqrt(u * w)
     if z == np.inf:
         return shape
-    _remember(z, series, known)
+    if weights.z[0] != z:
+        weights.z[0] = z
+        places = broadcast(z)
+        evaluate_ratios(places, series, weights.work)
+        evaluate_functions(False, places, series, weights.work)
+        for i in range(series.a.size):
+            weights.weight[i] = series.a[i] * weights.work.y[LANES * i]
+            _, weights.complement[i] = ratio_r(series.a[i] * z)
     for i in range(series.a.size):
         a = series.a[i] * z
-        if known.weight[i] > 0.0 and a < np.inf:
-            shape += known.weight[i] * _memory(u, w, a, known.complement[i])
+        if weights.weight[i] > 0.0 and a < np.inf:
+            shape += weights.weight[i] * _memory_integral(u, w, a, weights.complement[i])
     return shape
-
-
-class Points(NamedTuple):
-    """Arrays of one value, or one a point: x in l0, ahead of the axis, and the state; zeta = inf at V = 0."""
-
-    x: Any
-    kappa: Any
-    mu: Any
-    lam: Any
-    epsilon: Any
-    beta: Any
-    zeta: Any
-
-
-@kernel
-def _stress(i, points, series, whole, stick):
-    """(p/E', |tau|/E') at a point."""
-    kappa, mu, lam, epsilon = (
-        element(points.kappa, i),
-        element(points.mu, i),
-        element(points.lam, i),
-        element(points.epsilon, i),
-    )
-    beta, zeta = element(points.beta, i), element(points.zeta, i)
-    y = 2.0 * element(points.x, i) / lam
-    u = (1.0 - y) + epsilon
-    w = (1.0 + y) - epsilon
-    scale = lam / (8.0 * np.pi * kappa)
-    p = scale * unit_shape(u, w, zeta, series, whole)
-    if u >= 2.0 * beta:
-        return p, mu * p
-    stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, series, stick)
-    # beta = 1: the difference is zero to rounding, of either sign
-    return p, mu * max(p - scale * stuck, 0.0)
 
 
 @kernel
 def stress_loop(series, alpha, whole, stick, points, p, tau):
-    """p/E' and |tau|/E' at every point; ``alpha``: none, or one each, of which ``series`` is then the one mode."""
+    """Compute the stresses at points.
+
+    series : a :class:`Series`.
+    alpha : alphas of a series of one mode, of length 1 or one for each point; empty: the series is complete.
+    whole, stick : :class:`MemoryWeights` for the contact and for the stick zone.  points : :class:`Points`.
+    p, tau : p/E' and |tau|/E' at every point, written.
+    """
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:
             whole.z[0] = stick.z[0] = np.nan
         set_alpha_of_state(i, alpha, series)
-        p[i], tau[i] = _stress(i, points, series, whole, stick)
+        lam = element(points.lam, i)
+        epsilon = element(points.epsilon, i)
+        beta = element(points.beta, i)
+        zeta = element(points.zeta, i)
+        y = 2.0 * element(points.x, i) / lam
+        u = (1.0 - y) + epsilon
+        w = (1.0 + y) - epsilon
+        scale = lam / (8.0 * np.pi * element(points.kappa, i))
+        p[i] = scale * unit_shape(u, w, zeta, series, whole)
+        stuck = 0.0
+        if not u >= 2.0 * beta:
+            stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, series, stick)
+        # at beta = 1 the difference is zero to rounding, of either sign
+        tau[i] = element(points.mu, i) * max(p[i] - scale * stuck, 0.0)

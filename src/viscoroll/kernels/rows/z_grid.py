@@ -1,23 +1,21 @@
-"""Rows of a series or a pair each, by a grid of z that all rows of one material share: no root, no slope.
+"""Rows for one series or pair after another, from a grid of z that all rows of a material share.
 
-At z = 2^(n/10) the modes' formulas give lam and share = z/(z + g), and with them a point of every function over
-u = lam/(2 z) and over v = share/z.  The polynomial of ln u or ln v through the 36 points around an octave
-(:mod:`newton_interpolation`) is read at the nodes of that octave.  That of the slow row goes through points at
-Chebyshev's places of 1/z and is one of t.  A row depends on its material alone, not on the rows that were made before.
+At the nodes z = 2^(n/10) the formulas of the modes (:mod:`series`) give lam and eta/F = z/(z + g), and with them a
+point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v through the 36
+points around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that octave.  The polynomial of
+the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is
+needed.  A row depends on its material alone, not on the rows that were made before.
 """
-
-from __future__ import annotations
 
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.intrinsics import floats_at, integers_at, record_at
-from ..compile.jit import kernel
+from ..compile.intrinsics import floats_at, integers_at, record_at, record_type
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import chebyshev, to_doubles
-from ..numerics.simd4 import LANES, pack
-from .contact_states import element
+from ..numerics.simd4 import LANES, pack, unpack
 from .newton_interpolation import (
     ARGUMENTS,
     FUNCTION_STRIDE,
@@ -29,8 +27,19 @@ from .newton_interpolation import (
     divided_differences,
     evaluate_at_nodes,
     to_powers,
-)
-from .record import E0, H_OVER_F2, MAKER_MARKS, MAKER_NUMBERS, PART_SIZE, PARTS_PER_ROW, ROW_COUNT, ROW_SIZE, VERSION
+)  # fmt: skip
+from .record import (
+    E0,
+    H_OVER_F2,
+    MAKER_MARKS,
+    MAKER_NUMBERS,
+    PART_SIZE,
+    PARTS_PER_ROW,
+    ROW_COUNT,
+    ROW_SIZE,
+    VERSION,
+    select_index,
+)  # fmt: skip
 from .series import (
     G_OVER_Z,
     H_OVER_Z,
@@ -40,155 +49,212 @@ from .series import (
     evaluate_ratios,
     split_workspace,
     unpack_series,
-)
+)  # fmt: skip
 from .simd_polynomial import TERMS
 
-#: nodes of an octave of z; octaves behind the shortest time where the fast limit begins
-NODES_PER_OCTAVE, FAST_LIMIT_OCTAVES = 10, 34
-#: functions at the nodes: over u, L, u m, u lam, epsilon, u m of either body; over v, press and share; all in the order
-#: of the parts of a row; then u, v and the logarithms that these are placed by, of lam and share
-_L, _M, _LAM, _EPSILON, _HALF_SPACE, _CYLINDER, _PRESS, _SHARE, _U, _V, _LN_LAM, _LN_SHARE = range(12)
-_FUNCTIONS = 12
-_STEP = math.log(2.0) / NODES_PER_OCTAVE
+#: Nodes of an octave of z: 6 of them leave an error of 3e-12 in lam, 10 that of rounding (against 40 digits).
+NODES_PER_OCTAVE = 10
+#: Octaves behind the shortest time where the fast limit begins: from there on it is good to rounding.
+FAST_LIMIT_OCTAVES = 34
 
+# Functions at a node, in the order of the parts of a row.
+#: L over u.
+_L = 0
+#: u m, with m = M/V.
+_M = 1
+#: u lam.
+_LAM = 2
+#: epsilon over u.
+_EPSILON = 3
+#: u m of the half-space.
+_HALF_SPACE = 4
+#: u m of the cylinder.
+_CYLINDER = 5
+#: H/F^2 over v.
+_H_OVER_F2 = 6
+#: eta/F over v.
+_ETA_OVER_F = 7
+#: The variable u itself.
+_U = 8
+#: The variable v itself.
+_V = 9
+#: ln lam, by which u is located: ln u = ln lam - ln(2 z).
+_LN_LAM = 10
+#: ln(eta/F), by which v is located: ln v = ln(eta/F) - ln z.
+_LN_ETA_OVER_F = 11
+#: Numbers of a node.
+_FUNCTIONS = 12
+
+#: Difference of ln z between nodes.
+_STEP = math.log(2.0) / NODES_PER_OCTAVE
+#: Nodes in [1, 2).
 _FRACTIONS = np.exp2(np.arange(NODES_PER_OCTAVE) / NODES_PER_OCTAVE)
+#: Nodes of the slow row in its t, which is in [0, 1].
 _SLOW_NODES = 0.5 + 0.5 * NODES
-_LN_NODES, _PER_NODES = np.log(0.25 * (NODES + 3.0)), 4.0 / (NODES + 3.0)
-#: from the middle outwards
+#: ln of the nodes of a row, as fractions of the end of its octave.
+_LN_NODES = np.log(0.25 * (NODES + 3.0))
+#: Inverse of the nodes of a row, as fractions of the end of its octave.
+_INVERSE_NODES = 4.0 / (NODES + 3.0)
+#: Numbers 0 to 35 from the middle outwards, the order of the points in Newton's polynomial.
 _OUTWARDS = np.array([POINT_COUNT // 2 + (n + 1) // 2 * (-1) ** n for n in range(POINT_COUNT)])
 
 
-def _leja(places: np.ndarray) -> np.ndarray:
-    """Places in an order in which differences stay small: each is the farthest from those before."""
-    found = [places.argmax()]
-    while len(found) < places.size:
-        found.append(np.prod(np.abs(4.0 * (places[:, None] - places[found])), axis=1).argmax())
-    return np.asarray(places[found])
+def _leja_order(points: np.ndarray) -> np.ndarray:
+    """Return points in an order in which divided differences stay small: each is farthest from those before it."""
+    order = [points.argmax()]
+    while len(order) < points.size:
+        order.append(np.prod(np.abs(4.0 * (points[:, None] - points[order])), axis=1).argmax())
+    return np.asarray(points[order])
 
 
-_SLOW_PLACES = _leja(0.5 + 0.5 * to_doubles(chebyshev(POINT_COUNT)))
+#: Points of the slow row as fractions of the end of 1/z, in their order in Newton's polynomial.
+_SLOW_POINTS = _leja_order(0.5 + 0.5 * to_doubles(chebyshev(POINT_COUNT)))
 
-#: what these kernels know: addresses of the record's arrays; of states or motions the material of each, and how many;
-#: of materials their numbers, and how many; room for the grid of one material, how many nodes, and by which stamp they
-#: were made; room for its modes, and how many numbers; whether parts of M are asked for
-SOURCE = np.dtype(
-    [(name, np.int64) for name in ("rows", "marks", "material_index", "state_count", "materials", "material_size")]
-    + [(name, np.int64) for name in ("numbers", "node_count", "node_versions", "workspace", "workspace_size", "unlike")]
+#: What these kernels read.  Addresses: rows and marks of the law; the index of the material of each state; the numbers
+#: of the materials; scratch for the grid (``numbers``); the versions of its blocks of four nodes; the workspace of the
+#: modes.  state_count: length of the indices, 1 or one for each state.  material_size: numbers of a material.
+#: node_count: nodes of the grid.  workspace_size: numbers of the workspace.  unlike: whether the bodies differ.
+SOURCE = record_type(
+    "rows marks material_index state_count materials material_size "
+    "numbers node_count node_versions workspace workspace_size unlike"
 )
-#: numbers of a material: those in front of rows, of which the last are sums J_j T_j of half-space and cylinder; first
-#: row, rows, modes; then its modes (:func:`.series.unpacked`)
-_T_HALF_SPACE, _T_CYLINDER, FIRST_EXPONENT = range(MAKER_NUMBERS, MAKER_NUMBERS + 3)
+#: Number of a material, and of the head of rows: sum J_j T_j of the half-space; behind it that of the cylinder.
+_T_HALF_SPACE = MAKER_NUMBERS
+#: Number of a material: exponent e0 of its first row; behind it the number of rows, and the number of modes.
+FIRST_EXPONENT = MAKER_NUMBERS + 2
+#: Number of a material where its modes begin (:func:`.series.unpack_series`).
 SERIES_START = FIRST_EXPONENT + 3
-#: marks: the material that is held, its modes, and where its numbers lie
-SELECTED, _MODES, _MATERIAL = range(MAKER_MARKS, MAKER_MARKS + 3)
+#: Mark that is the number of modes of the selected material.
+_MODES = MAKER_MARKS
+#: Mark that is the address of its numbers.
+_MATERIAL = MAKER_MARKS + 1
 
 
 class Grid(NamedTuple):
-    """The grid of the material that is held, and the rows that are made of it."""
+    """The grid of the selected material, and the rows that are made from it.
+
+    rows : of the law, written.  scratch : of :mod:`newton_interpolation`.
+    functions : (node_count, 12), values at the nodes; the last 36 nodes are the points of the slow row.
+    node_versions : version for which each block of four nodes was made.
+    series, workspace, modes, unlike : arguments of :func:`.series.unpack_series` and :func:`.series.split_workspace`.
+    e0 : exponent of the first row.  version : that of the selected material.
+    lowest : n of node 0, where z = 2^(n/10).
+    """
 
     rows: Any
-    numbers: Any
+    scratch: Any
     functions: Any
-    nodes: int
-    made: Any
+    node_count: int
+    node_versions: Any
     series: Any
-    room: Any
+    workspace: Any
     modes: int
     unlike: bool
     e0: int
-    stamp: int
+    version: int
     lowest: int
 
 
 def grid_size(count: int, alpha: float) -> int:
-    """How many nodes the grid of a law has, of which so many rows are made: the last are those of the slow row."""
+    """Return the number of nodes, a multiple of four, from which ``count`` rows of a law with ``alpha`` can be made."""
     nodes = NODES_PER_OCTAVE * (count + math.ceil(0.5 * math.log2(alpha)) + 4) + 3 * POINT_COUNT + LANES
     return nodes + -nodes % LANES
 
 
 def work_size(nodes: int) -> int:
-    """How many ``numbers`` a grid of so many nodes has."""
+    """Return the number of doubles of the scratch of a grid of ``nodes`` nodes."""
     return SCRATCH_SIZE + _FUNCTIONS * nodes
 
 
 @kernel(allocates=True)
 def select_series(n, source):
-    """:func:`record.hold`."""
-    given = record_at(source)
-    marks = integers_at(given.marks, PARTS_PER_ROW)
-    row = element(integers_at(given.material_index, given.state_count), n)
-    if marks[SELECTED] != row:
-        marks[SELECTED] = row
-        marks[VERSION] += 1
-        marks[_MATERIAL] = given.materials + 8 * given.material_size * row
-        rows, numbers = floats_at(given.rows, ROW_SIZE), floats_at(marks[_MATERIAL], SERIES_START)
+    """Select the material of state ``n``: write the heads of rows and marks; ``source``: pointer to a SOURCE record."""
+    source = record_at(source)
+    marks = integers_at(source.marks, PARTS_PER_ROW)
+    index = select_index(n, source.material_index, source.state_count, marks)
+    if index >= 0:
+        marks[_MATERIAL] = source.materials + 8 * source.material_size * index
+        rows = floats_at(source.rows, ROW_SIZE)
+        numbers = floats_at(marks[_MATERIAL], SERIES_START)
         for k in range(FIRST_EXPONENT):
             rows[k] = numbers[k]
-        marks[E0], marks[ROW_COUNT], marks[_MODES] = (
-            numbers[FIRST_EXPONENT],
-            numbers[FIRST_EXPONENT + 1],
-            numbers[FIRST_EXPONENT + 2],
-        )
+        marks[E0] = numbers[FIRST_EXPONENT]
+        marks[ROW_COUNT] = numbers[FIRST_EXPONENT + 1]
+        marks[_MODES] = numbers[FIRST_EXPONENT + 2]
 
 
 @kernel(allocates=True)
 def make_part(start, source):
-    """A part of a row."""
-    given = record_at(source)
-    marks = integers_at(given.marks, start // PART_SIZE + 1)
-    e0, nodes = marks[E0], given.node_count
-    lowest = (
-        NODES_PER_OCTAVE * (2 - e0) + 2 * POINT_COUNT + LANES - nodes
-    )  # the next below it that is a multiple of four
-    numbers = floats_at(given.numbers, SCRATCH_SIZE + _FUNCTIONS * nodes)
+    """Make a part of a row of the selected material.
+
+    start : position in the rows.  source : pointer to a SOURCE record.
+    """
+    source = record_at(source)
+    marks = integers_at(source.marks, start // PART_SIZE + 1)
+    nodes = source.node_count
+    modes = marks[_MODES]
+    lowest = NODES_PER_OCTAVE * (2 - marks[E0]) + 2 * POINT_COUNT + LANES - nodes
+    numbers = floats_at(source.numbers, SCRATCH_SIZE + _FUNCTIONS * nodes)
+    series = floats_at(marks[_MATERIAL] + 8 * SERIES_START, source.material_size - SERIES_START)
+    # blocks begin at multiples of four: the next below
     grid = Grid(
-        floats_at(given.rows, start + 2 * PART_SIZE), numbers, numbers[SCRATCH_SIZE:].reshape(nodes, _FUNCTIONS), nodes,
-        integers_at(given.node_versions, nodes // LANES),
-        floats_at(marks[_MATERIAL] + 8 * SERIES_START, given.material_size - SERIES_START),
-        floats_at(given.workspace, given.workspace_size), marks[_MODES], given.unlike != 0 and marks[_MODES] > 0, e0,
-        marks[VERSION], lowest - lowest % LANES,
+        floats_at(source.rows, start + 2 * PART_SIZE), numbers, numbers[SCRATCH_SIZE:].reshape(nodes, _FUNCTIONS),
+        nodes, integers_at(source.node_versions, nodes // LANES), series,
+        floats_at(source.workspace, source.workspace_size), modes, source.unlike != 0 and modes > 0,
+        marks[E0], marks[VERSION], lowest - lowest % LANES,
     )  # fmt: skip
-    _make(start % ROW_SIZE, start // ROW_SIZE - 1, grid)
+    _make_functions(start % ROW_SIZE, start // ROW_SIZE - 1, grid)
     marks[start // PART_SIZE] = marks[VERSION]
 
 
 @kernel
-def _make(part, row, grid):
-    """One function of a row or a pair of them."""
-    over_v, slow, numbers = part >= H_OVER_F2, row == 0, grid.numbers
-    first, count = part // PART_SIZE, 1 if over_v else 2
+def _make_functions(part, row, grid):
+    """Write one function of a row, over v, or a pair of them, over u.
+
+    part : offset in a row.  row : its number.  grid : the :class:`Grid`.
+    """
+    over_v = part >= H_OVER_F2
+    slow = row == 0
+    scratch = grid.scratch
+    first = part // PART_SIZE
+    count = 1 if over_v else 2
     if slow:
-        _slow_points(first, count, over_v, grid)
+        _collect_slow_points(first, count, over_v, grid)
     else:
-        _points(row, first, count, over_v, grid)
-    divided_differences(count, numbers)
+        _collect_points(row, first, count, over_v, grid)
+    divided_differences(count, scratch)
     for which in range(count):
-        function, limit = first + which, 0.0
-        evaluate_at_nodes(_SLOW_NODES if slow else _LN_NODES, which, numbers)
+        function = first + which
+        limit = 0.0
+        evaluate_at_nodes(_SLOW_NODES if slow else _LN_NODES, which, scratch)
         if slow:
-            limit = _limit(function, grid)
-        elif _over_u(function):
+            limit = _slow_limit(function, grid)
+        elif _is_times_u(function):
             scale = math.ldexp(1.0, int(-grid.e0 - row))
             for k in range(TERMS):
-                numbers[NODE_VALUES + k] *= _PER_NODES[k] * scale
-        to_powers(slow, limit, numbers)
-        shift = 1 if slow and function == _EPSILON else 0  # it is over t
+                scratch[NODE_VALUES + k] *= _INVERSE_NODES[k] * scale
+        to_powers(slow, limit, scratch)
+        shift = 1 if slow and function == _EPSILON else 0  # the polynomial is that of epsilon/t
         to = (row + 1) * ROW_SIZE + part + 2 * which
         grid.rows[to] = 0.0
         for k in range(shift, TERMS):
-            grid.rows[to + (k // 2) * (2 * count) + k % 2] = numbers[NODE_VALUES + k - shift]
+            grid.rows[to + (k // 2) * (2 * count) + k % 2] = scratch[NODE_VALUES + k - shift]
 
 
-@kernel(inline=True)
-def _over_u(function):
-    """Whether a function is known times u."""
+@inline_kernel
+def _is_times_u(function):
+    """Return whether a function is stored at the nodes as its product with u."""
     return function == _M or function == _LAM or function == _HALF_SPACE or function == _CYLINDER
 
 
-@kernel(inline=True)
-def _limit(function, grid):
-    """As u or v -> 0; of epsilon over t."""
-    half_space, cylinder = grid.rows[_T_HALF_SPACE], grid.rows[_T_CYLINDER]
+@inline_kernel
+def _slow_limit(function, grid):
+    """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t.
+
+    function : _L to _ETA_OVER_F.  grid : the :class:`Grid`.
+    """
+    half_space = grid.rows[_T_HALF_SPACE]
+    cylinder = grid.rows[_T_HALF_SPACE + 1]
     if function == _EPSILON:
         return math.ldexp(half_space + cylinder, int(grid.e0))
     if function == _M:
@@ -199,92 +265,120 @@ def _limit(function, grid):
 # --- points ---
 
 
-@kernel(inline=True)
-def _place(at, grid):
-    """z of a node."""
-    slow, n = at - (grid.nodes - POINT_COUNT), at + grid.lowest
+@inline_kernel
+def _z_of_node(node, grid):
+    """Return z of a node: a power of 2^(1/10), or a point of the slow row.
+
+    node : its number.  grid : the :class:`Grid`.
+    """
+    slow = node - (grid.node_count - POINT_COUNT)
+    n = node + grid.lowest
     if slow < 0:
         return math.ldexp(_FRACTIONS[n % NODES_PER_OCTAVE], int(n // NODES_PER_OCTAVE))
     end = math.ldexp(1.0, int(grid.e0))
-    return 0.5 / (end * (1.0 + 2.5 * (grid.rows[_T_HALF_SPACE] + grid.rows[_T_CYLINDER]) * end) * _SLOW_PLACES[slow])
+    T_mean = grid.rows[_T_HALF_SPACE] + grid.rows[_T_HALF_SPACE + 1]
+    return 0.5 / (end * (1.0 + 2.5 * T_mean * end) * _SLOW_POINTS[slow])
 
 
 @kernel
-def _fill(at, grid):
-    """The functions at the four nodes from ``at`` on."""
-    places = _place(at, grid), _place(at + 1, grid), _place(at + 2, grid), _place(at + 3, grid)
-    series, work = unpack_series(grid.series, grid.modes, grid.unlike), split_workspace(grid.room, grid.modes)
-    evaluate_ratios(places, series, work)
-    evaluate_functions(False, pack(places[0], places[1], places[2], places[3]), series, work)
-    for c in range(LANES):
-        shift, rise = work.found[LANES * G_OVER_Z + c], work.found[LANES * H_OVER_Z + c]
-        half_space, cylinder = work.found[LANES * M_HALF_SPACE + c], work.found[LANES * M_CYLINDER + c]
-        per_z, per_lam, share = 1.0 / places[c], np.sqrt(1.0 + 2.0 * rise), 1.0 / (1.0 + shift)
-        lam, ratio, node = 1.0 / per_lam, share * per_lam, grid.functions[at + c]
-        u = 0.5 * lam * per_z
-        node[_L], node[_M], node[_LAM], node[_EPSILON] = (
-            lam * (1.0 + shift),
-            u * (half_space + cylinder),
-            u * lam,
-            shift,
-        )
-        node[_HALF_SPACE], node[_CYLINDER] = u * half_space, u * cylinder
-        node[_PRESS], node[_SHARE], node[_U], node[_V] = ratio * ratio, share, u, share * per_z
-        node[_LN_LAM], node[_LN_SHARE] = np.log(lam), np.log(share)
+def _fill_block(first, grid):
+    """Compute the functions at four nodes.
 
-
-@kernel(inline=True)
-def _need(first, stop, grid):
-    """Have nodes first ... stop - 1."""
-    for block in range(first // LANES, (stop - 1) // LANES + 1):
-        if grid.made[block] != grid.stamp:
-            grid.made[block] = grid.stamp
-            _fill(LANES * block, grid)
-
-
-@kernel(inline=True)
-def _from_end(at, row, over_v, grid):
-    """ln of u or v at a node over the end of an octave."""
-    _need(at, at + 1, grid)
-    end = (at + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
-    return (
-        grid.functions[at, _LN_SHARE] - end
-        if over_v
-        else grid.functions[at, _LN_LAM] - (end + NODES_PER_OCTAVE * _STEP)
+    first : number of the first node, a multiple of four.  grid : the :class:`Grid`, written.
+    """
+    places = pack(
+        _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
     )
+    z = unpack(places)
+    series = unpack_series(grid.series, grid.modes, grid.unlike)
+    work = split_workspace(grid.workspace, grid.modes)
+    evaluate_ratios(places, series, work)
+    evaluate_functions(False, places, series, work)
+    for c in range(LANES):
+        shift = work.functions[G_OVER_Z + c]
+        half_space = work.functions[M_HALF_SPACE + c]
+        cylinder = work.functions[M_CYLINDER + c]
+        inverse_z = 1.0 / z[c]
+        inverse_lam = np.sqrt(1.0 + 2.0 * work.functions[H_OVER_Z + c])
+        eta_over_F = 1.0 / (1.0 + shift)
+        lam = 1.0 / inverse_lam
+        root_of_H_over_F2 = eta_over_F * inverse_lam
+        u = 0.5 * lam * inverse_z
+        node = grid.functions[first + c]
+        node[_L] = lam * (1.0 + shift)
+        node[_M] = u * (half_space + cylinder)
+        node[_LAM] = u * lam
+        node[_EPSILON] = shift
+        node[_HALF_SPACE] = u * half_space
+        node[_CYLINDER] = u * cylinder
+        node[_H_OVER_F2] = root_of_H_over_F2 * root_of_H_over_F2
+        node[_ETA_OVER_F] = eta_over_F
+        node[_U] = u
+        node[_V] = eta_over_F * inverse_z
+        node[_LN_LAM] = np.log(lam)
+        node[_LN_ETA_OVER_F] = np.log(eta_over_F)
+
+
+@inline_kernel
+def _ensure_nodes(first, stop, grid):
+    """Make the nodes with numbers ``first`` to ``stop`` - 1, if they are not up to date."""
+    for block in range(first // LANES, (stop - 1) // LANES + 1):
+        if grid.node_versions[block] != grid.version:
+            grid.node_versions[block] = grid.version
+            _fill_block(LANES * block, grid)
+
+
+@inline_kernel
+def _ln_from_end(node, row, over_v, grid):
+    """Return ln u, or ln v, at a node minus that of the end of an octave.
+
+    node : its number.  row : number of the octave's row.  over_v : v or u.  grid : the :class:`Grid`.
+    """
+    _ensure_nodes(node, node + 1, grid)
+    end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
+    if over_v:
+        return grid.functions[node, _LN_ETA_OVER_F] - end
+    return grid.functions[node, _LN_LAM] - (end + NODES_PER_OCTAVE * _STEP)
 
 
 @kernel
-def _points(row, first, count, over_v, grid):
-    """The points around an octave."""
+def _collect_points(row, first, count, over_v, grid):
+    """Write the 36 points around an octave into the scratch of ``grid``.
+
+    row : number of the octave's row.  first : the first function.  count : how many.  over_v : v or u.
+    """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
-    at = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
+    node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
     steps = NODES_PER_OCTAVE
-    while abs(steps) > 1:  # u and v fall with z, by half an octave to two an octave
-        steps = int(0.5 * (_from_end(at, row, over_v, grid) - middle) / _STEP)
-        at += steps
-    while not _from_end(at, row, over_v, grid) > middle:
-        at -= 1
-    while _from_end(at + 1, row, over_v, grid) > middle:
-        at += 1
-    at += 1 - POINT_COUNT // 2
+    while abs(steps) > 1:  # u and v fall with z, by half an octave to two octaves in one octave of z
+        steps = int(0.5 * (_ln_from_end(node, row, over_v, grid) - middle) / _STEP)
+        node += steps
+    while not _ln_from_end(node, row, over_v, grid) > middle:
+        node -= 1
+    while _ln_from_end(node + 1, row, over_v, grid) > middle:
+        node += 1
+    node += 1 - POINT_COUNT // 2
     for k in range(POINT_COUNT):
-        there = at + _OUTWARDS[k]
-        grid.numbers[ARGUMENTS + k] = _from_end(there, row, over_v, grid)
+        point = node + _OUTWARDS[k]
+        grid.scratch[ARGUMENTS + k] = _ln_from_end(point, row, over_v, grid)
         for which in range(count):
-            grid.numbers[VALUES + FUNCTION_STRIDE * which + k] = grid.functions[there, first + which]
+            grid.scratch[VALUES + FUNCTION_STRIDE * which + k] = grid.functions[point, first + which]
 
 
 @kernel
-def _slow_points(first, count, over_v, grid):
-    """Points over t of the slow row, from 1/z = 0 to a little beyond its end; functions less their limits."""
-    numbers, end = grid.numbers, math.ldexp(1.0, int(grid.e0))
-    _need(grid.nodes - POINT_COUNT, grid.nodes, grid)
+def _collect_slow_points(first, count, over_v, grid):
+    """Write the 36 points of the slow row, from 1/z = 0 to a little beyond its end, into the scratch of ``grid``.
+
+    first : the first function.  count : how many.  over_v : v or u.  Functions count from their limits, and epsilon
+    is divided by t.
+    """
+    end = math.ldexp(1.0, int(grid.e0))
+    _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)
     for k in range(POINT_COUNT):
-        node = grid.functions[grid.nodes - POINT_COUNT + k]
+        node = grid.functions[grid.node_count - POINT_COUNT + k]
         x = node[_V] if over_v else node[_U]
-        numbers[ARGUMENTS + k] = x / end
+        grid.scratch[ARGUMENTS + k] = x / end
         for which in range(count):
             function = first + which
-            scale = x if _over_u(function) else x / end if function == _EPSILON else 1.0
-            numbers[VALUES + FUNCTION_STRIDE * which + k] = node[function] / scale - _limit(function, grid)
+            scale = x if _is_times_u(function) else x / end if function == _EPSILON else 1.0
+            grid.scratch[VALUES + FUNCTION_STRIDE * which + k] = node[function] / scale - _slow_limit(function, grid)

@@ -2,23 +2,40 @@
 
 A spline is one vector of doubles: a head, its three axes, its coefficients.  An axis is a head, the edges of its
 intervals, and for each interval the basis splines that are not 0 there, as polynomials of the distance from its left
-edge.  ``viscoroll.materials.grid_splines`` writes it.
+edge.  ``viscoroll.materials.law.splines`` writes it.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
 
 from ..compile.intrinsics import fma
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 
-#: Places in the head of a spline: bounds to which values are clipped; where the axes and the coefficients begin.
-LOW, HIGH, V_AXIS, DELTA_AXIS, ALPHA_AXIS, COEFFICIENTS = range(6)
-#: Places in the head of an axis: number of its intervals, 0 where the field is not over it; how many basis splines are
-#: not 0 in one; 1 where the coordinate is a logarithm; how many coefficients a step along it is; where the edges begin.
-INTERVALS, ORDER, IS_LOG, STRIDE, EDGES = range(5)
+# Indices in the head of a spline.
+#: Lower bound, to which values are clipped.
+LOW = 0
+#: Upper bound, to which values are clipped.
+HIGH = 1
+#: Where the axis of V begins.
+V_AXIS = 2
+#: Where the axis of delta begins.
+DELTA_AXIS = 3
+#: Where the axis of alpha begins.
+ALPHA_AXIS = 4
+#: Where the coefficients begin.
+COEFFICIENTS = 5
+# Indices in the head of an axis.
+#: Number of intervals; 0 if the field does not depend on the coordinate.
+INTERVALS = 0
+#: Number of basis splines that are not 0 in an interval.
+ORDER = 1
+#: 1 if the coordinate is the logarithm, else 0.
+IS_LOG = 2
+#: Number of coefficients between neighbours along the axis.
+STRIDE = 3
+#: Where the edges of the intervals begin.
+EDGES = 4
 #: Coefficients of the polynomial of a basis spline; of a lower degree some are 0.
 TERMS = 4
 
@@ -32,9 +49,11 @@ class Value(NamedTuple):
     dalpha: float
 
 
-class Place(NamedTuple):
-    """Where a coordinate lies: the axis; its interval there; the distance from the left edge of that, NaN outside of
-    the axis; and the slope of what the spline runs in.
+class AxisPosition(NamedTuple):
+    """Position of a coordinate on an axis.
+
+    axis : where the axis begins in the spline.  interval : number of the interval.
+    t : distance from its left edge, NaN outside of the axis.  slope : slope of the logarithm, or 1.
     """
 
     axis: int
@@ -43,64 +62,83 @@ class Place(NamedTuple):
     slope: float
 
 
-@kernel(inline=True)
-def _at(spline, n):
-    """Number n of a spline; unsigned, as numba would look for negative ones."""
+@inline_kernel
+def _number_at(spline, n):
+    """Return number ``n`` of a spline; unsigned, as numba would test for negative ones."""
     return spline[np.uint64(n)]
 
 
-@kernel(inline=True)
-def _whole(spline, n):
-    """The same, where it is a whole number."""
-    return np.int64(spline[np.uint64(n)])
+@inline_kernel
+def _integer_at(spline, n):
+    """Return number ``n`` of a spline as an integer."""
+    return np.int64(_number_at(spline, n))
 
 
-@kernel(inline=True)
-def _place(spline, name, x):
-    """The :class:`Place` of a coordinate on the axis ``name``, a place in the head of the spline."""
-    axis = _whole(spline, name)
-    interval, count, slope = np.int64(0), _whole(spline, axis + INTERVALS), 1.0
+@inline_kernel
+def _locate(spline, name, x):
+    """Return the :class:`AxisPosition` of a coordinate x on an axis.
+
+    spline : the vector.  name : V_AXIS, DELTA_AXIS or ALPHA_AXIS.
+    """
+    axis = _integer_at(spline, name)
+    interval = np.int64(0)
+    count = _integer_at(spline, axis + INTERVALS)
+    slope = 1.0
     if count == 0:
-        return Place(axis, interval, 0.0, slope)
-    if _at(spline, axis + IS_LOG) > 0.0:
-        x, slope = np.log(x), 1.0 / x
-    if not _at(spline, axis + EDGES) <= x <= _at(spline, axis + EDGES + count):
-        return Place(axis, interval, np.nan, slope)
+        return AxisPosition(axis, interval, 0.0, slope)
+    if _number_at(spline, axis + IS_LOG) > 0.0:
+        slope = 1.0 / x
+        x = np.log(x)
+    if not _number_at(spline, axis + EDGES) <= x <= _number_at(spline, axis + EDGES + count):
+        return AxisPosition(axis, interval, np.nan, slope)
     while count > 1:
         half = count >> 1
-        interval += half * np.int64(x >= _at(spline, axis + EDGES + interval + half))
+        interval += half * np.int64(x >= _number_at(spline, axis + EDGES + interval + half))
         count -= half
-    return Place(axis, interval, x - _at(spline, axis + EDGES + interval), slope)
+    return AxisPosition(axis, interval, x - _number_at(spline, axis + EDGES + interval), slope)
 
 
-@kernel(inline=True)
-def _basis(spline, place, n):
-    """(Basis spline n at a place, its slope, what it adds to the number of a coefficient)."""
-    axis = place.axis
-    at = (place.interval * TERMS + n) * TERMS + EDGES + 1 + _whole(spline, axis + INTERVALS) + axis
-    c0, c1, c2, c3 = _at(spline, at), _at(spline, at + 1), _at(spline, at + 2), _at(spline, at + 3)
-    t, start = place.t, (place.interval + n) * _whole(spline, axis + STRIDE)
-    return fma(t, fma(t, fma(t, c3, c2), c1), c0), fma(t, fma(t, 3.0 * c3, 2.0 * c2), c1) * place.slope, start
+@inline_kernel
+def _basis(spline, position, n):
+    """Return (value of a basis spline, its slope, what it adds to the number of a coefficient).
+
+    spline : the vector.  position : the :class:`AxisPosition`.  n : number of the basis spline in the interval.
+    """
+    axis = position.axis
+    at = (position.interval * TERMS + n) * TERMS + EDGES + 1 + _integer_at(spline, axis + INTERVALS) + axis
+    c0 = _number_at(spline, at)
+    c1 = _number_at(spline, at + 1)
+    c2 = _number_at(spline, at + 2)
+    c3 = _number_at(spline, at + 3)
+    t = position.t
+    start = (position.interval + n) * _integer_at(spline, axis + STRIDE)
+    return fma(t, fma(t, fma(t, c3, c2), c1), c0), fma(t, fma(t, 3.0 * c3, 2.0 * c2), c1) * position.slope, start
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate(spline, V, delta, alpha):
-    """The :class:`Value` of a field at a point: :func:`spline_at` for kernels."""
-    over_V, over_delta = _place(spline, V_AXIS, V), _place(spline, DELTA_AXIS, delta)
-    over_alpha = _place(spline, ALPHA_AXIS, alpha)
+    """Return the :class:`Value` of a field at a point; arguments as of :func:`spline_at`: spline, V, delta, alpha."""
+    over_V = _locate(spline, V_AXIS, V)
+    over_delta = _locate(spline, DELTA_AXIS, delta)
+    over_alpha = _locate(spline, ALPHA_AXIS, alpha)
     value = dV = ddelta = dalpha = 0.0 * (over_V.t + over_delta.t + over_alpha.t)
-    for k in range(_whole(spline, over_alpha.axis + ORDER)):
+    for k in range(_integer_at(spline, over_alpha.axis + ORDER)):
         c, dc, plane = _basis(spline, over_alpha, k)
         for i in range(TERMS):
             b, db, row = _basis(spline, over_V, i)
-            row += plane + _whole(spline, COEFFICIENTS)
+            row += plane + _integer_at(spline, COEFFICIENTS)
             f = df = 0.0
             for j in range(TERMS):
                 a, da, column = _basis(spline, over_delta, j)
-                f, df = fma(a, _at(spline, row + column), f), fma(da, _at(spline, row + column), df)
-            value, dV = fma(c * b, f, value), fma(c * db, f, dV)
-            ddelta, dalpha = fma(c * b, df, ddelta), fma(dc * b, f, dalpha)
-    low, high = _at(spline, LOW), _at(spline, HIGH)
+                coefficient = _number_at(spline, row + column)
+                f = fma(a, coefficient, f)
+                df = fma(da, coefficient, df)
+            value = fma(c * b, f, value)
+            dV = fma(c * db, f, dV)
+            ddelta = fma(c * b, df, ddelta)
+            dalpha = fma(dc * b, f, dalpha)
+    low = _number_at(spline, LOW)
+    high = _number_at(spline, HIGH)
     if value < low or value > high:
         return Value(min(max(value, low), high), 0.0, 0.0, 0.0)
     return Value(value, dV, ddelta, dalpha)
@@ -108,9 +146,9 @@ def evaluate(spline, V, delta, alpha):
 
 @kernel
 def spline_at(spline, V, delta, alpha):
-    """The :class:`Value` of a field at a point.
+    """Return the :class:`Value` of a field at a point.
 
-    spline : of :meth:`viscoroll.io.tables.Interpolant.jitted`.
+    spline : the vector of :meth:`viscoroll.io.tables.Interpolant.jitted`.
     V, delta, alpha : coordinates in the units of the grid; for an axis that the field is not over any number does.
     """
     return evaluate(spline, V, delta, alpha)

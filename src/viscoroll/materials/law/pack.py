@@ -108,10 +108,12 @@ def interleave_pairs(a: Floats, b: Floats) -> Floats:
 
 
 def allocate_rows(count: int) -> tuple[Floats, Integers]:
-    """Return the zeroed numbers and marks of a record of ``count`` rows, with those in front of the rows."""
-    from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE
+    """Return numbers and marks of a record of ``count`` rows, with those in front, zeroed; no material is selected."""
+    from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE, SELECTED
 
-    return np.zeros((count + 1) * ROW_SIZE), np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
+    marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
+    marks[SELECTED] = -1
+    return np.zeros((count + 1) * ROW_SIZE), marks
 
 
 def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:

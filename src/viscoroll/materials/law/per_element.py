@@ -90,7 +90,6 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max(initial=1.0)))
     workspace = np.empty(series.workspace_size(most_modes))
     rows, marks = allocate_rows(row_count)
-    marks[z_grid.SELECTED] = -1
     return _lazy_record(
         z_grid, z_grid.select_series, rows=rows, marks=marks, material_index=index, state_count=index.size,
         materials=numbers, material_size=numbers.shape[1], numbers=np.empty(z_grid.work_size(nodes)), node_count=nodes,
@@ -147,7 +146,7 @@ def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
     rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
-    marks[thickness_axis.SELECTED], marks[E0] = -1, records[0].marks[E0]
+    marks[E0] = records[0].marks[E0]
     return _lazy_record(
         thickness_axis, thickness_axis.select_cover, rows=rows, marks=marks, cover_index=index, state_count=index.size,
         cover_rows=np.zeros(max(record.cover_rows.size for record in records)), cover_count=thickness.size,

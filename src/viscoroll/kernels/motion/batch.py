@@ -1,0 +1,108 @@
+"""Many motions, each with its own start and, where given, its own scene and drive: the entry from Python."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compile.by_reference import data_pointer
+from ..compile.jit import kernel
+from ..numerics.arrays import copy, fill
+from ..rows.record import select_material
+from .collocation import ROW_LENGTH
+from .drive import n_coefficients
+from .driver import integrate_motion
+from .output import N_OUTPUTS, requested_groups
+from .workspace import (
+    COL_COEFFICIENTS,
+    COL_SCALE,
+    COL_START,
+    DRIVE_RATE,
+    ROW_ONES,
+    WORKSPACE_SIZE,
+    Batch,
+    Drive,
+    Gains,
+    Options,
+    Scene,
+    Workspace,
+)
+
+#: columns of the information on each motion
+INFO_COLUMNS = ("status", "steps", "switches", "onset_time", "rest_time")
+
+
+class Drives(NamedTuple):
+    """Drives of many motions.
+
+    segments : (m, k, columns) over t, m = 1 for all motions or one for each
+    gains : (4, 1) or (4, n), in the order of :class:`Gains`
+    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V
+    """
+
+    segments: Any
+    gains: Any
+    prescribed: int
+
+
+@kernel
+def _value_of_motion(array, i):
+    """Return the value of motion i of an array of one value for all, or of one for each motion."""
+    return array[min(i, array.size - 1)]
+
+
+@kernel
+def _drive_of_motion(drives, gamma, i, segments):
+    """Write the segments of motion i over tau = gamma t to ``segments`` and return its Gains.
+
+    drives: Drives over t; gamma: scale of time of the motion; segments: (k, columns), filled.
+    """
+    source = drives.segments[min(i, drives.segments.shape[0] - 1)]
+    for k in range(segments.shape[0]):
+        copy(source[k], segments[k])
+        segments[k, COL_START] *= gamma
+        segments[k, COL_SCALE] /= gamma
+        n_terms = n_coefficients(segments[k])
+        for n in range(DRIVE_RATE * n_terms, (DRIVE_RATE + 1) * n_terms):
+            segments[k, COL_COEFFICIENTS + n] *= 1.0 / gamma
+    n, gains = min(i, drives.gains.shape[1] - 1), drives.gains
+    return Gains(gains[0, n], gains[1, n], gains[2, n], gains[3, n])
+
+
+@kernel(allocates=True)
+def motion_loop(batch, drives, t, options, rows, out, info, notes):
+    """Integrate all motions of a batch.
+
+    batch, drives, options: :class:`Batch`, :class:`Drives`, :class:`Options` as plain tuples: numba needs
+    microseconds to find the type of a record.
+    t: output times; rows: requested output quantities; out: [quantity, motion, time], filled; info: [motion,
+    INFO_COLUMNS], filled; notes: (switches, step_ends), filled, of the last motion.
+    """
+    motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
+    (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes
+    tau, quantities, segments = np.empty(t.size), np.empty((N_OUTPUTS, t.size)), np.empty(drives.segments.shape[1:])
+    nodes = np.empty(WORKSPACE_SIZE)
+    p_matrix, d_matrix = np.empty(ROW_LENGTH * ROW_LENGTH), np.empty(ROW_LENGTH * ROW_LENGTH)
+    for i in range(out.shape[1]):
+        for row in quantities:
+            fill(np.nan, row)
+        for array in (nodes, p_matrix, d_matrix):
+            fill(0.0, array)
+        fill(1.0, nodes[ROW_ONES : ROW_ONES + ROW_LENGTH])
+        select_material(motions.law, i)
+        kappa, mu = _value_of_motion(motions.kappa, i), _value_of_motion(motions.mu, i)
+        gamma, j = _value_of_motion(motions.gamma, i), _value_of_motion(motions.j, i)
+        for k in range(t.size):
+            tau[k] = t[k] * gamma
+        scene = Scene(motions.law, motions.moments_differ, kappa, mu, gamma, j)
+        drive = Drive(segments, _drive_of_motion(drives, gamma, i, segments), drives.prescribed)
+        V0, omega0 = _value_of_motion(motions.V0, i), _value_of_motion(motions.omega0, i)
+        work = Workspace(
+            scene, drive, options, tau, quantities, with_quadratures, with_forces, switches, step_ends,
+            data_pointer(nodes), data_pointer(p_matrix), data_pointer(d_matrix),
+        )  # fmt: skip
+        result = integrate_motion(V0, omega0, work)
+        for n in range(rows.size):
+            copy(quantities[rows[n]], out[n, i])
+        info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result

@@ -1,0 +1,287 @@
+"""Departure from rest: at V = omega = 0 the cylinder stays, rolls off in partial slip, or slides off in full slip.
+
+Rolling off in the direction with V' > 0, d is the root of the right side of the equation of d (:mod:`rhs`) in the limit
+V -> 0, where L = H = 1:
+
+    2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
+
+(of a cover with L d + 2 kappa delta_0/mu in place of d on the right).
+
+The left side less the right side decreases with d where mu <= 2 kappa: for |d| < 1 there is one root, or slip is full
+from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on, where omega' = 0, and under a force close
+to the limit of friction the departure is not unique.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.by_reference import by_value
+from ..compile.jit import kernel
+from ..rows.evaluate import limits_at_rest
+from .drive import evaluate_load, has_brake, is_constant, segment_end
+from .rhs import added_inertia
+from .workspace import REGIME_AT_REST, Load, Regime
+
+#: at rest for a time
+STAYS_AT_REST = 0
+#: departs in partial slip
+ROLLS_OFF = 1
+#: departs in full slip
+SLIDES_OFF = 2
+#: the departure is not unique
+AMBIGUOUS = 3
+#: largest number of Newton iterations for d
+_MAX_ITERATIONS = 200
+#: relative tolerance of d
+_D_TOLERANCE = 1e-16
+#: time at which the drive is evaluated if nothing moves the cylinder at the start of a segment, divided by its length
+_LOOKAHEAD = 1e-6
+#: rounding error of the holding margin, divided by the largest force that holds the cylinder
+_HOLDING_ROUNDING = 4e-15
+#: number of intervals of a segment in which the holding margin is searched for a sign change
+_SCAN_INTERVALS = 64
+#: force and torque that count as 0, dimensionless: speeds under them would underflow in the first steps
+_NEGLIGIBLE_FORCE = 1e-75
+
+
+@kernel(inline=True)
+def _residual_of_d(d, load, scene):
+    """Return (residual of the equation of d, its slope in d, V') at V = 0; the residual is the left less the right
+    side.
+
+    d: delta/delta_star; load: Load at V = 0; scene: Scene.
+    """
+    Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
+    V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
+    omega_rate = load.inverse_inertia * (load.torque - Q) + load.prescribed_omega_rate
+    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
+    inverse_k = 2.0 * scene.kappa / scene.mu / L
+    d_total = d + delta_0 * inverse_k
+    slope = -(load.inverse_inertia + load.inverse_mass) * Q_d * inverse_k - V_rate - d_total * load.inverse_mass * Q_d
+    return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
+
+
+@kernel(inline=True)
+def _d_at_zero_omega(scene):
+    """Return the d at which omega stays 0 as V grows from 0; above -1 only where mu > 2 kappa."""
+    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
+    return -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
+
+
+@kernel
+def _spin_against_brake(load, scene):
+    """Return the sign of omega under a brake as V grows from 0 in partial slip.
+
+    Parameters
+    ----------
+    load : Load
+        At V = 0, with a brake.
+    scene : Scene
+        Of the motion.
+
+    Returns
+    -------
+    (float, bool)
+        The sign of omega, and whether the brake holds it at 0 instead: so it does where mu > 2 kappa and the traction
+        at omega = 0 leaves less torque than the brake can take.
+    """
+    d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
+    if d_zero <= -1.0:
+        return 1.0, False
+    torque = load.torque - scene.mu * d_zero * (2.0 + d_zero)
+    return np.sign(torque), abs(torque) <= load.brake
+
+
+@kernel
+def _effective_load(load, spin_sign, scene):
+    """Return the Load that contains the torque of the brake and the effect of the added mass on V' and omega'.
+
+    load: Load at V = 0; spin_sign: sign of omega against the brake, 0 without one; scene: Scene with the added mass.
+    """
+    force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
+    half_n = 0.5 * added_inertia(0.0, scene)[0]
+    mass_ratio = 1.0 / (1.0 + half_n * inverse_mass)
+    inertia_ratio = 1.0 + half_n * mass_ratio * inverse_mass
+    torque = (torque - spin_sign * brake - half_n * (mass_ratio * inverse_mass * force + V_rate)) / inertia_ratio
+    inverse_mass, inverse_inertia = inverse_mass * mass_ratio, inverse_inertia * inertia_ratio
+    return Load(force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains)
+
+
+@kernel(inline=True)
+def _local_maximum_of_residual(load, scene):
+    """Return the d < 0 at which the residual of :func:`_residual_of_d` has its local maximum; it is a cubic in d.
+
+    With Q = mu (2 d + d^2), k = mu L/(2 kappa) and W = inverse_inertia + (1 + delta_0) inverse_mass the terms with d
+    are
+
+        -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
+
+    where C = inverse_mass f + V_rate, so that the larger zero of the slope is the maximum.  Of a half-space at rest
+    L = 1 and delta_0 = 0.
+
+    Parameters
+    ----------
+    load : Load
+        At V = 0, without brake and added mass.
+    scene : Scene
+        Of the motion.
+
+    Returns
+    -------
+    float
+        d there; -inf where the cubic decreases for all d.
+    """
+    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
+    stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
+    first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
+    second = -stiffness - 2.0 * scene.mu * load.inverse_mass
+    # the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0
+    discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
+    return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
+
+
+@kernel
+def solve_d_at_departure(load, spin_sign, scene):
+    """Return (whether the cylinder can roll off in partial slip with V > 0, its d), by a bracketed Newton iteration.
+
+    load: Load at V = 0; spin_sign: sign of omega against a brake, 0 without one; scene: Scene.
+    """
+    load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
+    d_zero = _d_at_zero_omega(scene)  # above this d the residual decreases
+    if d_zero > -1.0:
+        residual, _, V_rate = _residual_of_d(d_zero, load, scene)
+        if load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
+            return V_rate > 0.0, d_zero
+        if residual > 0.0:
+            low = d_zero
+        else:  # below this d the residual may have a maximum
+            low, high = min(max(low, _local_maximum_of_residual(load, scene)), d_zero), d_zero
+    if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
+        return False, 0.0
+    d, V_rate = 0.5 * (low + high), 0.0
+    for _ in range(_MAX_ITERATIONS):  # Newton's iteration with a bracket
+        residual, slope, V_rate = _residual_of_d(d, load, scene)
+        low, high = (d, high) if residual > 0.0 else (low, d)
+        d_next = d - residual / slope
+        if not low < d_next < high:
+            d_next = 0.5 * (low + high)
+        if abs(d_next - d) <= _D_TOLERANCE * abs(d):
+            break
+        d = d_next
+    return V_rate > 0.0, d
+
+
+@kernel
+def holding_margin(load, mu):
+    """Return the margin by which friction and brake hold the cylinder at V = omega = 0; negative where it moves.
+
+    A traction within +-mu must leave V constant, and omega too, which a brake may help with.  load: Load; mu: friction.
+    """
+    if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
+        return -1.0
+    if load.inverse_mass == 0.0:
+        return mu + load.brake - abs(load.torque)
+    if load.inverse_inertia == 0.0:
+        return mu - abs(load.force)
+    force = abs(load.force + load.torque)
+    return min(mu - abs(load.force), load.brake - (force if force > _NEGLIGIBLE_FORCE else 0.0))
+
+
+@kernel
+def _holding_margin_at(tau, segment, work):
+    """Return the holding margin at a time."""
+    return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene.mu)
+
+
+@kernel
+def find_departure_time(tau, segment, work):
+    """Return the first time at which the drive moves a cylinder at rest; the end of the segment if it does not.
+
+    tau: time from which the search starts; segment: index of the segment that holds it; work: Workspace.
+    A sign change of the holding margin is searched in _SCAN_INTERVALS intervals, then bisected to rounding.
+    """
+    end = segment_end(segment, work)
+    if is_constant(segment, work.drive):
+        return end if _holding_margin_at(tau, segment, work) >= 0.0 else tau
+    low = tau
+    for n in range(1, _SCAN_INTERVALS + 1):
+        high = tau + (end - tau) * n / _SCAN_INTERVALS
+        if _holding_margin_at(high, segment, work) < 0.0:
+            middle = 0.5 * (low + high)
+            while low < middle < high:
+                if _holding_margin_at(middle, segment, work) < 0.0:
+                    high = middle
+                else:
+                    low = middle
+                middle = 0.5 * (low + high)
+            return high
+        low = high
+    return end
+
+
+@kernel
+def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
+    """Return (SLIDES_OFF or STAYS_AT_REST, Regime, 0) of full slip from rest, with the sign of slip that persists.
+
+    tau, segment: time at which the drive is evaluated and its segment; braked: whether a brake acts on the segment;
+    stick_zone_slip: |omega - V|/V that full slip must exceed in the limit V -> 0, divided by L; work: Workspace.
+    """
+    scene = work.scene
+    L, free_creep = limits_at_rest(scene.kappa, by_value(scene.law))
+    load = evaluate_load(tau, segment, Regime(True, 1.0, 1.0, 0.0, False), work)
+    for sigma in (1.0, -1.0):
+        Q = sigma * scene.mu
+        V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
+        torque = load.torque - Q
+        spin_sign = np.sign(torque) if braked and abs(torque) > load.brake else 0.0
+        locked = braked and spin_sign == 0.0
+        omega_rate = load.inverse_inertia * (torque - spin_sign * load.brake) + load.prescribed_omega_rate
+        if locked:
+            omega_rate = 0.0
+        if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > stick_zone_slip * L * abs(V_rate):
+            direction = 1.0 if V_rate >= 0.0 else -1.0
+            return SLIDES_OFF, Regime(True, direction, direction * sigma, direction * spin_sign, locked), 0.0
+    return STAYS_AT_REST, REGIME_AT_REST, 0.0
+
+
+@kernel
+def depart_from_rest(tau, segment, work):
+    """Return (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; Regime; d) from V = omega = 0 on.
+
+    tau: time; segment: index of the segment of the drive; work: Workspace.
+    """
+    scene = work.scene
+    tau_drive = tau
+    load = evaluate_load(tau, segment, REGIME_AT_REST, work)
+    rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
+    if holding_margin(load, scene.mu) >= -rounding and not is_constant(segment, work.drive):
+        # whether the drive moves the cylinder is seen a little later
+        tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
+        load = evaluate_load(tau_drive, segment, REGIME_AT_REST, work)
+    braked = has_brake(segment, work.drive)
+    if holding_margin(load, scene.mu) >= 0.0:
+        return STAYS_AT_REST, REGIME_AT_REST, 0.0
+    kind, departure, d_start = STAYS_AT_REST, REGIME_AT_REST, 0.0
+    for direction in (1.0, -1.0):
+        regime = Regime(False, direction, 1.0, 0.0, False)
+        load = evaluate_load(tau_drive, segment, regime, work)
+        spin_sign, locked = _spin_against_brake(load, scene) if braked else (0.0, False)
+        if locked:
+            regime, spin_sign = Regime(False, direction, -1.0, 0.0, True), 0.0
+            load = evaluate_load(tau_drive, segment, regime, work)
+        sticks, d = solve_d_at_departure(load, spin_sign, scene)
+        if sticks and kind == ROLLS_OFF:
+            return AMBIGUOUS, REGIME_AT_REST, 0.0
+        if sticks:
+            # d at the present time is the limit from which the motion departs
+            load = evaluate_load(tau, segment, regime, work)
+            kind, d_start = ROLLS_OFF, solve_d_at_departure(load, spin_sign, scene)[1]
+            departure = Regime(False, direction, 1.0 if d >= 0.0 else -1.0, spin_sign, locked)
+            if scene.mu <= 2.0 * scene.kappa:
+                return kind, departure, d_start
+    stick_zone_slip = 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa
+    slides = _slide_from_rest(tau_drive, segment, braked, stick_zone_slip, work)
+    if kind == STAYS_AT_REST:
+        return slides
+    return (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)

@@ -1,0 +1,243 @@
+"""Integration of a motion, free or driven, from regime to regime and from segment to segment of the drive.
+
+A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or held by its brake.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.by_reference import by_reference
+from ..compile.jit import kernel
+from .asymptotics import coast_to_end, is_coasting
+from .departure_from_rest import AMBIGUOUS, ROLLS_OFF, SLIDES_OFF, STAYS_AT_REST, depart_from_rest, find_departure_time
+from .drive import continues_smoothly, current_load, is_undriven, rest_threshold, segment_end
+from .output import record_switch, write_due_outputs, write_outputs_at_rest
+from .regime_solver import integrate_regime
+from .regimes import ZERO_V_RATIO, apply_event, enter_segment, initial_regime, regime_code, rest_code
+from .rhs import added_inertia, added_mass_margin, creepage, current_rates, omega_and_delta
+from .workspace import (
+    ADDED_MASS_EXHAUSTED,
+    AT_REST,
+    BELOW_REST_SPEED,
+    CAME_TO_REST,
+    COMPLETED,
+    DELTA_ZERO,
+    DIRECTION_REVERSED,
+    N_QUADRATURES,
+    N_SWITCHES,
+    NO_EVENT,
+    NOT_UNIQUE,
+    ONSET_TIME,
+    QUADRATURE_TOTALS,
+    REGIME_AT_REST,
+    REST_TIME,
+    STEP_FAILED,
+    STEP_LIMIT,
+    STEP_TOO_SMALL,
+    STICK_EDGE,
+    State,
+    StepState,
+    change_slip,
+    last_output_tau,
+    with_step_length,
+)
+
+#: relaxation time of d, or time to V = 0, divided by the time so far, that no step can resolve
+_TIME_ROUNDING = 1e-13
+#: speeds that count as 0 where something drives, or will
+_NEGLIGIBLE_SPEED = 1e-75
+#: length of the step after a relaxation of d within rounding, divided by the time so far
+_STEP_AFTER_RELAXATION = 1e-11
+
+
+@kernel
+def _advance_at_rest(step_state, work):
+    """Advance a cylinder at V = omega = 0 until it departs or the segment ends, and write the outputs on the way.
+
+    step_state: StepState at the present time; work: Workspace.
+    Returns (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; State; Regime; StepState) then.
+    """
+    kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
+    if kind == ROLLS_OFF or kind == SLIDES_OFF:
+        return kind, State(0.0, d), regime, with_step_length(0.0, step_state)
+    end = find_departure_time(step_state.tau, step_state.segment, work) if kind == STAYS_AT_REST else step_state.tau
+    closed = kind == AMBIGUOUS or end == last_output_tau(work)
+    step_state = write_outputs_at_rest(end, closed, rest_code(step_state, work), step_state, work)
+    return kind, State(0.0, 0.0), regime, step_state
+
+
+@kernel
+def _is_below_rest_speed(moving, state, regime, step_state, work):
+    """Return whether nothing drives any more and both speeds are below the rest threshold."""
+    rest_speed = rest_threshold(step_state.segment, work)
+    if rest_speed == 0.0 or not moving:
+        return rest_speed > 0.0
+    return max(abs(state.V), abs(omega_and_delta(state, regime, work.scene)[0])) <= rest_speed
+
+
+@kernel
+def added_mass_exhausted(event, state, regime, work):
+    """Return whether the added mass has left its range, or ``event`` is that it reaches the end of it."""
+    margin = added_mass_margin(added_inertia(state.V, work.scene)[0], work.scene.j)
+    at_end = event == STICK_EDGE and margin < 1.0 - regime.sigma * state.omega_or_d
+    return not regime.full_slip and (margin <= 0.0 or at_end)
+
+
+@kernel
+def _relaxes_within_rounding(state, regime, step_state, work):
+    """Return whether d relaxes within the rounding of time, in partial slip."""
+    if regime.full_slip:
+        return False
+    rates = current_rates(state, regime, step_state, work)
+    return state.V < _TIME_ROUNDING * step_state.tau * max(abs(rates.drate_dd), abs(rates.weighted_rate))
+
+
+@kernel
+def _vanishes_within_rounding(state, regime, step_state, work):
+    """Return whether V falls to 0 within the rounding of time, or counts as 0 where something drives."""
+    if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
+        return True
+    return state.V < -_TIME_ROUNDING * step_state.tau * current_rates(state, regime, step_state, work).V_rate
+
+
+@kernel
+def relax_creep(state, regime, step_state, work):
+    """Relax d to its equilibrium at a fixed time and fixed p, by bisection.
+
+    state, regime, step_state: State, Regime and StepState at the present time, in partial slip; work: Workspace.
+    Returns (whether the cylinder still moves, State, Regime, StepState); full slip if |d| would exceed 1.
+    """
+    if _vanishes_within_rounding(state, regime, step_state, work):
+        return False, state, regime, step_state
+    load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
+    n = added_inertia(state.V, work.scene)[0]
+    inertia = load.inverse_inertia + load.inverse_mass * load.inverse_inertia * n
+    p, d, low, high = inertia * state.V + load.inverse_mass * rates.omega, 0.0, -1.0, 1.0
+    while low < d < high:
+        delta = creepage(state.V, d, work.scene)
+        state = State(p / (inertia + load.inverse_mass * (1.0 + delta)), d)
+        regime = change_slip(regime, False, 1.0 if d >= 0.0 else -1.0)
+        if current_rates(state, regime, step_state, work).weighted_rate > 0.0:
+            low = d
+        else:
+            high = d
+        d = 0.5 * (low + high)
+    step_state = with_step_length(_STEP_AFTER_RELAXATION * step_state.tau, step_state)
+    if low > -1.0 and high < 1.0:
+        return True, state, regime, step_state
+    omega = state.V * (1.0 + creepage(state.V, regime.sigma, work.scene))
+    return True, State(state.V, omega), change_slip(regime, True, regime.sigma), step_state
+
+
+@kernel
+def _advance_segment(moving, state, regime, step_state, work):
+    """Enter the next segment of the drive if one ends at the present time and there is a next one.
+
+    moving: whether the cylinder moves; state, regime, step_state: at the present time; work: Workspace.
+    Returns (whether the cylinder moves, State, Regime, StepState), unchanged where no segment ends.
+    """
+    drive = work.drive
+    if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:
+        return moving, state, regime, step_state
+    h = step_state.h if continues_smoothly(step_state.segment, drive) else 0.0
+    tau, next_output, segment, n_steps, n_ended, _ = step_state
+    step_state = StepState(tau, next_output, segment + 1, n_steps, n_ended, h)
+    if moving:
+        state, regime = enter_segment(state, regime, step_state, work)
+        # in partial slip omega = 0 where V = 0
+        moving = state.V != 0.0 or (regime.full_slip and state.omega_or_d != 0.0)
+    return moving, state, regime, step_state
+
+
+@kernel
+def _come_to_rest(code, state, regime, step_state, work):
+    """Write the outputs of a motion that comes below the rest threshold now; return the StepState at its end.
+
+    code: regime in the outputs before, -1 before the first one; state, regime, step_state: at the present time;
+    work: Workspace.
+    The kinetic energy that is left is added to the loss in rolling.
+    """
+    nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
+    if code >= 0 and code != AT_REST:
+        record_switch(AT_REST, step_state, work)
+    nodes[REST_TIME] = step_state.tau / work.scene.gamma
+    nodes[QUADRATURE_TOTALS + N_QUADRATURES - 1] += 0.5 * (state.V * state.V + work.scene.j * omega * omega)
+    return write_outputs_at_rest(last_output_tau(work), True, AT_REST, step_state, work)
+
+
+@kernel
+def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
+    """Integrate regime after regime until the last output time; return (status, StepState).
+
+    moving: whether the cylinder moves; stick_formed: whether the stick zone has just formed; state, regime,
+    step_state: at the start; work: Workspace.
+    """
+    event, relaxed_at, nodes, code = NO_EVENT, -1.0, work.nodes, regime_code(regime) if moving else -1
+    while step_state.next_output < work.output_tau.size:
+        if step_state.n_steps >= work.options.max_steps:
+            return STEP_LIMIT, step_state
+        direction = regime.direction
+        moving, state, regime, step_state = _advance_segment(moving, state, regime, step_state, work)
+        if regime.direction != direction:
+            record_switch(DIRECTION_REVERSED, step_state, work)
+        if moving and added_mass_exhausted(event, state, regime, work):
+            return ADDED_MASS_EXHAUSTED, write_due_outputs(state, regime, step_state, work)
+        event, direction, last_state = NO_EVENT, regime.direction, step_state
+        if _is_below_rest_speed(moving, state, regime, step_state, work):
+            event = BELOW_REST_SPEED
+        elif not moving:
+            departure, state, regime, step_state = _advance_at_rest(step_state, work)
+            if departure == AMBIGUOUS:
+                return NOT_UNIQUE, step_state
+            moving = departure != STAYS_AT_REST
+        elif step_state.tau >= last_output_tau(work):
+            step_state = write_due_outputs(state, regime, step_state, work)
+        elif is_coasting(state, regime, step_state, work):
+            return coast_to_end(state, regime, step_state, work)
+        else:
+            event, state, regime, step_state = integrate_regime(stick_formed, state, regime, step_state, work)
+        if event == BELOW_REST_SPEED:
+            return CAME_TO_REST, _come_to_rest(code, state, regime, step_state, work)
+        stick_formed = event == STICK_EDGE and regime.full_slip
+        if event == STEP_FAILED:
+            if step_state.tau <= relaxed_at or not _relaxes_within_rounding(state, regime, step_state, work):
+                return STEP_TOO_SMALL, step_state
+            relaxed_at = step_state.tau
+            moving, state, regime, step_state = relax_creep(state, regime, step_state, work)
+            continue
+        if event != NO_EVENT and not added_mass_exhausted(event, state, regime, work):
+            moving, state, regime = apply_event(event, state, regime, step_state, work)
+            step_state = with_step_length(step_state.h if event == DELTA_ZERO else 0.0, step_state)
+        if moving and code >= 0 and regime.direction != direction:
+            record_switch(DIRECTION_REVERSED, step_state, work)
+        new_code = regime_code(regime) if moving else rest_code(step_state, work)
+        if new_code != code and (moving or event == NO_EVENT):
+            if code >= 0:
+                record_switch(new_code, step_state if moving else last_state, work)
+            if stick_formed and np.isnan(nodes[ONSET_TIME]):
+                nodes[ONSET_TIME] = step_state.tau / work.scene.gamma
+            code = new_code
+    return COMPLETED, step_state
+
+
+@kernel
+def integrate_motion(V0, omega0, record):
+    """Integrate one motion from t = 0 to its last output time.
+
+    V0, omega0: initial speeds; record: Workspace by value.
+    Returns (status, trial steps, regime changes, onset time t of stick, t of coming to rest); times are NaN without
+    them.
+    """
+    work = by_reference(record)
+    nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)
+    nodes[ONSET_TIME] = nodes[REST_TIME] = np.nan
+    state, regime, stick_formed = State(0.0, 0.0), REGIME_AT_REST, False
+    largest_speed = max(abs(V0), abs(omega0))
+    moving = largest_speed >= _NEGLIGIBLE_SPEED or (largest_speed > 0.0 and is_undriven(0, work.drive))
+    if moving:
+        V0 = V0 if abs(V0) > ZERO_V_RATIO * abs(omega0) else 0.0
+        state, regime, stick_formed = initial_regime(V0, omega0, step_state, work)
+        state, regime = enter_segment(state, regime, step_state, work)
+    status, step_state = _integrate_regimes(moving, stick_formed, state, regime, step_state, work)
+    return status, step_state.n_steps, nodes[N_SWITCHES], nodes[ONSET_TIME], nodes[REST_TIME]

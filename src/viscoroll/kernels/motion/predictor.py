@@ -1,0 +1,104 @@
+"""Predictor: the values of the unknowns at the nodes from which Newton's iteration of a step starts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from .collocation import NODE_FRACTIONS, N, evaluate_dense_output
+from .departure_from_rest import solve_d_at_departure
+from .drive import evaluate_load
+from .rhs import evaluate_rhs
+from .workspace import (
+    ROW_DENSE_OMEGA_OR_D,
+    ROW_DENSE_V,
+    ROW_OMEGA_OR_D,
+    ROW_SPEED,
+    ROW_V,
+    ROW_V_RATE,
+    ROW_WEIGHTED_RATE,
+    State,
+    dense_position,
+    node_time,
+)
+
+#: distance beyond the right end of a step up to which its dense output is extrapolated, divided by its length
+_EXTRAPOLATION = 1.5
+#: length of a step relative to one with the same left end, below which the dense output of that one is not used: an
+#: error below the tolerance of Newton's iteration stays, and may have the sign of an event
+_SHORTER_STEP = 1e-3
+
+
+@kernel
+def predict(step, relaxation, dense_step, regime, work):
+    """Store the predicted unknowns at nodes 1 ... N of a step.
+
+    step: Step; relaxation: rate at which the second unknown relaxes at the left end; dense_step: Step whose dense
+    output is stored (the last accepted one, or a longer one that was rejected); regime: Regime; work: Workspace.
+    """
+    usable = step.tau > dense_step.tau or step.h > _SHORTER_STEP * dense_step.h
+    if usable and dense_step.h > 0.0 and step.tau + step.h <= dense_step.tau + (1.0 + _EXTRAPOLATION) * dense_step.h:
+        _extrapolate(step, dense_step, regime, work.nodes)
+    elif step.initial_slope_known and work.nodes[ROW_SPEED] > 0.0:
+        _predict_relaxation(step, relaxation, regime, work.nodes)
+    else:
+        _predict_from_rest(step, regime, work)
+
+
+@kernel(inline=True)
+def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
+    """Store V and the second unknown at node i; in partial slip limited to V >= 0 and |d| <= 1."""
+    nodes[ROW_V + i] = V if full_slip else max(V, 0.0)
+    nodes[ROW_OMEGA_OR_D + i] = omega_or_d if full_slip else min(max(omega_or_d, -1.0), 1.0)
+
+
+@kernel
+def _extrapolate(step, dense_step, regime, nodes):
+    """Store the unknowns by the dense output of ``dense_step``, extrapolated beyond its right end.
+
+    step: Step to predict; regime: Regime; nodes: Workspace.nodes with the dense output.
+    """
+    v_start = dense_position(step.tau, dense_step)
+    V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
+    omega_or_d0 = nodes[ROW_OMEGA_OR_D] - evaluate_dense_output(v_start, nodes, ROW_DENSE_OMEGA_OR_D)
+    for i in range(1, N + 1):
+        v = dense_position(node_time(step, i), dense_step)
+        V = V0 + evaluate_dense_output(v, nodes, ROW_DENSE_V)
+        omega_or_d = omega_or_d0 + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D)
+        _store_unknowns(i, V, omega_or_d, regime.full_slip, nodes)
+
+
+@kernel
+def _predict_relaxation(step, relaxation, regime, nodes):
+    """Store the unknowns with V linear and the second unknown relaxing exponentially from the left end on.
+
+    step: Step to predict; relaxation: rate of the relaxation; regime: Regime; nodes: Workspace.nodes with node 0.
+    """
+    omega_or_d_rate = nodes[ROW_WEIGHTED_RATE] if regime.full_slip else nodes[ROW_WEIGHTED_RATE] / nodes[ROW_V]
+    for i in range(1, N + 1):
+        time = step.h * NODE_FRACTIONS[i]
+        effective_time = np.expm1(relaxation * time) / relaxation if relaxation * time < -1e-8 else time
+        V = nodes[ROW_V] + nodes[ROW_V_RATE] * time
+        _store_unknowns(i, V, nodes[ROW_OMEGA_OR_D] + omega_or_d_rate * effective_time, regime.full_slip, nodes)
+
+
+@kernel
+def _predict_from_rest(step, regime, work):
+    """Store the unknowns from V = 0 on, where V' may start at 0 and follow the drive, and d moves to its value at
+    the end.
+
+    step: Step to predict; regime: Regime; work: Workspace with node 0.
+    """
+    nodes = work.nodes
+    load, d = evaluate_load(step.tau + step.h, step.segment, regime, work), 0.0
+    if not regime.full_slip:
+        sticks, d = solve_d_at_departure(load, regime.spin_sign, work.scene)
+        d = d if sticks else nodes[ROW_OMEGA_OR_D]
+    rates = evaluate_rhs(State(0.0, d), load, regime, work.scene)
+    V_rate_end = rates.V_rate if regime.full_slip else max(rates.p_rate / rates.dp_dV, 0.0)
+    for i in range(1, N + 1):
+        time, half = NODE_FRACTIONS[i] * step.h, 0.5 * NODE_FRACTIONS[i]
+        change = (nodes[ROW_WEIGHTED_RATE] + half * (rates.weighted_rate - nodes[ROW_WEIGHTED_RATE])) * time
+        V = (nodes[ROW_V_RATE] + half * (V_rate_end - nodes[ROW_V_RATE])) * time
+        d_i = nodes[ROW_OMEGA_OR_D] + NODE_FRACTIONS[i] * (d - nodes[ROW_OMEGA_OR_D])
+        _store_unknowns(i, V, change if regime.full_slip else d_i, regime.full_slip, nodes)

@@ -1,0 +1,198 @@
+"""Integration within one regime, step after step, to an event or to the end of a segment of the drive."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from .asymptotics import continue_at_equilibrium, is_coasting, may_be_at_equilibrium
+from .collocation import N, row_range
+from .drive import drive_rounding, is_constant, is_undriven, is_unloaded, segment_end
+from .error_estimate import estimate_error
+from .events import (
+    NOT_FOUND,
+    ends_at_event,
+    evaluate_event_functions,
+    find_first_event,
+    find_missed_event,
+    locate_zero,
+    refine_event,
+)
+from .output import accept_step
+from .rhs import current_rates
+from .step import solve_step, store_rhs
+from .step_control import first_step_length, next_step_length, step_length_after_relaxation, time_to_V_zero
+from .workspace import (
+    BELOW_REST_SPEED,
+    NO_EVENT,
+    PRESCRIBED_V,
+    ROUNDING,
+    ROW_OMEGA_OR_D,
+    ROW_P_DIAGONAL,
+    ROW_RELAXATION,
+    ROW_V,
+    ROW_V_RATE,
+    STEP_FAILED,
+    STICK_EDGE,
+    V_ZERO,
+    ZERO_SPEED,
+    State,
+    Step,
+    change_slip,
+    count_step,
+    dense_state,
+    shorten_step,
+)
+
+#: largest number of successive rejections
+_MAX_REJECTIONS = 60
+#: error divided by its tolerance up to which a step is accepted where it cannot be shortened: the error of a motion
+#: grows by 2 to 3 rtol at most
+_ACCEPTED_AT_SHORTEST = 10.0
+#: V at the right end of a step divided by V at its left end, below which the step is ended at V = 0 if it was aimed
+#: at it
+_V_ZERO_DROP = 0.2
+#: error divided by its tolerance up to which a step shows where its regime ends
+_MAX_ERROR_FOR_EVENTS = 1e6
+#: largest number of trials until a step ends at the event
+_MAX_TRIALS = 8
+#: error divided by its tolerance that is assigned to a step that did not end at its event
+_ERROR_OF_FAILED_TRIAL = 10.0
+#: v of an event in full slip in the first quarter of a step, up to which the step is solved again with an end behind
+#: it: early on the interpolants are less accurate relative to the time so far
+_EARLY_EVENT = 0.5
+#: length of that step divided by the time to the event
+_BEYOND_EARLY_EVENT = 1.1
+#: shortest step divided by the time so far: a regime that ends where it begins
+SHORTEST_STEP = 1e-14
+#: fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next segment
+BEFORE_SEGMENT_END = 1.0 - 1e-13
+
+
+@kernel(inline=True)
+def _start_step(state, regime, step_state, work):
+    """Store the right-hand side at node 0; return the Regime, at d = 0 that of the branch of the law to which d
+    moves.
+
+    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    """
+    nodes = work.nodes
+    nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
+    rates = current_rates(state, regime, step_state, work)
+    store_rhs(0, rates, nodes)
+    # at V = 0 d has its relaxed value and Q is a rounding error of it: V' then follows from p'
+    nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
+    nodes[ROW_RELAXATION], nodes[ROW_P_DIAGONAL] = rates.drate_dd / rates.weight, rates.dp_rate_dV / rates.dp_dV
+    if not regime.full_slip and state.omega_or_d == 0.0 and regime.sigma * rates.weighted_rate < 0.0:
+        # both branches agree at d = 0
+        return change_slip(regime, False, -regime.sigma)
+    return regime
+
+
+@kernel(inline=True)
+def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
+    """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
+
+    step: Step; remaining: time to the end of the segment; aimed: whether its length was chosen to reach V = 0;
+    dense_step: Step whose dense output is stored; regime: Regime; work: Workspace with node 0.
+
+    Returns (event, v at which the regime ends, Step, its error divided by its tolerance, Step of the stored dense
+    output).  A step with too large an error, on which the regime ends, contains a kink of the law: a step that ends
+    at it may be accurate.
+    """
+    nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
+    for _ in range(_MAX_TRIALS):
+        if not solve_step(step, nodes[ROW_RELAXATION], dense_step, regime, work):
+            return NO_EVENT, 2.0, step, np.inf, dense_step
+        error, dense_step = estimate_error(step, regime, work), step
+        if not error <= _MAX_ERROR_FOR_EVENTS:
+            break
+        evaluate_event_functions(step, regime, work)
+        crossed, v = find_first_event(step, regime, work)
+        V_given, at_end = work.drive.prescribed == PRESCRIBED_V, step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
+        if V_given and at_end and crossed == V_ZERO:
+            crossed = NO_EVENT
+        # in partial slip the motion ends at V = 0: the equations have no continuation
+        V_negative = row_range(ROW_V, nodes)[0] < 0.0
+        missed = find_missed_event(step, regime, work)
+        if missed != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
+            return missed, 2.0, step, min(error, 1.0), dense_step
+        if missed != NO_EVENT or (crossed == NO_EVENT and V_negative and not regime.full_slip):
+            break
+        if crossed != NO_EVENT:
+            event = crossed
+        elif event == NO_EVENT and aimed and error <= 1.0 and nodes[ROW_V + N] < _V_ZERO_DROP * nodes[ROW_V]:
+            event = V_ZERO
+        if event == NO_EVENT or (crossed == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)):
+            return event, 2.0, step, error, dense_step
+        # partial slip ends at V = 0, and |V| in two event functions of full slip has a kink there
+        kinked = V_negative and (not regime.full_slip or crossed == STICK_EDGE or crossed == BELOW_REST_SPEED)
+        if crossed != NO_EVENT and error <= 1.0 and not kinked and crossed != V_ZERO:
+            if v > _EARLY_EVENT or not regime.full_slip:
+                return event, refine_event(event, v, regime, work), step, error, dense_step
+            v *= _BEYOND_EARLY_EVENT
+        if crossed == NO_EVENT:
+            v = locate_zero(event, 0, nodes)
+            if v >= NOT_FOUND:  # the event is not near the step
+                return NO_EVENT, 2.0, step, error, dense_step
+        h = min(step.h * 0.5 * v, upper)
+        if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
+            break
+        upper = step.h if crossed != NO_EVENT else upper
+        step = shorten_step(step, h)
+    return NO_EVENT, 2.0, step, max(error, _ERROR_OF_FAILED_TRIAL), dense_step
+
+
+@kernel
+def integrate_regime(stick_formed, state, regime, step_state, work):
+    """Integrate one regime and return (event, State, Regime, StepState) at its end.
+
+    stick_formed: whether the stick zone has just formed; state, regime, step_state: at the start; work: Workspace.
+    The event is NO_EVENT at the end of the segment, or if the steps are used up or the rest is closed-form.
+    """
+    nodes, segment, drive = work.nodes, step_state.segment, work.drive
+    end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0
+    h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
+    undriven = is_undriven(segment, drive)
+    constant = is_constant(segment, drive) and not is_unloaded(segment, drive)
+    # rounding error of p', which contains Q = mu in full slip
+    noise = drive_rounding(segment, drive) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
+    dense_step = Step(step_state.tau, 0.0, segment, False, undriven)
+    while step_state.tau < end and step_state.n_steps < work.options.max_steps:
+        if is_coasting(state, regime, step_state, work):
+            break
+        regime = _start_step(state, regime, step_state, work)
+        if constant and may_be_at_equilibrium(noise, work):
+            steady, state, step_state = continue_at_equilibrium(end, noise, state, regime, step_state, work)
+            if steady:
+                return NO_EVENT, state, regime, step_state
+        if h == 0.0:
+            h = max(first_step_length(stick_formed, step_state, regime, work), SHORTEST_STEP * step_state.tau)
+        remaining = end - step_state.tau
+        slope_known = regime.full_slip or state.V > ZERO_SPEED
+        step = Step(step_state.tau, min(h, remaining), segment, slope_known, undriven)
+        V_zero_time = time_to_V_zero(step, state, regime, work)
+        if V_zero_time > BEFORE_SEGMENT_END * remaining and drive.prescribed == PRESCRIBED_V:
+            V_zero_time = np.inf
+        aimed = V_zero_time <= step.h and n_rejected == 0
+        if V_zero_time < step.h:
+            step = shorten_step(step, V_zero_time)
+        event, v, step, error, dense_step = solve_trial_step(step, remaining, aimed, dense_step, regime, work)
+        h_tried, h = h, next_step_length(step, error, n_rejected, last_h, last_error)
+        h = max(h, h_tried) if error <= 1.0 and step.h == remaining else h
+        step_state = count_step(h, step_state)
+        n_rejected += 1
+        if not error <= 1.0:
+            if n_rejected <= _MAX_REJECTIONS and step_state.tau + h > step_state.tau:
+                continue
+            if not error <= _ACCEPTED_AT_SHORTEST:
+                return STEP_FAILED, state, regime, step_state
+            h = step.h
+        tau = end if v == 2.0 and step.h == remaining else step.tau + step.h * 0.5 * v
+        step_state = accept_step(tau, v, step, regime, step_state, work)
+        state = dense_state(v, nodes) if v < 2.0 else State(nodes[ROW_V + N], nodes[ROW_OMEGA_OR_D + N])
+        if event != NO_EVENT:
+            return event, state, regime, step_state
+        h = max(h, step_length_after_relaxation(step, regime, work))
+        n_rejected, last_h, last_error = 0, step.h, error
+    return NO_EVENT, state, regime, step_state

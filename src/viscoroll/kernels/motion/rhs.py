@@ -1,0 +1,294 @@
+"""Right-hand side of a motion in unknowns in which the law is explicit and that pass V = 0; all derivatives exact.
+
+In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a direction with V >= 0.  On rows
+of the law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w = (1 - |d|) L, s = sign d and
+H(v) the function :func:`..rows.evaluate.press`,
+
+    omega = V (1 + k L d)      Q = s mu [1 - w^2 H(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
+
+On a cover of finite thickness delta = delta_0(u) + k L d: delta_0 V is added to omega, and its slope to the factor
+of V' in the last equation (:mod:`..rows.cover`); half-spaces are compiled without it.
+
+Both sides of the last equation stay finite as V -> 0, where d is the root of its right side.  For |d| > 1 the law is
+continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V < 0 as odd functions.
+
+In partial slip a law may add N V' to M, half of it in either body: with n = gamma N the equations are
+
+    (1 + n/2) V' = Q - M/2 + f      j omega' = -Q - M/2 - n V'/2 + q
+
+and the integral of n over V is added to p, so that p' stays the same.
+
+p = inverse_inertia V + inverse_mass omega, proportional to V + j omega, is collocated in place of V: p' does not depend
+on Q, and on d only by feedback.  dp/dd = inverse_mass V k L is small: Newton's matrix splits into one of p and one of d
+(:mod:`step`).  Where friction is so strong that dp/dV may vanish, p is V.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compile.by_reference import by_value
+from ..compile.intrinsics import unlikely
+from ..compile.jit import kernel
+from ..rows.added_mass import added_mass
+from ..rows.cover import free_kinematics
+from ..rows.evaluate import (
+    H_over_F2,
+    H_over_F2_secants,
+    body_moments,
+    free_creep_and_slopes,
+    length_and_moment,
+    limits_at_rest,
+    locate_row,
+)
+from .drive import applied_forces, current_load, load_at_node, required_forces
+from .workspace import ROW_OMEGA_OR_D, ROW_V, State
+
+#: k relative to the smallest k at which dp/dV may vanish at d = -1; above it V is collocated, dimensionless
+_STRONG_FRICTION = 0.8
+#: |d| below which Q is evaluated by differences of the law: 1 - w^2 H would lose its digits
+_SMALL_D = 1e-4
+
+
+class Rates(NamedTuple):
+    """The right-hand side at a state, with its derivatives in V and in the second unknown (_dd: in d or omega).
+
+    omega, Q, M_half_space, M_cylinder : spin, traction and moments
+    V_rate : V'
+    p, p_rate : the collocated unknown and p'; p is V in full slip and under strong friction
+    weighted_rate : ``weight`` times the slope of the second unknown
+    weight : V in partial slip, 1 in full slip
+    """
+
+    omega: float
+    Q: float
+    M_half_space: float
+    M_cylinder: float
+    V_rate: float
+    p: float
+    p_rate: float
+    weighted_rate: float
+    weight: float
+    dp_dV: float
+    dp_dd: float
+    dp_rate_dV: float
+    dp_rate_dd: float
+    drate_dV: float
+    drate_dd: float
+    dweight_dV: float
+
+
+@kernel(inline=True)
+def evaluate_moments(u, scene):
+    """Evaluate the critical creepage and the moments of the law.
+
+    u: kappa |V|, dimensionless; scene: Scene.
+    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV).
+    """
+    law = by_value(scene.law)
+    index = locate_row(u, law)
+    law_at_u = length_and_moment(index, u, law)
+    m, slope = law_at_u.scale * law_at_u.m, law_at_u.d_um
+    if not scene.moments_differ:
+        return law_at_u.L, law_at_u.dL, law_at_u.ddL, 0.5 * m, 0.5 * m, 0.5 * slope, 0.5 * slope
+    half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
+    scale = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or less in the fast limit
+    return law_at_u.L, law_at_u.dL, law_at_u.ddL, scale * half_space, scale * cylinder, half_space_slope, cylinder_slope
+
+
+@kernel
+def low_speed_limits(work):
+    """Return (M_half_space, M_cylinder, force and torque of feedback), each divided by V, for V -> 0 in free
+    rolling.
+
+    work: Workspace of the motion.
+    """
+    _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
+    gains = work.drive.gains
+    delta_0 = limits_at_rest(work.scene.kappa, by_value(work.scene.law))[1]
+    omega_over_V = 1.0 + delta_0
+    force, torque = gains.force_V + gains.force_omega * omega_over_V, gains.torque_V + gains.torque_omega * omega_over_V
+    return half_space, cylinder, force, torque
+
+
+@kernel(inline=True)
+def critical_creepage(V, scene):
+    """Return the critical creepage delta_star at the speed V; scene: Scene."""
+    u, law = scene.kappa * abs(V), by_value(scene.law)
+    return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
+
+
+@kernel(inline=True)
+def creepage(V, d, scene):
+    """Return the creepage delta at V and d = delta/delta_star, |d| <= 1; of a cover it includes that of free
+    rolling.
+    """
+    u, law = scene.kappa * abs(V), by_value(scene.law)
+    delta = critical_creepage(V, scene) * d
+    return delta if law.cover_rows is None else delta + 0.5 / scene.kappa * free_creep_and_slopes(u, law)[0]
+
+
+@kernel(inline=True)
+def excess_slip(slip, V, scene):
+    """Return the slip omega - V, given as ``slip``, less that of free rolling at V."""
+    law = by_value(scene.law)
+    if law.cover_rows is None:
+        return slip
+    return slip - V * (0.5 / scene.kappa * free_creep_and_slopes(scene.kappa * abs(V), law)[0])
+
+
+@kernel(inline=True)
+def added_inertia(V, scene):
+    """Return (gamma N, its derivative in V, its integral over V) at V, dimensionless."""
+    return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
+
+
+@kernel(inline=True)
+def omega_and_delta(state, regime, scene):
+    """Return (omega, delta) of a state in a regime; delta is infinite at V = 0 in full slip."""
+    if not regime.full_slip:
+        delta = creepage(state.V, state.omega_or_d, scene)
+        return state.V * (1.0 + delta), delta
+    slip = state.omega_or_d - state.V
+    return state.omega_or_d, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
+
+
+@kernel(inline=True)
+def added_mass_margin(n, j):
+    """Return the margin of the added mass: positive while n = gamma N leaves the equations regular; 1 without added
+    mass.
+
+    n is below 1 + j and leaves half of that, and of the 1 + n/2 in front of V'.  j: moment of inertia.
+    """
+    return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
+
+
+@kernel(inline=True)
+def stick_edge_function(V, omega_or_d, regime, scene):
+    """Return the event function of the edge of the stick zone at (V, omega_or_d): positive within the regime."""
+    if not regime.full_slip:
+        n, _, _ = added_inertia(V, scene)
+        return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
+    return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(V, scene) * abs(V)
+
+
+@kernel(inline=True)
+def has_strong_friction(load, regime, scene):
+    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate."""
+    inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
+    strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
+    return strong and regime.sigma < 0.0 and not regime.full_slip
+
+
+@kernel(inline=True)
+def partial_slip_rates(V, d, load, regime, scene):
+    """Evaluate the right-hand side in partial slip: Rates.
+
+    V, d: unknowns; load: Load; regime: Regime; scene: Scene.
+    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
+    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives
+    of x in V and d.
+    """
+    law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
+    u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
+    L, dL, ddL, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
+    stick = max(1.0 - sign * d, 0.0)
+    w = stick * L
+    Q, Q_V, Q_d = sign * mu, 0.0, 0.0
+    if w > 0.0:
+        v = 2.0 * u / w
+        index = locate_row(v, law)
+        value, slope = H_over_F2(index, v, law)
+        A = value - 0.5 * v * slope
+        Q *= 1.0 - w * w * value
+        if unlikely(abs(d) < _SMALL_D):  # Q by a secant of H, without cancellation
+            D = abs(d) * L
+            value, _, secant, _ = H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)
+            Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)
+        Q_V, Q_d = -2.0 * sign * mu * w * (A * stick * dL + slope) * du_dV, 2.0 * mu * w * L * A
+    dVdelta_star = L + u * dL
+    cover = free_kinematics(locate_row(u, law), u, scene.kappa, k, dVdelta_star, law.cover_rows)
+    d_total = d + cover.aside
+    omega, omega_V, omega_d = V * (1.0 + k * L * d + cover.creep), 1.0 + k * d_total * dVdelta_star, k * V * L
+    force, _, torque = applied_forces(V, omega, load, regime)
+    M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
+    inverse_mass, inverse_inertia = load.inverse_mass, load.inverse_inertia
+    inverse_product = inverse_mass * inverse_inertia
+    force_V, torque_V = gains.force_V + gains.force_omega * omega_V, gains.torque_V + gains.torque_omega * omega_V
+    p, p_V = inverse_inertia * V + inverse_mass * omega, inverse_inertia + inverse_mass * omega_V
+    p_d, p_rate_d = inverse_mass * omega_d, 0.0
+    p_rate = inverse_product * (force + torque - M_half_space - M_cylinder)
+    p_rate = p_rate + inverse_inertia * load.prescribed_V_rate + inverse_mass * load.prescribed_omega_rate
+    p_rate_V = inverse_product * (force_V + torque_V - half_space_slope - cylinder_slope)
+    V_rate = inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
+    V_V, V_d = inverse_mass * (Q_V - half_space_slope + force_V), inverse_mass * (Q_d + gains.force_omega * omega_d)
+    torque_d = gains.torque_omega * omega_d
+    n, n_V, n_integral = added_inertia(V, scene)
+    if n != 0.0:
+        mass_ratio = 1.0 / (1.0 + 0.5 * inverse_mass * n)
+        V_rate *= mass_ratio
+        V_V, V_d, drag = mass_ratio * (V_V - 0.5 * inverse_mass * n_V * V_rate), mass_ratio * V_d, 0.5 * n * V_rate
+        M_half_space, M_cylinder = M_half_space + drag, M_cylinder + drag
+        torque_V, torque_d = torque_V - 0.5 * (n_V * V_rate + n * V_V), torque_d - 0.5 * n * V_d
+        p, p_V = p + inverse_product * n_integral, p_V + inverse_product * n
+    omega_rate = inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
+    rate = ((omega_rate - V_rate) / k - d_total * dVdelta_star * V_rate) / L
+    omega_rate_V, omega_rate_d = inverse_inertia * (torque_V - Q_V - cylinder_slope), inverse_inertia * (torque_d - Q_d)
+    curvature = du_dV * (((2.0 * dL + u * ddL) * d + cover.bend) * V_rate + dL * rate)
+    if unlikely(has_strong_friction(load, regime, scene)):
+        p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
+    return Rates(
+        omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, p_V, p_d, p_rate_V, p_rate_d,
+        ((omega_rate_V - V_V) / k - d_total * dVdelta_star * V_V - curvature) / L,
+        ((omega_rate_d - V_d) / k - dVdelta_star * (V_rate + d_total * V_d)) / L, 1.0,
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def full_slip_rates(V, omega, load, regime, scene):
+    """Evaluate the right-hand side in full slip: Rates.
+
+    V, omega: unknowns; load: Load; regime: Regime; scene: Scene.
+    """
+    u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
+    _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
+    force, _, torque = applied_forces(V, omega, load, regime)
+    M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
+    V_rate = load.inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
+    omega_rate = load.inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
+    return Rates(
+        omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0,
+        1.0, 0.0, load.inverse_mass * (gains.force_V - half_space_slope), load.inverse_mass * gains.force_omega,
+        load.inverse_inertia * (gains.torque_V - cylinder_slope), load.inverse_inertia * gains.torque_omega, 0.0,
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
+    """Evaluate the right-hand side of the regime, inlined where Newton's iteration needs it: Rates."""
+    if regime.full_slip:
+        return full_slip_rates(V, omega_or_d, load, regime, scene)
+    return partial_slip_rates(V, omega_or_d, load, regime, scene)
+
+
+@kernel
+def evaluate_rhs(state, load, regime, scene):
+    """Evaluate the right-hand side of the regime at a State, outside the innermost loop: compiled once, not inlined."""
+    return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
+
+
+@kernel
+def current_rates(state, regime, step_state, work):
+    """Return the Rates at a state and the time of the step state."""
+    return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
+
+
+@kernel
+def rhs_and_forces_at_node(i, regime, work):
+    """Return (Rates, (force, torque, torque of the brake)) at node i, evaluated from the unknowns stored there."""
+    state, load = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i]), load_at_node(i, regime, work)
+    rates = evaluate_rhs(state, load, regime, work.scene)
+    return rates, required_forces(state.V, rates.omega, rates, load, regime, work.scene.j)

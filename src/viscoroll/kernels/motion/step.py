@@ -1,0 +1,184 @@
+"""Solution of one step by Radau IIA collocation of p and of the second unknown, with a simplified Newton iteration.
+
+Collocation is written with the slopes of the interpolants, so that the equation of d may be multiplied by V, which
+vanishes where a step ends at V = 0.  At the nodes, with D the differentiation matrix and h half the length,
+
+    (D - h diag(p'_V/p_V)) dp = h p' - D p       [diag(V) D - diag(h b_d + c p_d/p_V)] dd = h b - V (D d) - c dp/p_V
+
+b = V d', c = D d - h b_V, dV = (dp - p_d dd)/p_V: two N x N systems an iteration.  Their inverses are kept while
+updates are small.  In full slip p is V, the second unknown omega, and 1 stands for the V that multiplies its equation.
+Where friction is strong p is V too, but d enters its rate by F = h dV'/dd, as omega does by feedback: with S the second
+matrix,
+
+    [D - h diag(dV'/dV) + diag(F) S^-1 diag(c)] dV = h V' - D V + F S^-1 (h b - V (D d))
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.by_reference import by_value
+from ..compile.jit import kernel
+from .collocation import (
+    DIFFERENTIATION,
+    ROW_LENGTH,
+    N,
+    assemble_newton_matrix,
+    fit_dense_output,
+    invert_matrix,
+    multiply_matrix,
+)
+from .drive import load_at_node, store_drive
+from .error_estimate import ERROR_FRACTION, LEAST_TOLERANCE, NEWTON_FRACTION, error_scales
+from .predictor import predict
+from .rhs import evaluate_rhs_inline, has_strong_friction
+from .workspace import (
+    ROW_COUPLING,
+    ROW_D_DIAGONAL,
+    ROW_D_RESIDUAL,
+    ROW_D_SLOPE,
+    ROW_D_UPDATE,
+    ROW_DENSE_OMEGA_OR_D,
+    ROW_DENSE_V,
+    ROW_DP_DD,
+    ROW_DV_DP,
+    ROW_FEEDBACK,
+    ROW_OMEGA_OR_D,
+    ROW_ONES,
+    ROW_P,
+    ROW_P_DIAGONAL,
+    ROW_P_RATE,
+    ROW_P_RESIDUAL,
+    ROW_P_SLOPE,
+    ROW_P_UPDATE,
+    ROW_RELAXATION,
+    ROW_SPEED,
+    ROW_V,
+    ROW_WEIGHT,
+    ROW_WEIGHTED_RATE,
+)
+
+#: largest number of Newton iterations of a step
+_MAX_ITERATIONS = 12
+#: relative update above which the Newton matrices are evaluated again
+_REFACTOR_UPDATE = 1e-2
+#: ratio of successive updates above which the Newton matrices are evaluated again
+_REFACTOR_CONTRACTION = 1e-3
+#: largest assumed contraction of the first iteration
+_FIRST_CONTRACTION = 0.1
+#: assumed contraction of the first iteration divided by its update: Newton's iteration converges quadratically
+_QUADRATIC_CONTRACTION = 10.0
+
+
+@kernel(inline=True)
+def store_rhs(i, rates, nodes):
+    """Store p, p', the weighted rate and the larger speed at node i; rates: Rates there."""
+    nodes[ROW_P_RATE + i], nodes[ROW_WEIGHTED_RATE + i] = rates.p_rate, rates.weighted_rate
+    nodes[ROW_P + i], nodes[ROW_SPEED + i] = rates.p, max(abs(nodes[ROW_V + i]), abs(rates.omega))
+
+
+@kernel(inline=True)
+def _evaluate_residuals(refactor, step, regime, work):
+    """Evaluate the right-hand side and the residuals at nodes 1 ... N.
+
+    refactor: whether to store also the numbers of the Newton matrices; step: Step; regime: Regime; work: Workspace
+    with the unknowns and the drive at the nodes.
+    """
+    values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
+    multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
+    for i in range(1, ROW_LENGTH):
+        load = load_at_node(i, regime, values)
+        rates = evaluate_rhs_inline(nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i], load, regime, values.scene)
+        store_rhs(i, rates, nodes)
+        slope = nodes[ROW_D_SLOPE + i]
+        nodes[ROW_D_RESIDUAL + i] = half * rates.weighted_rate - rates.weight * slope
+        if refactor:
+            dV_dp = 1.0 / rates.dp_dV
+            coupling = dV_dp * (rates.dweight_dV * slope - half * rates.drate_dV)
+            nodes[ROW_DV_DP + i], nodes[ROW_DP_DD + i], nodes[ROW_COUPLING + i] = dV_dp, rates.dp_dd, coupling
+            nodes[ROW_WEIGHT + i], nodes[ROW_RELAXATION + i] = rates.weight, rates.drate_dd / rates.weight
+            nodes[ROW_P_DIAGONAL + i] = half * rates.dp_rate_dV * dV_dp
+            nodes[ROW_FEEDBACK + i] = half * rates.dp_rate_dd
+            nodes[ROW_D_DIAGONAL + i] = half * rates.drate_dd + coupling * rates.dp_dd
+    multiply_matrix(DIFFERENTIATION, ROW_P, nodes[ROW_P], nodes, ROW_P_SLOPE, nodes)
+    for i in range(1, ROW_LENGTH):
+        nodes[ROW_P_RESIDUAL + i] = half * nodes[ROW_P_RATE + i] - nodes[ROW_P_SLOPE + i]
+
+
+@kernel
+def _add_feedback_to_matrix(work):
+    """Add the feedback of the second unknown, F S^-1 diag(c), to the Newton matrix of p."""
+    for k in range(1, ROW_LENGTH):
+        for i in range(1, ROW_LENGTH):
+            feedback = work.nodes[ROW_FEEDBACK + i] * work.d_matrix[ROW_LENGTH * k + i]
+            work.p_matrix[ROW_LENGTH * k + i] += feedback * work.nodes[ROW_COUPLING + k]
+
+
+@kernel(inline=True)
+def _newton_iteration(refactor, coupled, step, regime, work):
+    """Do one Newton iteration at nodes 1 ... N and return its largest update relative to the error scales.
+
+    refactor: whether to evaluate the Newton matrices again; coupled: whether p' depends on the second unknown; step:
+    Step; regime: Regime; work: Workspace with the unknowns and the drive at the nodes.
+    """
+    nodes, p_matrix, d_matrix = work.nodes, work.p_matrix, work.d_matrix
+    if refactor:
+        _evaluate_residuals(True, step, regime, work)
+        assemble_newton_matrix(ROW_ONES, ROW_P_DIAGONAL, nodes, p_matrix)
+        assemble_newton_matrix(ROW_WEIGHT, ROW_D_DIAGONAL, nodes, d_matrix)
+        invert_matrix(d_matrix)
+        if coupled:
+            _add_feedback_to_matrix(work)
+        invert_matrix(p_matrix)
+    else:
+        _evaluate_residuals(False, step, regime, work)
+    if coupled:
+        multiply_matrix(d_matrix, ROW_D_RESIDUAL, 0.0, nodes, ROW_P_UPDATE, nodes)
+        for i in range(1, ROW_LENGTH):
+            nodes[ROW_P_RESIDUAL + i] += nodes[ROW_FEEDBACK + i] * nodes[ROW_P_UPDATE + i]
+    multiply_matrix(p_matrix, ROW_P_RESIDUAL, 0.0, nodes, ROW_P_UPDATE, nodes)
+    for i in range(1, ROW_LENGTH):
+        nodes[ROW_D_RESIDUAL + i] -= nodes[ROW_COUPLING + i] * nodes[ROW_P_UPDATE + i]
+    multiply_matrix(d_matrix, ROW_D_RESIDUAL, 0.0, nodes, ROW_D_UPDATE, nodes)
+    # a NaN of an update must reach the result: max() loses it in its second argument
+    change_d, change_V = 0.0 * (nodes[ROW_P_UPDATE + N] + nodes[ROW_D_UPDATE + N]), 0.0
+    for i in range(1, ROW_LENGTH):
+        d_update = nodes[ROW_D_UPDATE + i]
+        V_update = (nodes[ROW_P_UPDATE + i] - nodes[ROW_DP_DD + i] * d_update) * nodes[ROW_DV_DP + i]
+        change_V, change_d = max(change_V, abs(V_update)), max(change_d, abs(d_update))
+        nodes[ROW_V + i] += V_update
+        nodes[ROW_OMEGA_OR_D + i] += d_update
+        nodes[ROW_P + i] += nodes[ROW_P_UPDATE + i]
+    scale_V, scale_d = error_scales(step, regime, work)
+    return max(change_V / scale_V, change_d / scale_d)
+
+
+@kernel(inline=True)
+def solve_step(step, relaxation, dense_step, regime, work):
+    """Solve a step from node 0 on and store its dense output; return whether Newton's iteration converged.
+
+    step: Step; relaxation: rate at which the second unknown relaxes at node 0; dense_step: Step whose dense output
+    is stored on entry (for the predictor); regime: Regime; work: Workspace.
+    """
+    nodes, tolerance = work.nodes, max(ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
+    stop = max(NEWTON_FRACTION * tolerance, LEAST_TOLERANCE)
+    store_drive(step, work)
+    predict(step, relaxation, dense_step, regime, work)
+    last_change, refactor = np.inf, True
+    coupled = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
+    if regime.full_slip:
+        coupled = work.drive.gains.force_omega != 0.0
+    for n in range(_MAX_ITERATIONS):
+        change = _newton_iteration(refactor, coupled, step, regime, work)
+        contraction = change / last_change
+        if n == 0:
+            contraction = min(_FIRST_CONTRACTION, _QUADRATIC_CONTRACTION * change + _REFACTOR_CONTRACTION)
+        if not (change < 1e6 and contraction < 2.0):
+            return False
+        if change * contraction <= stop:
+            fit_dense_output(ROW_V, ROW_DENSE_V, nodes)
+            fit_dense_output(ROW_OMEGA_OR_D, ROW_DENSE_OMEGA_OR_D, nodes)
+            return True
+        refactor = change > _REFACTOR_UPDATE and (n == 0 or contraction > _REFACTOR_CONTRACTION)
+        last_change = change
+    return False
