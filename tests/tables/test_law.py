@@ -52,7 +52,7 @@ def copy(saved: Path, tmp_path: Path) -> Path:
 
 def same(one: LawTable, other: LawTable) -> None:
     for field in fields(LawTable):
-        name = "coefficients" if field.name == "given_coefficients" else field.name
+        name = "coefficients" if field.name == "steady_coefficients" else field.name
         first, second = getattr(one, name), getattr(other, name)
         equal = np.array_equal(first, second) if isinstance(first, np.ndarray) else first == second
         assert equal, name

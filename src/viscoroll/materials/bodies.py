@@ -142,8 +142,8 @@ class Bodies(OneOrMany):
         return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r})"
 
 
-def total_series(given: float | Prony | Bodies) -> Prony:
-    """Return the series of ``given``: of an alpha, of a series itself, or of both bodies together."""
-    if isinstance(given, Bodies):
-        return given.total
-    return given if isinstance(given, Prony) else series_of_alpha(given)
+def total_series(material: float | Prony | Bodies) -> Prony:
+    """Return the series of ``material``: of an alpha, of a series itself, or of both bodies together."""
+    if isinstance(material, Bodies):
+        return material.total
+    return material if isinstance(material, Prony) else series_of_alpha(material)

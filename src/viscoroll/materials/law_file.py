@@ -47,7 +47,7 @@ class Kind(NamedTuple):
     summary : beginning of the summary of the file.
     functions : name of each function in the order of its coefficients -> meaning.
     dims : dimensions of the coefficients.
-    terms : what the coefficients are those of.
+    terms : functions whose coefficients these are, in words.
     others : name of each other variable -> (dimensions, meaning).
     comment : how the numbers are evaluated.
     """

@@ -86,7 +86,7 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
 
     path: of the file.
     make: constructor of the material, called with its parameters by name.
-    Returns what ``make`` returns.
+    Returns the material.
     """
     try:
         numbers, about = read_content(path, "material of this package", "write it again")

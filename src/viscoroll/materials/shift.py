@@ -150,16 +150,16 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
     )
 
 
-def check_fields(given: Any, unit: Units = SI, **lows: float) -> None:
+def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
     """Replace fields of a frozen dataclass by numbers above their lower bounds; raises ParameterError.
 
-    given: the dataclass.
+    instance: the dataclass.
     unit: unit of all these fields, or an object that has units by name.
     lows: lower bound of each field by name; the number must be larger.
     """
     for name, low in lows.items():
         object.__setattr__(
-            given, name, check_number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf)
+            instance, name, check_number(name, getattr(instance, name), unit=unit, low=low, strict=low > -math.inf)
         )
 
 

@@ -249,7 +249,7 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
 
 
 def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[Floats, Floats]:
-    """Return what the layer adds to the slope and to the memory.
+    """Return the contributions of the layer to the slope and to the memory.
 
     v: u theta at the nodes, (n,).
     A: signed Bessel functions there, (N + 1, n).

@@ -40,22 +40,22 @@ def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
     return Series(modes.a, modes.b, e, t, np.empty(0) if weights is None else weights, np.sqrt(strengths) / modes.gap)
 
 
-def series_record(given: Any) -> tuple[Any, Floats]:
-    """Return what kernels need to evaluate a law by its modes, for one thread.
+def series_record(material: Any) -> tuple[Any, Floats]:
+    """Return the arguments of the kernel that evaluates a law by its modes, for use by one thread.
 
-    given: a series, two bodies, or alphas, one or one for each element.
+    material: a series, two bodies, or alphas, one or one for each element.
     Returns (record of the series, alphas): for a series or bodies no alphas; for alphas the record of one mode, which
     the kernel overwrites with each alpha in turn.
     """
     from ...kernels.rows.series import Series
 
-    if isinstance(given, Bodies):
+    if isinstance(material, Bodies):
         # the kernel writes into the record, and the weights of a pair are read only
-        return modes_record(given.total.modes, given.half_space_weights.copy()), np.empty(0)
-    if isinstance(given, Prony):
-        return modes_record(given.modes), np.empty(0)
+        return modes_record(material.total.modes, material.half_space_weights.copy()), np.empty(0)
+    if isinstance(material, Prony):
+        return modes_record(material.modes), np.empty(0)
     one = Series(np.ones(1), np.ones(1), np.ones(1), np.ones(1), np.empty(0), np.ones((1, 1)))
-    return one, np.array(given, dtype=np.float64).reshape(-1)
+    return one, np.array(material, dtype=np.float64).reshape(-1)
 
 
 class ModesValues(NamedTuple):
@@ -71,16 +71,16 @@ class ModesValues(NamedTuple):
     N: Floats
 
 
-def evaluate_by_modes(given: Any, z: Floats) -> ModesValues:
+def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
     """Evaluate the law by the formulas of its modes.
 
-    given: a series, two bodies, or alphas, one or one for each z.
+    material: a series, two bodies, or alphas, one or one for each z.
     z: half contact length divided by V T_ref, zeta of the paper, > 0, shape (n,).
     """
     from ...kernels.rows.modes import modes_loop
     from ...kernels.rows.series import FUNCTIONS, new_workspace
 
-    series, alpha = series_record(given)
+    series, alpha = series_record(material)
     values, z = np.zeros((2 * FUNCTIONS + 1, z.size)), z.view()
     z.flags.writeable = False  # kernels are compiled for arguments that are read only
     if series.a.size:

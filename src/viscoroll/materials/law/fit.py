@@ -79,10 +79,10 @@ class _FunctionsOfW:
         return values + slopes * ((x * factor(whole) / w - 1.0) * dlnw_dlnx), slopes * dlnw_dlnx
 
 
-def fit_rows(given: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
+def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     """Fit the rows of the law of steady rolling.
 
-    given: an alpha, a series, or two bodies.
+    material: an alpha, a series, or two bodies.
     rows: octaves of u and of v.
     alpha: instantaneous divided by long-time stiffness.
     T_mean: sums J_j T_j of half-space and cylinder, in units of T_ref; shape (2,).
@@ -90,7 +90,7 @@ def fit_rows(given: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     """
     e0, mean = rows.e0, float(T_mean.sum())
     w = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(alpha)))
-    by_modes = evaluate_by_modes(given, 1.0 / w.x.ravel())
+    by_modes = evaluate_by_modes(material, 1.0 / w.x.ravel())
     powers = w.fit_slopes(*(part.reshape(-1, *w.x.shape) for part in by_modes[:2]))
     powers[:2, 0, :2], powers[2:, 0, 0] = [0.0, math.ldexp(0.5 * mean, e0)], T_mean
     functions, x = _FunctionsOfW(w, powers, by_modes.values), rows.x.ravel()
@@ -100,16 +100,16 @@ def fit_rows(given: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     return steady_table(powers)
 
 
-def fit_unsteady(given: Any, table: Floats, e0: int) -> Floats:
+def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
     """Return a table with N.
 
-    given: an alpha, a series, or two bodies.
+    material: an alpha, a series, or two bodies.
     table: rows of its steady rolling, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     """
     rows, whole = Rows(e0, len(table)), table.copy()
     (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())
-    *N, at_rest = evaluate_by_modes(given, np.append(0.5 * lam / rows.x.ravel(), np.inf)).N
+    *N, at_rest = evaluate_by_modes(material, np.append(0.5 * lam / rows.x.ravel(), np.inf)).N
     powers = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
     powers[0, 0] = at_rest
     whole[:, :, FUNCTIONS.index("N")] = powers

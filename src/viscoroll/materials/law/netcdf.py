@@ -68,7 +68,7 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
         return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
     creep = np.moveaxis(law.cover.creep, 0, -1)
     numbers = SimpleNamespace(
-        coefficients=np.concatenate([steady_columns(law.given_coefficients), creep], axis=-1), limits=law.cover.limits,
+        coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1), limits=law.cover.limits,
         **{name: getattr(law, name) for name in _COVER_NUMBERS},
     )  # fmt: skip
     text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(law.material)
@@ -169,7 +169,7 @@ def _coefficients(content: Content) -> Floats:
 
 @contextmanager
 def _refuse_incomplete(path: Any) -> Iterator[None]:
-    """Raise FileError in place of the errors that a file makes which is not as it was written; ``path``: of it."""
+    """Raise FileError in place of any error of parsing an incomplete file; ``path``: of the file."""
     try:
         yield
     except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
@@ -196,7 +196,7 @@ def bodies_as_toml(given: Any) -> str:
 
 
 def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
-    """Return what :func:`bodies_as_toml` wrote.
+    """Parse text of :func:`bodies_as_toml`.
 
     text: TOML.
     path: of the file, for errors.

@@ -218,7 +218,7 @@ def _pack_cover_front(cover: CoverRows) -> Floats:
 
 
 def _pack_cover(cover: CoverRows) -> Floats:
-    """Return what kernels read of a ``cover`` beside its rows, one array (:mod:`...kernels.rows.cover`)."""
+    """Return the numbers of a ``cover`` that kernels read in addition to its rows (:mod:`...kernels.rows.cover`)."""
     L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
     share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
     front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
@@ -244,7 +244,7 @@ def pack_axis(records: list[Any], c: Floats) -> Floats:
 
 
 def pack_materials(block: Block) -> Floats:
-    """Return what kernels read of materials that have a grid of z each (:mod:`...kernels.rows.z_grid`).
+    """Return the numbers of materials from which kernels make rows by a grid of z (:mod:`...kernels.rows.z_grid`).
 
     block: materials of equal numbers of modes.
     Returns (materials, numbers): alpha, 1/sqrt(alpha), W and C of the fast limit of both bodies, half-space and

@@ -33,7 +33,7 @@ class LawTable:
     Attributes
     ----------
     material : alpha, series or bodies whose law this is, with times in units of ``T_ref``.
-    given_coefficients : as :attr:`coefficients`, with NaN where N was not computed yet.
+    steady_coefficients : as :attr:`coefficients`, with NaN where N was not computed yet.
     e0 : exponent of the end of the first row, which is the interval [0, 2^e0).
     alpha : instantaneous divided by long-time stiffness, dimensionless.
     T_mean : limit of M/V for V -> 0, in units of ``T_ref``: the sum of J_j T_j, except for a cover against a body that
@@ -50,7 +50,7 @@ class LawTable:
     """
 
     material: float | Prony | Bodies
-    given_coefficients: Floats
+    steady_coefficients: Floats
     e0: int
     alpha: float
     T_mean: float
@@ -74,7 +74,7 @@ class LawTable:
 
         For a cover N is not known: its column is NaN.
         """
-        table = self.given_coefficients
+        table = self.steady_coefficients
         if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
         return lock_array(fit_unsteady(self.material, table, self.e0))
@@ -82,7 +82,7 @@ class LawTable:
     @cached_property
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`...kernels.rows.record.Law`)."""
-        return pack_record(self.given_coefficients, self.e0, self.alpha, self.fast_limit, self.cover)
+        return pack_record(self.steady_coefficients, self.e0, self.alpha, self.fast_limit, self.cover)
 
     @cached_property
     def unsteady_record(self) -> Any:
@@ -90,12 +90,12 @@ class LawTable:
         return self.record._replace(N_rows=lock_array(pack_unsteady(self.coefficients, self.e0, self.alpha)))
 
 
-def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
+def law_table(material: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
     """Return the table of a material; it is made once a process and shared by all its threads.
 
     Parameters
     ----------
-    given : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, which are one material if they are
+    material : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, which are one material if they are
         alike or both elastic; or a table, which is returned.
     coefficients : rows of the law, as read from a file; default: they are computed.
 
@@ -104,53 +104,53 @@ def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | N
     ParameterError
         Many materials; times beyond 1e-100 to 1e100 of their unit.
     """
-    if isinstance(given, LawTable):
-        return given
-    if isinstance(given, Prony | Bodies) and given.shape:
-        raise ParameterError("material", repr(given), "one material, as material[i]")
-    if isinstance(given, Bodies) and not isinstance(given, Cover) and (given.like or given.alpha == 1.0):
-        given = given.total if given.total.E.size else 1.0
-    given = given if isinstance(given, Prony | Bodies) else float(given)
+    if isinstance(material, LawTable):
+        return material
+    if isinstance(material, Prony | Bodies) and material.shape:
+        raise ParameterError("material", repr(material), "one material, as material[i]")
+    if isinstance(material, Bodies) and not isinstance(material, Cover) and (material.like or material.alpha == 1.0):
+        material = material.total if material.total.E.size else 1.0
+    material = material if isinstance(material, Prony | Bodies) else float(material)
     if coefficients is not None:
-        return make_table(given, coefficients)
+        return make_table(material, coefficients)
     with _lock:
-        return _made(given)
+        return _made(material)
 
 
 _lock = threading.Lock()
 
 
 @lru_cache(maxsize=_KEPT_TABLES)
-def _made(given: float | Prony | Bodies) -> LawTable:
-    return make_table(given)
+def _made(material: float | Prony | Bodies) -> LawTable:
+    return make_table(material)
 
 
 def make_table(
-    given: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None
+    material: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None
 ) -> LawTable:
     """Make a new table.
 
-    given: alpha, series, bodies or a cover.
+    material: alpha, series, bodies or a cover.
     coefficients: rows of the law (rows, 24 powers, 7 functions); None: they are computed.
-    cover: rows of the law of a cover; None: they are computed if ``given`` is one.
+    cover: rows of the law of a cover; None: they are computed if ``material`` is one.
     """
-    total, unlike = total_series(given), isinstance(given, Bodies)
+    total, unlike = total_series(material), isinstance(material, Bodies)
     modes, alpha = total.modes, total.alpha
-    weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
+    weights = material.half_space_weights if isinstance(material, Bodies) else np.full(modes.J.size, 0.5)
     W = modes.J * modes.b
     terms = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma), modes.J / modes.b
     sums = np.array([[math.fsum(part * term) for term in terms] for part in (1.0, weights, 1.0 - weights)])
     e0, T_mean = 0, total.T_mean
-    if isinstance(given, Cover):
-        cover = cover or cover_rows(given)
+    if isinstance(material, Cover):
+        cover = cover or cover_rows(material)
         coefficients, e0, T_mean = cover.coefficients, cover.e0, float(cover.coefficients[0, 0, 2:4].sum())
     elif modes.a.size:
         refuse_distant_times(modes.b[0], modes.a[-1])
         e0, count = map(int, row_range(modes.b[0], modes.a[-1]))
         if coefficients is None:
-            coefficients = fit_rows(given, Rows(e0, count), alpha, sums[1:, 2])
+            coefficients = fit_rows(material, Rows(e0, count), alpha, sums[1:, 2])
     else:  # elastic bodies: lam = eta/F = H/F^2 = 1, and neither shift nor moment
         coefficients = steady_table(constant_rows(1.0, 0.0, 0.0, 0.0, 1.0, 1.0), N=0.0)
     arrays = (coefficients, sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights)
     coefficients, fast_limit, E, tau, J, T, weights = map(lock_array, arrays)
-    return LawTable(given, coefficients, e0, alpha, T_mean, unlike, fast_limit, E, tau, J, T, weights, cover=cover)
+    return LawTable(material, coefficients, e0, alpha, T_mean, unlike, fast_limit, E, tau, J, T, weights, cover=cover)
