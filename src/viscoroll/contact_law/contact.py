@@ -23,7 +23,7 @@ from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.law.table import LawTable
 from ..materials.prony import Prony
-from .contact_fields import FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
+from .contact_fields import BEFORE_THE_SPLIT, FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .contact_table import FASTEST, evaluate_law, refuse_overflow
 from .parameters import Parameters, Rolls, framed
 
@@ -135,7 +135,7 @@ def contact(
         slopes = check_bool("slopes", slopes)
     names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
     if type(scene.material) is Cover:
-        names = _of_cover(names, fields is None)
+        names = _of_cover(scene.material, names, fields is None)
     creep_name = "omega" if delta is None else "delta"
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
@@ -188,8 +188,19 @@ def evaluate_contact(
     return {name: rows[name].reshape(shape) if shape else rows[name] for name in names}
 
 
-def _of_cover(names: tuple[str, ...], plain: bool) -> tuple[str, ...]:
-    """The fields of a cover: where none were named, delta_0 with them; raises ParameterError where N is."""
+def _of_cover(cover: Cover, names: tuple[str, ...], plain: bool) -> tuple[str, ...]:
+    """Return the fields of a cover; raise ParameterError of a named one that is not known.
+
+    cover: of the scene.  names: of the call, or the default ones if ``plain``, to which delta_0 is added; if both
+    bodies relax, those that need the split of M and slip are left out.
+    """
+    if cover.other.alpha > 1.0:
+        left = tuple(name for name in names if name in BEFORE_THE_SPLIT)
+        if left != names and not plain:
+            found, allowed = repr(next(name for name in names if name not in left)), ", ".join(BEFORE_THE_SPLIT)
+            allowed = f"of {allowed} where the body beside a layer relaxes: the rest is not known"
+            raise ParameterError("fields", found, allowed)
+        return left
     if UNSTEADY in names:
         raise ParameterError(
             "fields", repr(UNSTEADY), "left out for a cover: N of a layer of finite thickness is not known"

@@ -15,6 +15,8 @@ SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 UNSTEADY, GRIP = "N", "grip"
 #: creep of free rolling by the strain that the pressure makes: of covers, 0 of half-spaces
 FREE = "delta_0"
+#: known where both bodies relax and one of them is a layer
+BEFORE_THE_SPLIT = ("lam", "length", "zeta", "epsilon", "delta_star", "delta", "M", "C_rr", "dM_dV")
 #: of which field each of these is made by units alone: the length is over l0, C_rr = M/(P R)
 SAME = {"length": "lam", "C_rr": "M"}
 KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, FREE, *SAME)

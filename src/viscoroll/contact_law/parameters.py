@@ -267,6 +267,10 @@ def scale_of(given: Any) -> Scale:
     return given.scale if isinstance(given, Rolls) else DIMENSIONLESS
 
 
+#: functions that answer where both bodies relax and one of them is a layer
+_BEFORE_THE_SPLIT = ("contact", "stress", "validity", "resistance_extrema")
+
+
 def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> tuple[Rolls, Parameters, Scale]:
     """What rolls, on its slope, its parameters and its scale; ``moves``: with a gamma.
 
@@ -283,6 +287,8 @@ def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> 
         raise ParameterError("roller", type(given).__name__, "a Scene or a Cylinder", sentence)
     roller = given if slope is None else given.tilted(slope)
     scene = roller.scene()
+    if scene.cover is not None and call not in _BEFORE_THE_SPLIT:
+        scene.cover.refuse_unknown_split(call)
     if moves and scene.gamma is None:
         sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
         raise ParameterError("gamma", None, "a number > 0", sentence)

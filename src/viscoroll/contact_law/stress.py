@@ -14,9 +14,10 @@ from ..core.errors import exactly_one_error
 from ..core.labels import strip_labels
 from ..core.results import Values
 from ..materials.bodies import total_series
+from ..materials.law.cover_solve import pressure
 from ..materials.law.evaluate import series_record
 from .contact import evaluate_contact
-from .parameters import Parameters, Rolls, framed, refuse_cover
+from .parameters import Parameters, Rolls, framed
 
 _BLOCK = 1 << 15
 
@@ -41,7 +42,7 @@ def stress(
     -------
     Values
         ``p``: p/E' >= 0.  ``tau``: shear stress on the cylinder over E', of the sign of
-        omega - V, |tau| <= mu p.  Of a Cylinder in Pa.
+        omega - V, |tau| <= mu p.  Of a Cylinder in Pa.  Of a cover ``p`` alone: its shear stress is not known.
 
     Raises
     ------
@@ -57,7 +58,6 @@ def stress(
     from ..kernels.rows.stress import Points
 
     _, scene, scale = framed(roller, "stress")
-    refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
         raise exactly_one_error("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
@@ -90,7 +90,7 @@ def stress(
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
-    rows = {"p": p, "tau": tau}
+    rows = {"p": p} if scene.cover is not None else {"p": p, "tau": tau}
     found = {name: scale.of(name, row.reshape(shape) if shape else row.item()) for name, row in rows.items()}
     return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
@@ -101,10 +101,29 @@ def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Float
 
     ends: Any = [] if scene.each is None else 1 + np.flatnonzero(np.diff(numbers))
     for first, last in pairwise([0, *ends, p.size]):
+        some = points._make(part[first:last] if part.size > 1 else part for part in points)
+        if scene.cover is not None:
+            p[first:last] = _cover_pressure(scene, int(numbers[min(first, numbers.size - 1)]), some)
+            continue
         given: Any = numbers if scene.series is None else scene.series
         if scene.each is not None:
             given = total_series(scene.each[int(numbers[min(first, numbers.size - 1)])])
         series, alpha = series_record(given)
-        some = points._make(part[first:last] if part.size > 1 else part for part in points)
         weights = new_memory_weights(series), new_memory_weights(series)
         stress_loop(series, alpha, *weights, some, p[first:last], tau[first:last])
+
+
+def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
+    """Return p/E' at points on a cover, by one solve for each state of the contact.
+
+    scene: with the cover.  index: which of its covers, if there are many.  points: as the kernels take them.
+    """
+    cover: Any = scene.cover if scene.each is None else scene.each[index]
+    x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
+    states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
+    found = np.empty(x.size)
+    for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
+        place = which.ravel() == n
+        y = 2.0 * x[place] / lam - epsilon
+        found[place] = pressure(cover.modes, zeta, 0.5 * lam / cover.thickness, y) / (8.0 * np.pi * kappa * lam)
+    return found

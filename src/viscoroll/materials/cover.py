@@ -40,6 +40,9 @@ class Cover(Bodies):
     part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1 (default): the other
         body is rigid; below 1 it is an elastic half-space.
     other_nu : Poisson's ratio of the other body; only where ``part`` < 1.
+    other : series of the other body if it relaxes too, times in units of T_ref; default: elastic.  How slip and M are
+        split between the bodies is then not known: :func:`contact` gives lam, zeta, epsilon, delta_star, M and C_rr
+        alone.
 
     Raises
     ------
@@ -79,6 +82,7 @@ class Cover(Bodies):
         on: Literal["cylinder", "base"] = "cylinder",
         part: float = 1.0,
         other_nu: float = 0.5,
+        other: Prony | None = None,
     ) -> None:
         if isinstance(series, Real) and not isinstance(series, bool):
             series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
@@ -92,7 +96,8 @@ class Cover(Bodies):
         given = check_array("thickness", thickness, low=0.0, strict=True, high=_THICKEST)
         if given.ndim > 1:
             raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
-        bodies = (series, Prony.elastic()) if on == "cylinder" else (Prony.elastic(), series)
+        other = Prony.elastic() if other is None else other
+        bodies = (series, other) if on == "cylinder" else (other, series)
         share = part if on == "cylinder" else 1.0 - part
         values |= dict(zip(("cylinder", "base"), bodies, strict=True), share=share, thickness=read_only(given), on=on)
         self.__dict__.update(values)
@@ -110,13 +115,24 @@ class Cover(Bodies):
         return self.cylinder if self.on == "cylinder" else self.base
 
     @property
+    def other(self) -> Prony:
+        """Series of the other body."""
+        return self.base if self.on == "cylinder" else self.cylinder
+
+    @property
     def part(self) -> float:
         """The layer's part of the long-time compliance, in (0, 1]."""
         return float(self.share if self.on == "cylinder" else 1.0 - self.share)
 
+    def refuse_unknown_split(self, call: str) -> None:
+        """Raise ParameterError if the other body relaxes; ``call``: function that needs slip and both parts of M."""
+        if self.other.alpha > 1.0:
+            allowed = f"rigid or elastic: how M and slip are split, which {call} needs, is not known; contact gives M"
+            raise ParameterError("body beside the layer", "one that relaxes", allowed)
+
     def of_thickness(self, thickness: ArrayLike) -> Cover:
         """Return the same bodies with another ``thickness``, divided by l0, a number or an array (n,)."""
-        more: dict[str, Any] = {"on": self.on, "part": self.part, "other_nu": self.other_nu}
+        more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
         return Cover(self.layer, nu=self.nu, thickness=thickness, **more)
 
     def __getitem__(self, which: Any) -> Cover:
@@ -125,8 +141,9 @@ class Cover(Bodies):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         thickness = np.shape(self.thickness), np.asarray(self.thickness).tobytes()
-        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu
+        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu, self.other
 
     def __repr__(self) -> str:
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
+        other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
         return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={format_value(self.thickness)}, on={self.on!r}{other})"

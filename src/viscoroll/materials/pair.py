@@ -52,8 +52,7 @@ class Pair:
     Raises
     ------
     ParameterError
-        A body that is no :class:`Material`; two rigid bodies; two bodies with a thickness, one in plane stress, or one
-        against a body that relaxes.
+        A body that is no :class:`Material`; two rigid bodies; two bodies with a thickness, or one in plane stress.
     """
 
     cylinder: Any
@@ -74,15 +73,11 @@ class Pair:
     def _refuse_covers(self) -> None:
         """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
         thick = [body for body in (self.cylinder, self.half_space) if getattr(body, "thickness", None) is not None]
-        other = self.half_space if self.covered == "cylinder" else self.cylinder
         if len(thick) > 1:
             allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
             raise ParameterError("thickness", "of both bodies", allowed)
         if self.plane != "strain":
             raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
-        if other.prony.alpha > 1.0:
-            found = "of a layer against a body that relaxes"
-            raise ParameterError("thickness", found, "left out, or the other body rigid or elastic")
 
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
@@ -169,9 +164,10 @@ class Pair:
         if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
             allowed = "one series, nu and part of the compliance where a body has a thickness: only l0 and it may vary"
             raise ParameterError(on, "of many materials", allowed)
-        part, series = float(np.max(parts)), layer.prony.slower(layer.T_ref / self.T_ref)
-        other_nu = other.nu if part < 1.0 else 0.5
-        return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, other_nu=other_nu)
+        series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
+        part = float(np.max(parts))
+        more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}
+        return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:

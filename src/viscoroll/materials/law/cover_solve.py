@@ -107,13 +107,17 @@ class CoverModes:
     total : series of both bodies together; the layer's own if the other body is rigid.
     share : the layer's part of the long-time compliance, in (0, 1].
     nu, other_nu : Poisson's ratios of the layer and of the other body.
+    other : series of the other body; default: elastic.
     """
 
-    def __init__(self, layer: Prony, total: Prony, share: float, nu: float, other_nu: float) -> None:
+    def __init__(
+        self, layer: Prony, total: Prony, share: float, nu: float, other_nu: float, other: Prony | None = None
+    ) -> None:
         self.series, self.J, self.alpha = modes_record(total.modes), total.modes.J, float(total.alpha)
         self.share, self.nodes, self.nus = share, layer_nodes(nu), (nu, other_nu)
         self.layer_J, self.layer_b = share * layer.J, 1.0 / layer.T
         self.layer_instant = share / float(layer.alpha)
+        self.other = Prony.elastic() if other is None else other
         self.other_local = (1.0 - share) * _half_space_coupling(other_nu)
 
     def elastic(self, share: float) -> CoverModes:
@@ -122,8 +126,14 @@ class CoverModes:
 
     def compliance(self, k: Floats) -> Any:
         """Return the complex compliance of both bodies for exp(i k Y), (n,); ``k`` in units of 1/(V T_ref), (n,)."""
-        b = self.series.b
-        return 1.0 / self.alpha + (self.J * b / (b - 1j * k[:, None])).sum(axis=1)
+        return _compliance(self.alpha, self.J, self.series.b, k)
+
+    def layer_part(self, k: Floats) -> Any:
+        """Return the layer's complex part of that compliance, (n,); ``k`` as there."""
+        if self.share == 1.0:
+            return np.ones(k.size, np.complex128)
+        other = _compliance(self.other.alpha, self.other.J, 1.0 / self.other.T, k)
+        return 1.0 - (1.0 - self.share) * other / self.compliance(k)
 
     def layer_storage(self, k: Floats) -> Any:
         """Return the real part of the layer's share of that compliance, (n,); ``k`` as there."""
@@ -131,9 +141,19 @@ class CoverModes:
         return self.layer_instant + (self.layer_J * (b**2 / (b**2 + k[:, None] ** 2))).sum(axis=1)
 
 
+def _compliance(alpha: float, J: Floats, b: Floats, k: Floats) -> Any:
+    """Return the complex compliance of a series for exp(i k Y), (n,).
+
+    alpha: instantaneous divided by long-time modulus.
+    J, b: strengths and rates of creep, (modes,).
+    k: wave numbers in units of 1/(V T_ref), (n,).
+    """
+    return 1.0 / alpha + (J * b / (b - 1j * k[:, None])).sum(axis=1)
+
+
 def modes_of_cover(cover: Cover) -> CoverModes:
     """Return the series of a ``cover`` in the form that the solve uses."""
-    return CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu)
+    return CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu, cover.other)
 
 
 def _half_space_coupling(nu: float) -> float:
@@ -285,7 +305,7 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     nodes, N = modes.nodes, orders or _term_count(theta)
     v = nodes.u * theta
     A, J = bessel(v, N), modes.compliance(v / z)
-    part = 1.0 - (1.0 - modes.share) / J
+    part = modes.layer_part(v / z)
     ratio, root, k, x, sigma = _exponentials(modes, z, N)
     _, b, e, t, _, Q = modes.series
     X0, Xi = e / root * x[:, 0], (e / root)[:, None] * x[:, 1:] * sigma
@@ -306,6 +326,48 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     power = (even**2 + odd**2) / v**2
     strain = -2.0 * theta * np.sum(nodes.du * nodes.C * modes.layer_storage(v / z) * power) / q[0]
     return CoverState(float(z * q[0]), float(shift), float(moment), float(limit), float(strain), q, X0 - Xi @ (c @ q))
+
+
+def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
+    """Return the pressure along the contact, divided by 2 P/(pi a), the largest pressure of Hertz on half length a.
+
+    modes: of the cover.
+    z: a divided by V T_ref; infinite for V = 0.
+    theta: a divided by the thickness.
+    x: positions divided by a, from the middle of the contact, positive along V, any shape; outside [-1, 1] the pressure
+        is 0.
+    """
+    from numpy.polynomial.chebyshev import chebval
+
+    if z == np.inf:
+        modes, z = modes.elastic(modes.share), 1.0
+    state = solve(modes, z, theta)
+    # I_n/I_0 is below rounding from n = 9 sqrt(alpha) on
+    width = math.sqrt(min(z * modes.series.a.max(initial=0.0), _LARGE_ALPHA))
+    terms = _pressure_terms(modes, z, state, max(state.q.size, math.ceil(9.0 * width)) + 40)
+    # sum terms_n U_n in Chebyshev polynomials of the first kind: U_n = 2 (T_n + T_(n-2) + ...), with T_0 once
+    sums = np.empty(terms.size)
+    for parity in (0, 1):
+        sums[parity::2] = 2.0 * np.cumsum(terms[parity::2][::-1])[::-1]
+    sums[0] *= 0.5
+    inside = np.clip(x, -1.0, 1.0)
+    return np.sqrt((1.0 - inside) * (1.0 + inside)) * chebval(inside, sums) / state.q[0]
+
+
+def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) -> Floats:
+    """Return the first coefficients of the pressure, q_m for m = 1, 2, ..., (count,).
+
+    modes: of the cover.
+    z: half contact length divided by V T_ref.
+    state: contact of that length.
+    count: number of coefficients.
+    """
+    from scipy.special import ive
+
+    alpha = np.minimum(modes.series.a * z, _LARGE_ALPHA)
+    terms = 2.0 * (ive(np.arange(1, count + 1)[:, None], alpha) / ive(0, alpha)) @ state.X
+    terms[: state.q.size] = state.q
+    return terms
 
 
 def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:
@@ -335,11 +397,8 @@ def _pressure_products(modes: CoverModes, z: float, state: CoverState) -> tuple[
     state: contact of that length.
     """
     from scipy.fft import dst
-    from scipy.special import ive
 
-    alpha = np.minimum(modes.series.a * z, _LARGE_ALPHA)
-    terms = 2.0 * (ive(np.arange(1, _INTERVALS)[:, None], alpha) / ive(0, alpha)) @ state.X
-    terms[: state.q.size] = state.q
+    terms = _pressure_terms(modes, z, state, _INTERVALS - 1)
     p = np.concatenate([[0.0], 0.5 * dst(terms, type=1), [0.0]])
     t = np.arange(_INTERVALS + 1) * (math.pi / _INTERVALS)
     x, weights = np.cos(t), np.sin(t) * (math.pi / _INTERVALS)

@@ -66,6 +66,8 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
     if law.cover is None:
         bodies, material = "unlike" if law.unlike else "alike", bodies_as_toml(law.pair or law.material)
         return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
+    cover: Any = law.material
+    cover.refuse_unknown_split("a file")
     creep = np.moveaxis(law.cover.creep, 0, -1)
     numbers = SimpleNamespace(
         coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1), limits=law.cover.limits,
