@@ -14,7 +14,7 @@ from ..core.errors import exactly_one_error
 from ..core.labels import strip_labels
 from ..core.results import Values
 from ..materials.bodies import total_series
-from ..materials.law.cover_solve import pressure
+from ..materials.law.cover_pressure import pressure
 from ..materials.law.evaluate import series_record
 from .contact import evaluate_contact
 from .parameters import Parameters, Rolls, framed

@@ -16,7 +16,8 @@ import numpy as np
 from ...core.array_types import Floats
 from ...core.errors import ParameterError
 from ..cover import Cover
-from .cover_solve import LARGEST_THETA, CoverModes, local_strain, modes_of_cover, solve
+from .cover_pressure import local_strain
+from .cover_solve import LARGEST_THETA, CoverModes, modes_of_cover, solve
 from .pack import CoverRows, constant_rows, steady_table
 from .rows import NODES, Rows, row_range
 
