@@ -31,9 +31,11 @@ def _evaluate_N(u, law):
 
 @kernel
 def _evaluate_added_mass(law, V, kappa, gamma):
-    """Return (gamma N, its slope over V, its integral over V) of a law that has N; arguments as :func:`added_mass`.
+    """Return (gamma N, its slope over V, its integral over V) of a law that has N.
 
-    law : a :class:`Law`.  V : speed.  kappa : slenderness.  gamma : mass parameter.
+    law : a :class:`Law` with rows of N.  V : speed of the axis.  kappa : slenderness R/l0.
+    gamma : mass parameter, dimensionless.  The integral begins at V = 0 or, where V = 0 is out of reach, at
+    infinity.
     """
     count = law.marks[ROW_COUNT]
     row, N, integral, slope = _evaluate_N(kappa * abs(V), law)

@@ -30,9 +30,10 @@ SMALL_CREEP = 0.125
 
 @inline_kernel
 def traction_over_mu(u, L, D, law):
-    """Return |Q|/mu, in [0, 1].
+    """Return |Q|/mu, the fraction of the friction that is used, in [0, 1].
 
-    u : kappa |V|.  L : 2 kappa delta_star/mu.  D : 2 kappa |delta|/mu; infinite in full slip.  law : a :class:`Law`.
+    u : kappa |V|, dimensionless speed.  L : 2 kappa delta_star/mu.  D : 2 kappa |delta|/mu; infinite in full slip.
+    law : a :class:`Law`.
     """
     w = L - D
     if not w > 0.0:  # also where rounding puts delta_star above D
@@ -50,15 +51,21 @@ def traction_over_mu(u, L, D, law):
 
 @inline_kernel
 def _cancels(traction, D, L):
-    """Return whether |Q|/mu = ``traction`` lost digits as a difference; up to D = L/2 v1 and v2 are in adjacent
-    rows.
+    """Return whether 1 - w^2 H/F^2 has lost digits, so that the mean slope must be used.
+
+    traction : |Q|/mu as that difference.  D : 2 kappa |delta|/mu.  L : 2 kappa delta_star/mu.
+    Beyond D = L/2 the two arguments v1 and v2 may be more than one row apart, and the difference stays.
     """
     return traction < 0.2 and D < 0.5 * L
 
 
 @inline_kernel
 def friction_reserve(u, L, D, law):
-    """Return 1 - |Q|/mu, with all its digits where it is small; arguments as of :func:`traction_over_mu`."""
+    """Return the friction reserve 1 - |Q|/mu, in [0, 1], with all its digits where it is small.
+
+    u : kappa |V|, dimensionless speed.  L : 2 kappa delta_star/mu.  D : 2 kappa |delta|/mu; infinite in full slip.
+    law : a :class:`Law`.
+    """
     w = L - D
     if not w > 0.0:
         return 0.0
@@ -68,9 +75,10 @@ def friction_reserve(u, L, D, law):
 
 @inline_kernel
 def stick_fraction(u, lam, L, D, law):
-    """Return beta, the stick zone's share of the contact length.
+    """Return beta, the stick zone's share of the contact length, in [0, 1].
 
-    lam : length of the contact divided by l0; the others as of :func:`traction_over_mu`: u, L, D, law.
+    u : kappa |V|, dimensionless speed.  lam : length of the contact divided by l0.  L : 2 kappa delta_star/mu.
+    D : 2 kappa |delta|/mu; infinite in full slip.  law : a :class:`Law`.
     """
     w = L - D
     if not w > 0.0:
@@ -81,9 +89,10 @@ def stick_fraction(u, lam, L, D, law):
 
 @inline_kernel
 def traction_slopes(u, L, dL, D, law):
-    """Return the slopes of |Q|/mu in partial slip: over u at fixed delta, and over D; zeros in full slip.
+    """Return the slopes of |Q|/mu in partial slip, over u at fixed delta, and over D; (0, 0) in full slip.
 
-    dL : dL/du; the others as of :func:`traction_over_mu`: u, L, D, law.
+    u : kappa |V|, dimensionless speed.  L, dL : 2 kappa delta_star/mu and its slope over u.
+    D : 2 kappa |delta|/mu; infinite in full slip.  law : a :class:`Law`.
     """
     w = L - D
     if not w > 0.0:
@@ -151,7 +160,11 @@ def Q_slopes(u, L, dL, free_creep, state, law):
 
 @inline_kernel
 def _next_state(k, request):
-    """Return (the :class:`State` that is number ``k`` in the order of ``request``, its number, kappa |V|)."""
+    """Return (state, n, u) of the state that is number ``k`` in the order of evaluation.
+
+    k : number in that order.  request : the :class:`Request`.
+    state : the :class:`State`.  n : its number, hence its column of the output.  u : kappa |V|.
+    """
     n = request.order[np.uint64(k)] if request.order.size > 0 else k
     state = read_state(request.states, n)
     return state, n, state.kappa * abs(state.V)
@@ -165,9 +178,12 @@ def _requests_Q_slopes(to):
 
 @inline_kernel
 def _write_functions_of_speed(k, column, buffer, law, request):
-    """Write what depends on the speed alone, and keep L, lam, dL/du and 2 kappa delta_0 in a column of ``buffer``.
+    """Write the requested quantities that depend on the speed alone: M, its parts and slopes, lam, zeta, epsilon.
 
-    k : position in the order of ``request``.  column : of ``buffer``.  law : a :class:`Law`.
+    k : position of the state in the order of ``request``.  column : column of ``buffer`` for this state.
+    buffer : (4, states), in whose column L, lam, dL/du and 2 kappa delta_0 are kept for
+        :func:`_write_functions_of_creep`.
+    law : a :class:`Law`.  request : the :class:`Request`, whose output is written.
     """
     to = request.to
     state, n, u = _next_state(k, request)
@@ -198,10 +214,12 @@ def _write_functions_of_speed(k, column, buffer, law, request):
 
 @inline_kernel
 def _write_functions_of_creep(k, column, buffer, law, request):
-    """Write what depends on the creepage too; arguments as of :func:`_write_functions_of_speed`.
+    """Write the requested quantities that depend on the creepage: Q and its slopes, beta, grip, delta_star and
+    others.
 
-    k : position in the order of ``request``.  column : of ``buffer``, which has what that function kept.
-    law : a :class:`Law`.
+    k : position of the state in the order of ``request``.  column : column of ``buffer`` for this state.
+    buffer : (4, states), whose column holds L, lam, dL/du and 2 kappa delta_0 at the speed of this state.
+    law : a :class:`Law`.  request : the :class:`Request`, whose output is written.
     """
     to = request.to
     state, n, u = _next_state(k, request)

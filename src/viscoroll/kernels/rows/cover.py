@@ -50,9 +50,10 @@ def is_cover(cover_rows):
 
 @inline_kernel
 def fast_moment(shift, u, cover_rows):
-    """Return M/V, divided by its scale, in the fast limit.
+    """Return M/V, divided by its scale, behind the last row (fast limit).
 
     shift : M/V of a half-space, which is the result if ``cover_rows`` is None.  u : kappa |V|.
+    cover_rows : as of :class:`Law`.
     """
     if cover_rows is None:
         return shift
@@ -61,9 +62,10 @@ def fast_moment(shift, u, cover_rows):
 
 @inline_kernel
 def fast_lengths(lam, shift, u, cover_rows):
-    """Return (lam, epsilon) in the fast limit.
+    """Return (lam, epsilon) behind the last row (fast limit).
 
     lam, shift : lam and epsilon of a half-space, which are the result if ``cover_rows`` is None.  u : kappa |V|.
+    cover_rows : as of :class:`Law`.
     """
     if cover_rows is None:
         return lam, shift
@@ -72,9 +74,10 @@ def fast_lengths(lam, shift, u, cover_rows):
 
 @inline_kernel
 def fast_eta_over_F(eta_over_F, v, cover_rows):
-    """Return eta/F in the fast limit.
+    """Return eta/F behind the last row (fast limit).
 
     eta_over_F : eta/F of a half-space, which is the result if ``cover_rows`` is None.  v : 1/F(eta).
+    cover_rows : as of :class:`Law`.
     """
     if cover_rows is None:
         return eta_over_F
@@ -83,7 +86,7 @@ def fast_eta_over_F(eta_over_F, v, cover_rows):
 
 @inline_kernel
 def free_creep_at(position, u, cover_rows):
-    """Return 2 kappa delta_0 and its first two derivatives over u; zeros of half-spaces.
+    """Return (value, first, second derivative over u) of 2 kappa delta_0; zeros of half-spaces.
 
     position : of u in the rows of the law.  u : kappa |V|.  cover_rows : as of :class:`Law`.
     """
@@ -99,7 +102,10 @@ def free_creep_at(position, u, cover_rows):
 
 @inline_kernel
 def free_creep_value(position, u, cover_rows):
-    """Return 2 kappa delta_0 alone, 0 of half-spaces; arguments as of :func:`free_creep_at`."""
+    """Return 2 kappa delta_0 alone, with delta_0 the creepage of free rolling; 0 of half-spaces.
+
+    position : of u in the rows of the law.  u : kappa |V|.  cover_rows : as of :class:`Law`, None of half-spaces.
+    """
     if cover_rows is None:
         return 0.0
     if position.row < 0:

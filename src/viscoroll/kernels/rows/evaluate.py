@@ -224,7 +224,8 @@ def eta_over_F(position, v, law):
 def H_over_F2(position, v, law):
     """Return H/F^2 and its slope over v.
 
-    position : of v, by :func:`locate_row`.  v : 1/F(eta).  law : a :class:`Law`.
+    position : of v, by :func:`locate_row`.  v : 1/F(eta), dimensionless.  law : a :class:`Law`.
+    |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta|)/mu.
     """
     if in_fast_limit(position):
         alpha = law.rows[ALPHA]

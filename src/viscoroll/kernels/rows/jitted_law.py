@@ -116,7 +116,10 @@ class _LawModel(models.PrimitiveModel):
 
 @unbox(LawType)
 def _unbox(kind, law, c):
-    """Return the address of the law that Python passes; arguments as numba gives them."""
+    """Return the address of the user data of a law that Python passes to jitted code.
+
+    kind, c : numba's type of the law and its context of unboxing.  law : the Python object.
+    """
     address = c.pyapi.object_getattr_string(law, "address")
     value = c.pyapi.long_as_ulonglong(address)
     c.pyapi.decref(address)
@@ -125,7 +128,11 @@ def _unbox(kind, law, c):
 
 @lower_constant(LawType)
 def _lower_constant(context, builder, kind, law):
-    """Return the address of a law that is a constant of the code; numba then keeps the code out of its cache."""
+    """Return instructions for the address of a law that is a constant of the code.
+
+    context, builder, kind : of numba.  law : the :class:`Jitted`, which is kept alive.
+    numba does not put code with such an address into its cache: the next process has other addresses.
+    """
     _constants.append(law)
     return builder.ptrtoint(context.add_dynamic_addr(builder, law.address, info="law"), _WORD)
 

@@ -136,11 +136,12 @@ def set_alpha_of_state(n, alpha, series):
 
 @kernel
 def modes_loop(series, alpha, work, z, out):
-    """Evaluate the functions of a series, their slopes and N.
+    """Evaluate the functions of a series, their slopes and N at many z.
 
-    series : a :class:`Series`.  alpha : alphas of a series of one mode, as of :func:`set_alpha_of_state`.
-    work : its :class:`Workspace`.  z : values of zeta > 0, (n,).
-    out : (9, n), written: the four functions, their slopes over ln(1/z), N.
+    series : a :class:`Series`.
+    alpha : alphas of a series of one mode, of length 1 or with one for each z; empty: the series is complete.
+    work : the :class:`Workspace` of the series.  z : values of zeta > 0, (n,).
+    out : (9, n), written: g/z, h/z, m of half-space and cylinder; their slopes over ln(1/z); N.
     """
     for n in range(z.size):
         set_alpha_of_state(n, alpha, series)

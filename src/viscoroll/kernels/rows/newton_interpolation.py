@@ -66,9 +66,11 @@ def divided_differences(count, scratch):
 
 @kernel
 def evaluate_at_nodes(nodes, which, scratch):
-    """Write the values of a polynomial at the nodes of a row into ``scratch``.
+    """Evaluate Newton's polynomial of one function at the 24 nodes of a row, and write the values into ``scratch``.
 
-    nodes : arguments, (24,).  which : 0 or 1, the function.  scratch : holds its divided differences.
+    nodes : arguments of the nodes, (24,).  which : 0 or 1, the function.
+    scratch : vector of this module with the divided differences of that function; its values at NODE_VALUES are
+    written.
     """
     start = VALUES + FUNCTION_STRIDE * which + _BLOCK
     x = load_row(nodes, 0)

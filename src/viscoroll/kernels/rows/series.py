@@ -179,9 +179,10 @@ def _factorize(matrix, count):
 
 @inline_kernel
 def _substitute(matrix, right, count):
-    """Solve a linear system in place of its right side.
+    """Solve a linear system with a factorized matrix, in place of its right side.
 
-    matrix : factors by :func:`_factorize`.  right : ``count`` vectors of four, flat.  count : number of unknowns.
+    matrix : factors by :func:`_factorize`, (count, count) vectors of four, flat.
+    right : right side, ``count`` vectors of four, flat; overwritten by the solution.  count : number of unknowns.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):

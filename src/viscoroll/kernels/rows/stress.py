@@ -106,10 +106,10 @@ def new_memory_weights(series) -> MemoryWeights:
 
 @kernel
 def unit_shape(u, w, z, series, weights):
-    """Return S/z, the shape of the pressure, at one point; 0 outside the contact.
+    """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point; 0 outside the contact.
 
     u, w : distances from the front and the rear edge in half contacts, u + w = 2.
-    z : half transit time, dimensionless; inf is the elastic limit V = 0.
+    z : half transit time of the contact, or of the stick zone, dimensionless; inf is the elastic limit V = 0.
     series : a :class:`Series`.  weights : its :class:`MemoryWeights`, computed again if they belong to another z.
     """
     if u <= 0.0 or w <= 0.0:

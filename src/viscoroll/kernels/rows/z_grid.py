@@ -209,9 +209,10 @@ def make_part(start, source):
 
 @kernel
 def _make_functions(part, row, grid):
-    """Write one function of a row, over v, or a pair of them, over u.
+    """Make one function of v, or a pair of functions of u, for one row: write the coefficients of the powers of t.
 
-    part : offset in a row.  row : its number.  grid : the :class:`Grid`.
+    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.  row : number of the row.  grid : the :class:`Grid`, whose
+        ``rows`` are written.
     """
     over_v = part >= H_OVER_F2
     slow = row == 0
@@ -321,7 +322,10 @@ def _fill_block(first, grid):
 
 @inline_kernel
 def _ensure_nodes(first, stop, grid):
-    """Make the nodes with numbers ``first`` to ``stop`` - 1, if they are not up to date."""
+    """Make nodes of the grid that belong to another material still.
+
+    first, stop : numbers of the first node and of the one behind the last.  grid : the :class:`Grid`, written.
+    """
     for block in range(first // LANES, (stop - 1) // LANES + 1):
         if grid.node_versions[block] != grid.version:
             grid.node_versions[block] = grid.version
@@ -330,9 +334,10 @@ def _ensure_nodes(first, stop, grid):
 
 @inline_kernel
 def _ln_from_end(node, row, over_v, grid):
-    """Return ln u, or ln v, at a node minus that of the end of an octave.
+    """Return ln u, or ln v, at a node of the grid minus ln of the end of an octave of u or v.
 
-    node : its number.  row : number of the octave's row.  over_v : v or u.  grid : the :class:`Grid`.
+    node : number of the node.  row : number of the row that spans the octave.  over_v : True for v, False for u.
+    grid : the :class:`Grid`, in which the node is made if it is missing.
     """
     _ensure_nodes(node, node + 1, grid)
     end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
@@ -343,9 +348,11 @@ def _ln_from_end(node, row, over_v, grid):
 
 @kernel
 def _collect_points(row, first, count, over_v, grid):
-    """Write the 36 points around an octave into the scratch of ``grid``.
+    """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
 
-    row : number of the octave's row.  first : the first function.  count : how many.  over_v : v or u.
+    row : number of the row that spans the octave.  first : index of the first function at a node.
+    count : number of functions, 1 or 2.  over_v : True if they are functions of v, False for u.
+    grid : the :class:`Grid`.  Arguments are ln u or ln v, counted from the end of the octave.
     """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
@@ -369,8 +376,9 @@ def _collect_points(row, first, count, over_v, grid):
 def _collect_slow_points(first, count, over_v, grid):
     """Write the 36 points of the slow row, from 1/z = 0 to a little beyond its end, into the scratch of ``grid``.
 
-    first : the first function.  count : how many.  over_v : v or u.  Functions count from their limits, and epsilon
-    is divided by t.
+    first : index of the first function at a node.  count : number of functions, 1 or 2.
+    over_v : True if they are functions of v, False for u.  grid : the :class:`Grid`. Arguments are t = u or v
+    divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided by t.
     """
     end = math.ldexp(1.0, int(grid.e0))
     _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)

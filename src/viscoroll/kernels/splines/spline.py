@@ -117,7 +117,12 @@ def _basis(spline, position, n):
 
 @inline_kernel
 def evaluate(spline, V, delta, alpha):
-    """Return the :class:`Value` of a field at a point; arguments as of :func:`spline_at`: spline, V, delta, alpha."""
+    """Return the :class:`Value` of a field at a point, for kernels that inline it.
+
+    spline : the vector of a spline.  V, delta, alpha : coordinates in the units of the grid; any number for an axis
+    on
+        which the field does not depend.
+    """
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)
     over_alpha = _locate(spline, ALPHA_AXIS, alpha)
