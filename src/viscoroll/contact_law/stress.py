@@ -15,6 +15,7 @@ from ..core.labels import strip_labels
 from ..core.results import Values
 from ..materials.bodies import total_series
 from ..materials.law.cover_pressure import pressure
+from ..materials.law.cover_solve import modes_of_cover
 from ..materials.law.evaluate import series_record
 from .contact import evaluate_contact
 from .parameters import Parameters, Rolls, framed
@@ -125,5 +126,7 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
         place = which.ravel() == n
         y = 2.0 * x[place] / lam - epsilon
-        found[place] = pressure(cover.modes, zeta, 0.5 * lam / cover.thickness, y) / (8.0 * np.pi * kappa * lam)
+        found[place] = pressure(modes_of_cover(cover), zeta, 0.5 * lam / cover.thickness, y) / (
+            8.0 * np.pi * kappa * lam
+        )
     return found
