@@ -14,7 +14,7 @@ from ...contact_law.contact import contact
 from ...core.array_types import Booleans, Floats, Numbers
 from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.plots.measurements import fitted, relaxed
+from ...core.plots.measurements import moduli_fit, relaxation_fit
 from ...core.results import Result, SummaryRow
 from ...materials.importers import check_poisson
 from ...materials.material import Material
@@ -228,7 +228,7 @@ class Fit(SeriesFit):
         found = self._over_modes("omega", "rad s-1", {"storage": self.storage, "loss": self.loss, **dict(of_fit)})
         return found.assign_attrs({f"misfit_{name}": value for name, value in self.misfit._asdict().items()})
 
-    _rows, _figure = of_dynamic, fitted
+    _rows, _figure = of_dynamic, moduli_fit
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -264,4 +264,4 @@ class RelaxationFit(SeriesFit):
         columns = {"relaxation": self.relaxation, "relaxation_fit": self.modulus(self.t)}
         return self._over_modes("t", "s", columns).assign_attrs(misfit=self.misfit)
 
-    _rows, _figure = of_relaxation, relaxed
+    _rows, _figure = of_relaxation, relaxation_fit

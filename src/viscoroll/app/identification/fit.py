@@ -12,7 +12,7 @@ import numpy as np
 from ...core.array_types import Floats
 from ...core.checks import check_integer, check_number
 from ...core.errors import ParameterError, check_names
-from ...core.plots.measurements import compared
+from ...core.plots.measurements import identification
 from ...core.results import Result, SummaryRow, Values
 from .problem import Found, Problem
 from .profile import Likelihood, Product
@@ -210,4 +210,4 @@ class Identification(Result):
         return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} of {self.dof}")]
 
     __str__, to_xarray = report, as_dataset
-    _figure = compared
+    _figure = identification

@@ -29,7 +29,7 @@ def draw(data: xr.Dataset) -> Figure:
         ({"t", "regime"} <= {*has, *data.coords}, states.motion),
         ("equilibrium" in data.dims, states.equilibria),
         ({"p", "tau", "x"} <= {*has, *data.coords}, states.stresses),
-        (bool(states.axes_of(data)), states.over_axes),
+        (bool(states.varied_axes(data)), states.field_curves),
     )
     for holds, figure in kinds:
         if holds:

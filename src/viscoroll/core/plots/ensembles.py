@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import THIN, axis, labelled, new_figure, panels, quantile_bands, with_unit
+from .style import THIN, variable_label, axis_label, new_figure, new_panels, quantile_bands, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,12 +43,12 @@ def distributions(data: xr.Dataset) -> Figure:
     figure, boxes = new_figure(f"{count:,} motions{drawn_by}", rows, columns, size, squeeze=False)
     for name, (left, *right) in zip(names, boxes, strict=False):
         found = data[name if each else f"{name}_quantiles"]
-        text, over_t = labelled(name, found.attrs["units"], found.attrs.get("symbol", "")), "t" in found.dims
+        text, over_t = axis_label(name, found.attrs["units"], found.attrs.get("symbol", "")), "t" in found.dims
         levels = np.array(_LEVELS) if each else data["quantile"].values
         values = _quantiles(found.values) if each else found.values
         if over_t and data.sizes["t"] > 1:
             quantile_bands(left, t := data["t"].values, levels, values)
-            left.set(xlabel=axis(data["t"]), ylabel=text, xlim=(t[0], t[-1]))
+            left.set(xlabel=variable_label(data["t"]), ylabel=text, xlim=(t[0], t[-1]))
         else:
             left.plot(values.ravel(), levels, "o-", color="black")
             left.set(xlabel=text, ylabel="fraction of motions below", ylim=(0.0, 1.0))
@@ -124,10 +124,10 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
     shown = [_at_last_time(indices, name) for name in names]
     order = np.argsort(-np.max([values["ST"] for _, values in shown], axis=0), kind="stable")
-    inputs = [_STARTS.get(name) or labelled(name) for name in indices["input"].values[order]]
+    inputs = [_STARTS.get(name) or axis_label(name) for name in indices["input"].values[order]]
     percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
     title = f"Sobol indices of {indices.attrs['motions']} motions, with intervals of {percent}"
-    figure, boxes = panels(title, len(shown), 3, (3.2, 2.6), sharey=True)
+    figure, boxes = new_panels(title, len(shown), 3, (3.2, 2.6), sharey=True)
     for box, (text, values) in zip(boxes, shown, strict=True):
         for key, (which, grey, side) in _SOBOL.items():
             box.bar(
@@ -146,8 +146,8 @@ def _at_last_time(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArra
     """(title of a panel, its indices over input)."""
     values = {key: indices[f"{name}_{key}"].values for each in _SOBOL for key in (each, f"{each}_conf")}
     if values["S1"].ndim == 1:
-        return labelled(name), values
+        return axis_label(name), values
     last = np.flatnonzero(np.isfinite(values["S1"][:, 0]))[-1]
     t = indices["t"]
-    time = with_unit(f"{labelled('t')} = {t.values[last]:g}", t.attrs["units"])
-    return f"{labelled(name)} at {time}", {key: v[last] for key, v in values.items()}
+    time = with_unit(f"{axis_label('t')} = {t.values[last]:g}", t.attrs["units"])
+    return f"{axis_label(name)} at {time}", {key: v[last] for key, v in values.items()}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ParameterError
-from .style import LINES, THIN, by_factors, dashed, labelled, new_figure
+from .style import LINES, THIN, spaced_by_factors, plot_measured_range, axis_label, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,21 +34,21 @@ def master_curve(material: Any) -> Figure:
     title = (material.name or "Material") + ("; dashed: beyond what was measured" if material.measured else "")
     figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
     held = material.measured and (material.measured.low, material.measured.high)
-    lines = dashed(left, omega, material.storage(omega), held, **LINES[0], label="E'")[:1]
+    lines = plot_measured_range(left, omega, material.storage(omega), held, **LINES[0], label="E'")[:1]
     left.set(xscale="log", yscale="log")
     if material.prony.E.size:  # an elastic material has none, and no logarithm of it
-        lines += dashed(left, omega, material.loss(omega), held, **LINES[1], label="E''")[:1]
+        lines += plot_measured_range(left, omega, material.loss(omega), held, **LINES[1], label="E''")[:1]
         factor = left.twinx()
-        lines += dashed(factor, omega, material.tan_delta(omega), held, **LINES[2], label="tan delta")[:1]
+        lines += plot_measured_range(factor, omega, material.tan_delta(omega), held, **LINES[2], label="tan delta")[:1]
         factor.set(ylabel="loss factor tan delta", ylim=(0.0, None))
     left.set(xlabel="angular frequency, rad/s", ylabel="storage and loss modulus, Pa")
     left.legend(handles=lines, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize="small")
-    dashed(right, t, material.relaxation(t), held and (1.0 / held[1], 1.0 / held[0]), **LINES[0])
+    plot_measured_range(right, t, material.relaxation(t), held and (1.0 / held[1], 1.0 / held[0]), **LINES[0])
     right.set(xlabel="time, s", ylabel="relaxation modulus E(t), Pa", xscale="log", yscale="log")
     return figure
 
 
-def fitted(fit: Any) -> Figure:
+def moduli_fit(fit: Any) -> Figure:
     """Storage and loss modulus of a :class:`viscoroll.Fit`: the data and the curves of the series."""
     symbol = "G" if fit.mode == "shear" else "E"
     misfit = f"misfit {fit.misfit.storage:.1%} in {symbol}', {fit.misfit.loss:.1%} in {symbol}''"
@@ -56,7 +56,7 @@ def fitted(fit: Any) -> Figure:
     return _with_data(fit, misfit, fit.omega, columns, fit.modulus, "angular frequency, rad/s")
 
 
-def relaxed(fit: Any) -> Figure:
+def relaxation_fit(fit: Any) -> Figure:
     """Relaxation modulus of a :class:`viscoroll.RelaxationFit`: the data and the curve of the series."""
     columns = {"G(t)" if fit.mode == "shear" else "E(t)": fit.relaxation}
     return _with_data(fit, f"misfit {fit.misfit:.1%}", fit.t, columns, lambda t: (fit.modulus(t),), "time, s")
@@ -74,7 +74,7 @@ def _with_data(fit: Any, misfit: str, x: Any, columns: dict[str, Any], modulus: 
     return figure
 
 
-def compared(fit: Any) -> Figure:
+def identification(fit: Any) -> Figure:
     """A column for each quantity of a record: data and band over its places above, residuals over sigma below."""
     shown = fit._problem.columns
     figure, axes = new_figure(
@@ -96,9 +96,9 @@ def compared(fit: Any) -> Figure:
             above.plot(x, y, ".", color="black", markersize=3, label="data")
             below.plot(x, (value - y) / sigma, ".", color="black", markersize=3)
         below.axhline(0.0, **THIN)
-        if by_factors(x):
+        if spaced_by_factors(x):
             below.set_xscale("log")
-        above.set(ylabel=labelled(quantity, record.unit(quantity)), title=called)
+        above.set(ylabel=axis_label(quantity, record.unit(quantity)), title=called)
         above.legend(frameon=False, fontsize="small")
-        below.set(xlabel=labelled(place, record.unit(place)), ylabel="residual/sigma")
+        below.set(xlabel=axis_label(place, record.unit(place)), ylabel="residual/sigma")
     return figure

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..symbols import MEASURED
-from .style import LINES, THIN, axis, by_factors, dashed, log_ticks, new_figure, panels
+from .style import LINES, THIN, variable_label, spaced_by_factors, plot_measured_range, log_ticks, new_figure, new_panels
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,15 +25,15 @@ _FULL_SLIP, _SHADE = 0, "0.87"
 _AT_A_JUMP = 1e-9
 
 
-def axes_of(data: xr.Dataset) -> list[str]:
+def varied_axes(data: xr.Dataset) -> list[str]:
     """Axes of more than one value that the fields lie over."""
     over = {dim for name in _shown(data) for dim in data[name].dims}
     return [str(dim) for dim, size in data.sizes.items() if size > 1 and dim in over]
 
 
-def over_axes(data: xr.Dataset) -> Figure:
+def field_curves(data: xr.Dataset) -> Figure:
     """Each field over the first axis, a curve for some values of the second, at the middle of any other."""
-    first, *others = axes_of(data)
+    first, *others = varied_axes(data)
     title, held = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
     if held is not None:
         title += "; dashed: beyond what was measured"
@@ -42,17 +42,17 @@ def over_axes(data: xr.Dataset) -> Figure:
         title += f"{', ' if n else ', at '}{_at(data, name, middle)}"
         data = data.isel({name: middle})
     names = [name for name in _shown(data) if first in data[name].dims][:_MOST]
-    figure, boxes = panels(title, len(names), 2, (4.8, 2.6), sharex=True)
+    figure, boxes = new_panels(title, len(names), 2, (4.8, 2.6), sharex=True)
     x, second = data[first].values, others[:1]
     places = np.linspace(0, data.sizes[second[0]] - 1, len(LINES)).astype(int) if second else [0]
     for name, box in zip(names, boxes, strict=True):
         for place, line in zip(np.unique(places).tolist(), LINES, strict=False):
             values = data[name].isel(dict.fromkeys(second, place), missing_dims="ignore").values
-            dashed(box, x, values, held, label=_at(data, second[0], place) if second else None, **line)
-        box.set(xlabel=axis(data[first]), ylabel=axis(data[name]))
+            plot_measured_range(box, x, values, held, label=_at(data, second[0], place) if second else None, **line)
+        box.set(xlabel=variable_label(data[first]), ylabel=variable_label(data[name]))
         if name == "C_rr" or (name == "M" and data[name].attrs.get("units", "1") == "1"):
             box.set_title("coefficient of rolling resistance", fontsize="small")
-        if by_factors(x):
+        if spaced_by_factors(x):
             box.set_xscale("log")
             log_ticks(box.xaxis)
         else:
@@ -68,9 +68,9 @@ def stresses(data: xr.Dataset) -> Figure:
     over = data["x"].dims[0]
     data = data.isel(dict.fromkeys(set(data.dims) - {over}, 0))
     for name, line in zip(("p", "tau"), LINES, strict=False):
-        box.plot(data["x"].values, data[name].values, label=axis(data[name]), **line)
+        box.plot(data["x"].values, data[name].values, label=variable_label(data[name]), **line)
     box.axhline(0.0, **THIN)
-    box.set(xlabel=axis(data["x"]), ylabel=f"{axis(data['p'])}, {axis(data['tau'])}")
+    box.set(xlabel=variable_label(data["x"]), ylabel=f"{variable_label(data['p'])}, {variable_label(data['tau'])}")
     box.legend(frameon=False)
     return figure
 
@@ -85,7 +85,7 @@ def equilibria(data: xr.Dataset) -> Figure:
     for which, face, text in ((stable != 0, style["color"], "stable"), (stable == 0, "white", "not stable")):
         held = which & np.isfinite(V)
         box.plot(x[held], V[held], markerfacecolor=face, label=text, **style)
-    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]))
+    box.set(xlabel=variable_label(data[over]), ylabel=variable_label(data["V"]))
     moving = np.abs(_finite(data["V"]))
     moving = moving[moving > 0.0]
     if moving.max(initial=0.0) > 100.0 * moving.min(initial=np.inf):
@@ -107,14 +107,14 @@ def motion(data: xr.Dataset) -> Figure:
     ends = np.flatnonzero(np.diff(slips)).reshape(-1, 2)
     for box, names in zip(boxes.flat, rows, strict=True):
         for name, line in zip(names, LINES, strict=False):
-            box.plot(*_with_corners(data, name), label=axis(data[name]), **line)
+            box.plot(*_with_corners(data, name), label=variable_label(data[name]), **line)
         for begin, end in ends.tolist():
             box.axvspan(t[begin], t[min(end, t.size - 1)], color=_SHADE, linewidth=0.0, zorder=0)
         box.axhline(0.0, **THIN)
-        box.set_ylabel(", ".join(axis(data[name]) for name in names))
+        box.set_ylabel(", ".join(variable_label(data[name]) for name in names))
         if len(names) > 1:
             box.legend(frameon=False, fontsize="small")
-    boxes[-1, 0].set(xlabel=axis(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0))
+    boxes[-1, 0].set(xlabel=variable_label(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0))
     return figure
 
 
@@ -154,4 +154,4 @@ def _finite(values: xr.DataArray) -> NDArray[Any]:
 
 def _at(data: xr.Dataset, name: str, place: int) -> str:
     """A place on an axis, in words."""
-    return f"{axis(data[name])} = {float(data[name].values[place]):.4g}"
+    return f"{variable_label(data[name])} = {float(data[name].values[place]):.4g}"

@@ -40,7 +40,7 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def panels(title: str, count: int, most: int, size: tuple[float, float], **shared: bool) -> tuple[Figure, list[Any]]:
+def new_panels(title: str, count: int, most: int, size: tuple[float, float], **shared: bool) -> tuple[Figure, list[Any]]:
     """A figure of so many axes of one size, at ``most`` so many beside each other."""
     columns = min(most, count)
     rows = -(-count // columns)
@@ -51,7 +51,7 @@ def panels(title: str, count: int, most: int, size: tuple[float, float], **share
     return figure, [*grid.flat[:count]]
 
 
-def dashed(axes: Any, x: NDArray, y: NDArray, held: tuple[float, float] | None, **line: Any) -> list[Any]:
+def plot_measured_range(axes: Any, x: NDArray, y: NDArray, held: tuple[float, float] | None, **line: Any) -> list[Any]:
     """Lines of matplotlib: a curve where |x| lies between the ends of what data ``held``, and dashed beyond."""
     if held is None:
         return list(axes.plot(x, y, **line))
@@ -62,7 +62,7 @@ def dashed(axes: Any, x: NDArray, y: NDArray, held: tuple[float, float] | None, 
     return [*drawn, *axes.plot(x, np.where(beyond, y, np.nan), **line | {"linestyle": "--", "label": None})]
 
 
-def by_factors(x: NDArray[Any]) -> bool:
+def spaced_by_factors(x: NDArray[Any]) -> bool:
     """Whether places lie more evenly on a logarithmic axis than on a linear one."""
     places = np.unique(x)
     if places.size < 3 or places[0] <= 0.0:
@@ -96,7 +96,7 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
         axes.legend(frameon=False, fontsize="small")
 
 
-def labelled(name: str, units: str = "1", symbol: str = "") -> str:
+def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
     """Axis label of a quantity: its symbol, or its name in words, and its unit if it has one."""
     symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
     # an SI quantity is not the ratio that its symbol may spell out
@@ -104,9 +104,9 @@ def labelled(name: str, units: str = "1", symbol: str = "") -> str:
     return with_unit(f"${symbol}$" if symbol else name.replace("_", " "), units, ", ")
 
 
-def axis(values: Any) -> str:
+def variable_label(values: Any) -> str:
     """Axis label of a variable of a dataset."""
-    return labelled(str(values.name), values.attrs.get("units", "1"), values.attrs.get("symbol", ""))
+    return axis_label(str(values.name), values.attrs.get("units", "1"), values.attrs.get("symbol", ""))
 
 
 def with_unit(text: str, units: str, between: str = " ") -> str:

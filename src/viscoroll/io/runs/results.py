@@ -90,7 +90,7 @@ class RunResults(Result):
             tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product(rows, names=["quantity", time])))
         return pd.concat(tables)
 
-    def _card(self) -> tuple[str, list[SummaryRow]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return the title and the rows that print this result."""
         data = self.summaries
         t, about = data["t"], data.attrs
