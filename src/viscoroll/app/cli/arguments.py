@@ -132,9 +132,13 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
 #: A file to read.
 FILE = option("file", metavar="FILE")
 #: A scene or cylinder.
-SCENE = option("scene", metavar="SCENE", help="TOML file with [scene], [cylinder] (SI units) or preset, or the name of a preset")
+SCENE = option(
+    "scene", metavar="SCENE", help="TOML file with [scene], [cylinder] (SI units) or preset, or the name of a preset"
+)
 #: Output of a table of numbers: to a file, or to standard output in a format.
 TABLE = [
     output(".txt", ".csv", ".nc", required=False, more="; default: standard output"),
-    option("--format", choices=("text", "csv", "json"), default="text", help="format of standard output (default: text)"),
+    option(
+        "--format", choices=("text", "csv", "json"), default="text", help="format of standard output (default: text)"
+    ),
 ]

@@ -51,11 +51,16 @@ def show(arguments: Namespace) -> None:
     ),
     option("--decimal", choices=(".", ","), help="decimal mark (default: as the numbers have it)"),
     option("--encoding", help="encoding of the file (default: by its first bytes)"),
-    option("--mode", choices=("tension", "shear"), help="type of the moduli, if the headings do not state it (default: tension)"),
-    option("--temperature", type=float, metavar="T", help="temperature of all points, degrees Celsius (default: as in the file)"),
-    option("--reference", type=float, metavar="T", help="reference temperature of the master curve, for data at several temperatures"),
-    option("--wlf", metavar="C1,C2,T0", help="WLF parameters of the shift factors (default: shifts from the overlap of the curves)"),
-    option("--on", choices=("both", "storage"), default="both", help="moduli whose overlap determines the shift (default: both)"),
+    option("--mode", choices=("tension", "shear"), help="type of the moduli, if the headings do not state it "
+        "(default: tension)"),
+    option("--temperature", type=float, metavar="T", help="temperature of all points, degrees Celsius "
+        "(default: as in the file)"),
+    option("--reference", type=float, metavar="T", help="reference temperature of the master curve, for data "
+        "at several temperatures"),
+    option("--wlf", metavar="C1,C2,T0", help="WLF parameters of the shift factors (default: shifts from the "
+        "overlap of the curves)"),
+    option("--on", choices=("both", "storage"), default="both", help="moduli whose overlap determines the "
+        "shift (default: both)"),
     option("--modes", type=int, help="largest number of modes (default: as few as the misfit needs)"),
     option("--misfit", type=float, default=0.01, help="required rms of the relative errors (default: 0.01)"),
     option("--nu", type=float, default=0.49, help="Poisson's ratio, constant in time (default: 0.49)"),
@@ -136,8 +141,8 @@ def _wlf(text: str) -> vr.WLF:
 def identify(arguments: Namespace) -> None:
     """Identify friction, modulus, relaxation times, strengths and bearing from measurements.
 
-    The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states which of
-    them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
+    The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states
+    which of them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
       [unknown]  NAME = [LOW, HIGH]: bounds; [cylinder] has the initial guess
       [prior]    NAME = [VALUE, SD]
       [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,

@@ -49,7 +49,9 @@ def _figure_of_netcdf(path: str) -> Any:
     except OSError as error:
         if not Path(path).is_file():
             raise vr.FileError(path, "the file does not exist") from error
-        problem = "is damaged or is not a netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+        problem = (
+            "is damaged or is not a netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+        )
         raise vr.FileError(path, problem) from error
 
 

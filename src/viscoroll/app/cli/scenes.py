@@ -97,8 +97,10 @@ def roll(arguments: Namespace) -> None:
     "steady", SCENE,
     option("--force", type=numbers, help="force on the axis along V (default: 0)"),
     option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
-    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill; the normal load is P cos(slope)"),
-    option("--V", type=numbers, help="prescribed speed; it takes the place of --force or --torque, which is then computed"),
+    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill; the normal load "
+        "is P cos(slope)"),
+    option("--V", type=numbers, help="prescribed speed; it takes the place of --force or --torque, which is "
+        "then computed"),
     TABLE,
 )  # fmt: skip
 def steady(arguments: Namespace) -> None:

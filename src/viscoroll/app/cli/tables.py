@@ -33,7 +33,8 @@ def _print_size(path: Path) -> None:
     "tables law",
     option("file", metavar="MATERIAL", nargs="?",
            help="TOML file with [material] (and [base]), [scene] or [cylinder], or netCDF file of a material"),
-    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; it takes the place of MATERIAL"),
+    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; it takes "
+        "the place of MATERIAL"),
     output(*_LAW),
 )  # fmt: skip
 def law(arguments: Namespace) -> None:
@@ -58,7 +59,8 @@ def law(arguments: Namespace) -> None:
     option("--V", type=numbers, required=True, help="velocities of the axis, > 0"),
     option("--delta", type=numbers, required=True, help="values of the creepage"),
     option("--alpha", type=numbers, help="values of a third axis, only for a scene"),
-    option("--method", default="table", help="table (default): the law of the scene; direct: numerical roots of the equations of the paper"),
+    option("--method", default="table", help="table (default): the law of the scene; direct: numerical roots "
+        "of the equations of the paper"),
     output(*_GRID),
 )  # fmt: skip
 def build(arguments: Namespace) -> None:
@@ -85,7 +87,9 @@ def info(arguments: Namespace) -> None:
     print(vr.tables.info(arguments.file))
 
 
-@command("tables validate", FILE, option("-n", type=int, default=10_000, help="number of random speeds (default: 10000)"))
+@command(
+    "tables validate", FILE, option("-n", type=int, default=10_000, help="number of random speeds (default: 10000)")
+)
 def validate(arguments: Namespace) -> int:
     """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 

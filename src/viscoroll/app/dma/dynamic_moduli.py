@@ -66,7 +66,10 @@ class DynamicModuli(Result):
         """omega, storage, loss; with a warning where temperatures or shear would be lost by that."""
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
-            text = f"{self.source}: three columns lose {' and '.join(lost)}: give the record whole, fit_prony(record)"
+            text = (
+                f"{self.source}: three columns do not state {' and '.join(lost)}: give the record itself, "
+                f"fit_prony(record)"
+            )
             warnings.warn(text, ModelWarning, stacklevel=caller_level())
         return iter((self.omega, self.storage, self.loss))
 

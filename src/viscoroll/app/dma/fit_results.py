@@ -171,7 +171,7 @@ class SeriesFit(Result):
         bodies = cylinder.pair.cylinder, cylinder.pair.half_space
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
-            raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
+            raise ParameterError("cylinder", "another", "one whose material or base is material() of this fit")
         speed = check_array("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
         seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
@@ -194,7 +194,7 @@ class SeriesFit(Result):
         x, *names = self.data._fields
         of_data = zip((*names, *(f"{name}_fit" for name in names)), (*self.data[1:], *self._moduli(self.data[0])))
         data: dict[str, Any] = {name: (x, values, {"units": "unit of the data"}) for name, values in of_data}
-        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
+        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths divided by the long-time modulus"})}
         data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
         about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series", "modulus": self.mode}
         misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]

@@ -36,11 +36,11 @@ class Verdict:
     def __str__(self) -> str:
         if self.ok:
             blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
-            return f"complete: {blocks} and the summaries have the SHA-256 that they were written with"
+            return f"complete: {blocks} and the summaries match their SHA-256"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
-        lines += [f"{len(self.missing)} of {self.blocks} blocks are not there or not whole"] * bool(self.missing)
-        lines += ["the summaries are not there or not whole"] * (not self.finished)
-        return "\n".join([*lines, "the same `viscoroll ensemble` command puts it right"])
+        lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"] * bool(self.missing)
+        lines += ["the summaries are missing or incomplete"] * (not self.finished)
+        return "\n".join([*lines, "the same `viscoroll ensemble` command repairs it"])
 
 
 def verify(path: str | PathLike[str]) -> Verdict:
@@ -83,9 +83,11 @@ def verify(path: str | PathLike[str]) -> Verdict:
 def start_of(path: str | PathLike[str]) -> Record:
     """Return the record "start" of a store; raise FileError if the folder has none, or a damaged one."""
     if not Path(path).is_dir():
-        raise FileError(path, "is no results store: there is no such folder")
+        raise FileError(path, "is not a results store: the folder does not exist")
     refuse_unreadable(Path(path))
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
-        raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
+        raise FileError(
+            path, "is not a results store, or its record `start` is damaged: run the command that wrote it again"
+        )
     return start
