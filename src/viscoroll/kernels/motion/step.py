@@ -61,7 +61,7 @@ from .workspace import (
 #: largest number of Newton iterations of a step
 _MAX_ITERATIONS = 12
 #: relative update above which the Newton matrices are evaluated again
-_REFACTOR_UPDATE = 1e-2
+_REFACTOR_UPDATE = 0.1
 #: ratio of successive updates above which the Newton matrices are evaluated again
 _REFACTOR_CONTRACTION = 1e-3
 #: largest assumed contraction of the first iteration

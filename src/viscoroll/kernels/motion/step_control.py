@@ -29,7 +29,7 @@ _FIRST_CHANGE = 0.4
 #: length of the first step in partial slip, in relaxation times of d
 _FIRST_RELAXATION_TIMES = 3.0
 #: change of d in the first step behind the onset of stick, in units of (rtol V d'/(alpha feedback))^(1/3)
-_ONSET_CHANGE = 12.0
+_ONSET_CHANGE = 24.0
 #: octaves from the first row of a law to the rate of the longest time of its material
 _ROWS_BELOW_LONGEST_TIME = 4
 #: V reached in the first step from V = 0 on, in units of rtol^(1/7) times the moderate speed
