@@ -17,13 +17,16 @@ from .law_axis import OCTAVES, tables_of, to_chebyshev
 from .law_build import octaves
 from .law_modes import refuse_far, series_of
 from .law_table import made
-from .prony import Block, Prony, read_only
+from .prony import Block, Prony, line_aligned, read_only
 
 _lock = threading.Lock()
 #: the axis: what was met of each octave of alpha in this process (:mod:`..kernels.rows.alpha_axis`), never dropped
-#: again, and its address and how many rows it has, 0: not met
-_octaves: dict[int, Floats] = {}
-_known = np.zeros((OCTAVES, 2), np.int64)
+#: again; the addresses of its two arrays and how many rows it has, 0: not met
+_octaves: dict[int, tuple[Floats, Integers]] = {}
+_known = np.zeros((OCTAVES, 3), np.int64)
+#: a coefficient of Chebyshev polynomials of t and s below this, over the least value of its function in the row, is
+#: dropped: some hundred of them are below the rounding of a double
+_NEGLIGIBLE = 4e-17
 
 
 def law_of_alphas(alpha: Floats) -> Any:
@@ -36,12 +39,13 @@ def law_of_alphas(alpha: Floats) -> Any:
 
     alpha = np.ascontiguousarray(alpha, dtype=np.float64)
     met = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
-    for octave in met[_known[met, 1] == 0].tolist():
+    for octave in met[_known[met, 2] == 0].tolist():
         with _lock:
-            if not _known[octave, 1]:  # else another thread just has
-                _octaves[octave], count = _octave(octave)
-                _known[octave] = _octaves[octave].ctypes.data, count
-    rows, marks = _room(int(_known[met, 1].max()))
+            if not _known[octave, 2]:  # else another thread just has
+                axis, begins, count = _octave(octave)
+                _octaves[octave] = axis, begins
+                _known[octave] = axis.ctypes.data, begins.ctypes.data, count
+    rows, marks = _room(int(_known[met, 2].max()))
     marks[E0] = ALPHA_E0
     return _record(
         select_alpha, make_part, SOURCE, rows=rows, marks=marks, alpha=alpha, state_count=alpha.size, octaves=_known
@@ -63,7 +67,7 @@ def _room(count: int) -> tuple[Floats, Integers]:
 
     marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
     marks[SELECTED] = -1
-    return np.zeros((count + 1) * ROW_SIZE), marks
+    return line_aligned(np.zeros((count + 1) * ROW_SIZE)), marks
 
 
 def _record(select: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> Any:
@@ -85,20 +89,72 @@ def _record(select: Any, make: Any, kind: Any, free: Any = None, **known: Any) -
     return Law(rows, marks, added, *addresses, None if free is None else read_only(free.view()))
 
 
-def _octave(octave: int) -> tuple[Floats, int]:
-    """(numbers, rows) of an octave of alpha."""
-    from ..kernels.rows.alpha_axis import ALPHA_PARTS
+class _Axis(NamedTuple):
+    """The rows of an octave of alpha as polynomials in s (:mod:`..kernels.rows.alpha_axis`).
+
+    numbers : blocks of twelve numbers, of each its groups of powers of s, the group of the highest first.
+    begins : (rows * functions + 1,), where a function or pair begins, in groups.  rows : how many the octave has.
+    """
+
+    numbers: Floats
+    begins: Integers
+    rows: int
+
+
+def _octave(octave: int) -> _Axis:
+    """The axis of an octave of alpha."""
+    from ..kernels.numerics.interpolation import powers_of_chebyshev
+    from ..kernels.rows.alpha_axis import ALPHA_FUNCTIONS, ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
     from ..kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
 
     tables = tables_of(octave)
     rows, c = len(tables[0].given_coefficients), np.array([table.T_mean for table in tables])
     values = np.array([table.record.rows[ROW_SIZE:].reshape(rows, ROW_SIZE) for table in tables])
-    # two powers of one function, then of the other
-    pairs = values[..., :BODY_MOMENTS].reshape(len(tables), rows, -1, 2, 2)
-    pairs[..., 1, :] /= c[:, None, None, None]  # M/V and epsilon
-    values = np.concatenate([values[..., :BODY_MOMENTS], values[..., H_OVER_F2:]], axis=-1)
-    found = to_chebyshev(values.reshape(len(tables), rows, ALPHA_PARTS, PART_SIZE))
-    return read_only(np.moveaxis(found, 0, 2)), rows
+    # two powers of one function, then of the other: as powers of either
+    pairs = values[..., :BODY_MOMENTS].reshape(len(tables), rows, 2, PART_SIZE // 2, 2, 2).swapaxes(3, 4)
+    pairs = pairs.reshape(len(tables), rows, 4, PART_SIZE)
+    pairs[:, :, 1::2] /= c[:, None, None, None]  # M/V and epsilon
+    singles = values[..., H_OVER_F2:].reshape(len(tables), rows, 2, PART_SIZE)
+    found = _without_rounding(np.concatenate([pairs, singles], axis=2))
+    powers = np.einsum("jk,j...->k...", powers_of_chebyshev(ALPHA_TERMS, 0.0, 1.0), found)
+    pairs = powers[:, :, :4].reshape(ALPHA_TERMS, rows, 2, 2, PART_SIZE // 2, 2).swapaxes(3, 4)
+    powers = np.concatenate([pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), powers[:, :, 4:]], axis=2)
+    groups = np.moveaxis(powers.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE), 0, 2)  # of powers, rows, blocks
+    groups = np.moveaxis(groups, (1, 3, 2), (0, 1, 2))[:, :, ::-1]
+    used, counts, numbers = groups.any(axis=(3, 4)), np.zeros((rows, ALPHA_FUNCTIONS), np.int64), []
+    for row in range(rows):
+        for function, first in enumerate((0, 4, 8, 10)):
+            short = np.array(SHORT[function // 2])
+            blocks = slice(first, first + short.size)
+            # those of the highest powers come first
+            short = short if not (used[row, blocks] & (np.arange(FULL) < FULL - short[:, None])).any() else FULL + 0 * short
+            numbers += [groups[row, first + n, FULL - count :].ravel() for n, count in enumerate(short.tolist())]
+            counts[row, function] = short.sum()
+    return _Axis(line_aligned(np.concatenate(numbers)), read_only(np.append(0, np.cumsum(counts))), rows)
+
+
+def _without_rounding(values: Floats) -> Floats:
+    """Chebyshev terms in s, powers in t of functions given by their powers at the nodes of an octave.
+
+    values : (nodes, rows, functions, powers).  Negligible terms in Chebyshev polynomials of both are zero, except in
+    the first row, which holds the limits at rest.
+    """
+    from numpy.polynomial.chebyshev import poly2cheb
+
+    from ..kernels.numerics.interpolation import powers_of_chebyshev
+
+    count = values.shape[-1]
+    ends = values @ np.array([[(-1.0) ** k, k == 0, 1.0] for k in range(count)])  # values at t = -1, 0 and 1
+    least = np.abs(ends).min(axis=(0, 3))
+    terms = to_chebyshev(values)
+    of_powers = powers_of_chebyshev(count, 0.0, 1.0)
+    units = [[0.0] * k + [1.0] for k in range(count)]
+    # exact, where an inverse would lose eight digits
+    to_terms = np.array([np.pad(poly2cheb(power), (0, count - 1 - k)) for k, power in enumerate(units)])
+    in_both = terms[:, 1:] @ to_terms
+    in_both[np.abs(in_both) < _NEGLIGIBLE * least[1:, :, None]] = 0.0
+    terms[:, 1:] = in_both @ of_powers
+    return terms
 
 
 def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
