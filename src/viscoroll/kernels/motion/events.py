@@ -100,7 +100,9 @@ def _first_negative_node(event, last, nodes):
     event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
     A function that begins at 0, to rounding, must have been positive before.
     """
-    _, largest = row_range(event, nodes)
+    smallest, largest = row_range(event, nodes)
+    if not smallest < 0.0:
+        return 0
     positive = nodes[event] > _START_ROUNDING * max(largest, 0.0)
     for i in range(1, last + 1):
         value = nodes[event + i]
@@ -207,7 +209,7 @@ def find_missed_event(step, regime, work):
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
         # the equations of partial slip continue into full slip: a missed edge does no harm there
         excluded = candidate == BELOW_REST_SPEED or (candidate == STICK_EDGE and not regime.full_slip)
-        if excluded or not is_event_active(candidate, step, regime, work):
+        if excluded or not nodes[candidate + N] < 0.0 or not is_event_active(candidate, step, regime, work):
             continue
         (_, largest), scale = row_range(candidate, nodes), _event_scale(candidate, nodes)
         # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself

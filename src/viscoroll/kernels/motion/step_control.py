@@ -124,6 +124,8 @@ def time_to_V_zero(step, state, regime, work):
         return np.inf
     if regime.full_slip:
         return -state.V / V_rate
+    if step.undriven:
+        return np.inf
     load = evaluate_load(step.tau, step.segment, regime, work)
     driving = load.prescribed_V_rate + load.prescribed_omega_rate
     if driving > 0.0 or (driving == 0.0 and load.force + load.torque >= 0.0):
