@@ -17,7 +17,7 @@ from .law_axis import OCTAVES, tables_of, to_chebyshev
 from .law_build import octaves
 from .law_modes import refuse_far, series_of
 from .law_table import made
-from .prony import Block, Prony, line_aligned, read_only
+from .prony import Block, Prony, read_only
 
 _lock = threading.Lock()
 #: the axis: what was met of each octave of alpha in this process (:mod:`..kernels.rows.alpha_axis`), never dropped
@@ -67,7 +67,7 @@ def _room(count: int) -> tuple[Floats, Integers]:
 
     marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
     marks[SELECTED] = -1
-    return line_aligned(np.zeros((count + 1) * ROW_SIZE)), marks
+    return np.zeros((count + 1) * ROW_SIZE), marks
 
 
 def _record(select: Any, make: Any, kind: Any, free: Any = None, **known: Any) -> Any:
@@ -130,7 +130,7 @@ def _octave(octave: int) -> _Axis:
             short = short if not (used[row, blocks] & (np.arange(FULL) < FULL - short[:, None])).any() else FULL + 0 * short
             numbers += [groups[row, first + n, FULL - count :].ravel() for n, count in enumerate(short.tolist())]
             counts[row, function] = short.sum()
-    return _Axis(line_aligned(np.concatenate(numbers)), read_only(np.append(0, np.cumsum(counts))), rows)
+    return _Axis(read_only(np.concatenate(numbers)), read_only(np.append(0, np.cumsum(counts))), rows)
 
 
 def _without_rounding(values: Floats) -> Floats:

@@ -307,20 +307,6 @@ def _sums(values: NDArray) -> Any:
     return math.fsum(rows) if values.ndim == 1 else np.array([math.fsum(row) for row in rows])
 
 
-def line_aligned(array: Floats) -> Floats:
-    """Return a copy of a vector that begins at a line of the processor's cache.
-
-    Of the vectors of four that kernels load from an array of numpy, at 16 bytes behind a line, every second lies in two
-    lines and takes twice as long.
-    """
-    line = 64
-    whole = np.empty(array.size + line // array.itemsize, array.dtype)
-    first = -whole.ctypes.data % line // array.itemsize
-    aligned = whole[first : first + array.size]
-    aligned[:] = array
-    return aligned
-
-
 def read_only(values: Any) -> Any:
     """The array itself, or a copy that lies in one piece, which nobody can write to."""
     values = np.ascontiguousarray(values)
