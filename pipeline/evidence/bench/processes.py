@@ -80,8 +80,8 @@ def last_release(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
     sizes: those of [bench.last-release] in the configuration.
     Returns a row a case: ns a state here and before, their ratio, and cold and cold_before of a few states whose tables
-    are in no cache; each the least over the pairs of processes.  One thread each.  Prints a line a case, that of a ratio
-    beyond what is allowed in capitals.
+    are in no cache; each the least over the pairs of processes.  One thread each.  Prints a line for each case, in
+    capitals where the ratio is beyond what is allowed.
     """
     given, pairs = [sizes[name] for name in ("seed", "states", "few", "calls", "cases")], []
     with tempfile.TemporaryDirectory() as name:
@@ -92,7 +92,9 @@ def last_release(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             pairs.append([pair[tree] for tree in trees])
     rows, allowed = [], sizes["allowed"]
     for case in sizes["cases"]:
-        (here, cold), (before, cold_before) = np.min([[times[case] for times in pair] for pair in pairs], axis=0).tolist()
+        (here, cold), (before, cold_before) = np.min(
+            [[times[case] for times in pair] for pair in pairs], axis=0
+        ).tolist()
         ratio = here / before
         rows.append(
             {"case": case, "ns": here, "ns_before": before, "ratio": ratio, "cold": cold, "cold_before": cold_before}

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.typed import Floats, Integers
+from ..core.array_types import Floats, Integers
 from .bodies import Bodies
 from .cover import Cover
 from .law_axis import OCTAVES, tables_of, to_chebyshev
@@ -104,7 +104,7 @@ class _Axis(NamedTuple):
 def _octave(octave: int) -> _Axis:
     """The axis of an octave of alpha."""
     from ..kernels.numerics.interpolation import powers_of_chebyshev
-    from ..kernels.rows.alpha_axis import ALPHA_FUNCTIONS, ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
+    from ..kernels.rows.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
     from ..kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
 
     tables = tables_of(octave)
@@ -121,15 +121,17 @@ def _octave(octave: int) -> _Axis:
     powers = np.concatenate([pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), powers[:, :, 4:]], axis=2)
     groups = np.moveaxis(powers.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE), 0, 2)  # of powers, rows, blocks
     groups = np.moveaxis(groups, (1, 3, 2), (0, 1, 2))[:, :, ::-1]
-    used, counts, numbers = groups.any(axis=(3, 4)), np.zeros((rows, ALPHA_FUNCTIONS), np.int64), []
-    for row in range(rows):
-        for function, first in enumerate((0, 4, 8, 10)):
-            short = np.array(SHORT[function // 2])
-            blocks = slice(first, first + short.size)
-            # those of the highest powers come first
-            short = short if not (used[row, blocks] & (np.arange(FULL) < FULL - short[:, None])).any() else FULL + 0 * short
-            numbers += [groups[row, first + n, FULL - count :].ravel() for n, count in enumerate(short.tolist())]
-            counts[row, function] = short.sum()
+    numbers, counts = [], []
+    for row in groups:
+        first = 0
+        for short in SHORT:
+            blocks = row[first : first + len(short)]
+            first += len(short)
+            # groups of the highest powers come first
+            needs_all = any(block[: FULL - length].any() for block, length in zip(blocks, short))
+            lengths = (FULL,) * len(short) if needs_all else short
+            numbers += [block[FULL - length :].ravel() for block, length in zip(blocks, lengths)]
+            counts.append(sum(lengths))
     return _Axis(read_only(np.concatenate(numbers)), read_only(np.append(0, np.cumsum(counts))), rows)
 
 

@@ -1,9 +1,9 @@
 """Rows for one alpha after another, by the axis of alpha: polynomials in ln alpha, without root finding.
 
 For alpha in [2^N, 2^(N+1)) every coefficient of a row is a polynomial in s = 2 log2(alpha/2^N) - 1, with T_epsilon as
-unit of time, and with M/V and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special
-case.  The higher a power of t, the fewer powers of s change a digit: in six rows of seven blocks of twelve numbers have
-one or two groups of four powers of s, and only the first block has all four.
+unit of time, and with M/V and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no
+special case.  The higher a power of t, the fewer powers of s change a digit.  So a block of twelve coefficients has one
+or two groups of four powers of s in most rows, and only the first block has four.
 """
 
 import math
@@ -36,10 +36,10 @@ _BLOCK_VECTORS = 3
 BLOCK_SIZE = _BLOCK_VECTORS * LANES
 #: Powers of s of a group: their sums do not wait for those of the group before.
 GROUP = 4
-#: Functions of a row, or pairs of them, on the axis: (L, M/V), (lam, epsilon), H/F^2, eta/F; bodies are alike.
-ALPHA_FUNCTIONS = 4
-#: Groups of the blocks of a pair of functions, and of one function, in most rows.
-SHORT = (4, 2, 2, 1), (4, 2)
+#: Groups of the blocks of (L, M/V), (lam, epsilon), H/F^2 and eta/F in most rows; bodies are alike and not on the axis.
+SHORT = (4, 2, 2, 1), (4, 2, 2, 1), (4, 2), (4, 2)
+#: Functions of a row, or pairs of them, on the axis.
+ALPHA_FUNCTIONS = len(SHORT)
 #: Groups of a block in the other rows.
 FULL = ALPHA_TERMS // GROUP
 #: Exponent of the first row, for all alphas.

@@ -67,7 +67,8 @@ class Law(NamedTuple):
     marks : head and versions of the parts, (1 + number of rows) * PARTS_PER_ROW integers.
     N_rows : rows of N and of its integral (:func:`...materials.law_build.added`); empty for steady rolling.
     selector : address of the kernel (n, source) that selects the material of state n; 0 if all rows are complete.
-    maker : address of the kernel (number of a part, its place among the marks, source) that makes the part; 0 if all rows are complete.
+    maker : address of the kernel (number of a part, its place among the marks, source) that makes the part; 0 if all
+        rows are complete.
     source : address of the record that these kernels read (:mod:`..compile.intrinsics`).
     cover_rows : numbers that only a cover has (:mod:`cover`); None of half-spaces, whose kernels are compiled without.
     """
