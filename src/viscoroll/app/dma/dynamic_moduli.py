@@ -113,6 +113,6 @@ class DynamicModuli(Result):
         given = (f"{name} {self.columns[name]!r} in {self.units.get(name, '1')}" for name in self.columns)
         rows = [
             SummaryRow("columns", "; ".join(given)),
-            SummaryRow("notes", "; ".join(self.notes) or "no column left aside"),
+            SummaryRow("notes", "; ".join(self.notes) or "no unused column"),
         ]
         return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows

@@ -113,7 +113,7 @@ def read_dma(
     notes += [f"{name} agrees with them" for name in moduli if name not in pair]
     notes += [f"{column.heading!r} is log10" for column in taken if column.log]
     listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
-    notes += [f"left aside: {listed}"] * bool(others)
+    notes += [f"unused: {listed}"] * bool(others)
     _warn_of_assumed_units(table, taken)
     record = DynamicModuli(
         omega, storage, loss, temperature and temperature.values, mode, Path(path).name,
