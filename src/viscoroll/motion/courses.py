@@ -8,7 +8,7 @@ import numpy as np
 
 from ..core.checks import broadcast_shape
 from ..core.typed import Floats
-from ..kernels.motion.workspace import PRESCRIBED_OMEGA, PRESCRIBED_V
+from ..kernels.motion.records import PRESCRIBED_OMEGA, PRESCRIBED_V
 from .fitted import TERMS
 from .schedule import Corners, Course, Curve, at_start, curve, motions_of, of_some, pieces_of, slope_of
 

@@ -13,7 +13,7 @@ from ..core.errors import ParameterError, one_of
 from ..core.labels import Labels, unlabelled
 from ..core.scale import HasUnits, Scale
 from ..core.typed import Floats
-from ..kernels.motion.workspace import NOT_PRESCRIBED
+from ..kernels.motion.records import COL_COEFFICIENTS, N_DRIVE_FUNCTIONS, NOT_PRESCRIBED
 from .checks import start_speeds
 from .courses import SPEEDS, Courses
 from .schedule import Course, Curve, course
@@ -145,8 +145,6 @@ class Prepared(NamedTuple):
 @cache
 def undriven() -> tuple[Floats, Floats, int]:
     """Pieces and gains of nothing that drives, and which speed is prescribed."""
-    from ..kernels.motion.workspace import COL_COEFFICIENTS, N_DRIVE_FUNCTIONS
-
     return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
 
 

@@ -15,7 +15,7 @@ from ..core.typed import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
-from ..kernels.motion.workspace import PARTIAL_SLIP
+from ..kernels.motion.records import PARTIAL_SLIP
 from ..kernels.numerics.interpolation import gauss
 from ..materials.law_build import paired
 from ..materials.law_table import law_table

@@ -14,6 +14,7 @@ from ..core.checks import checked
 from ..core.drive import Feedback, Schedule, refuse_more_than_t
 from ..core.errors import ParameterError
 from ..core.typed import Floats
+from ..kernels.motion.records import COL_COEFFICIENTS, COL_SCALE, COL_START
 from .fitted import fitted
 
 #: of the values of a piece, its first one where that is rounding
@@ -171,8 +172,6 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
 
     Where motions have times of their own, pieces between equal times have no length, and are passed over.
     """
-    from ..kernels.motion.workspace import COL_COEFFICIENTS, COL_SCALE, COL_START
-
     apart = max(len(each.starts) for each in curves)
     own = [np.broadcast_to(each.starts, (apart, each.starts.shape[1])) for each in curves]
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)

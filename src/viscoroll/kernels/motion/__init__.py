@@ -4,7 +4,8 @@
 
 From the equations to the entry from Python:
 
-- :mod:`workspace`: records, codes and array layouts
+- :mod:`records`: records, codes, columns of a segment of the drive; without numba
+- :mod:`workspace`: rows of numbers at the nodes of a step
 - :mod:`drive`: force, torque, brake and prescribed speed at a time
 - :mod:`rhs`: right-hand side in full and in partial slip, with its derivatives
 - :mod:`collocation`: Radau IIA nodes, matrices, dense output

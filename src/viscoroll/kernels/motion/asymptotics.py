@@ -21,14 +21,10 @@ from ..rows.evaluate import limits_at_rest
 from .collocation import NODE_FRACTIONS, N
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
 from .output import accept_step, write_column, write_quadrature
+from .records import AT_REST, CAME_TO_REST, COMPLETED, N_QUADRATURES, PARTIAL_SLIP, State, Step, StepState
 from .rhs import added_inertia, current_rates, low_speed_limits
 from .step_control import moderate_speed
 from .workspace import (
-    AT_REST,
-    CAME_TO_REST,
-    COMPLETED,
-    N_QUADRATURES,
-    PARTIAL_SLIP,
     REST_TIME,
     ROW_DENSE_OMEGA_OR_D,
     ROW_DENSE_V,
@@ -37,9 +33,6 @@ from .workspace import (
     ROW_P_DIAGONAL,
     ROW_P_RATE,
     ROW_V,
-    State,
-    Step,
-    StepState,
     count_step,
 )
 

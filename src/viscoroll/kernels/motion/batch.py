@@ -14,20 +14,8 @@ from .collocation import ROW_LENGTH
 from .drive import n_coefficients
 from .driver import integrate_motion
 from .output import N_OUTPUTS, requested_groups
-from .workspace import (
-    COL_COEFFICIENTS,
-    COL_SCALE,
-    COL_START,
-    DRIVE_RATE,
-    ROW_ONES,
-    WORKSPACE_SIZE,
-    Batch,
-    Drive,
-    Gains,
-    Options,
-    Scene,
-    Workspace,
-)
+from .records import COL_COEFFICIENTS, COL_SCALE, COL_START, DRIVE_RATE, Batch, Drive, Gains, Options, Scene, Workspace
+from .workspace import ROW_ONES, WORKSPACE_SIZE
 
 #: columns of the information on each motion
 INFO_COLUMNS = ("status", "steps", "switches", "onset_time", "rest_time")

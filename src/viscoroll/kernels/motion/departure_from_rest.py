@@ -20,8 +20,8 @@ from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from ..rows.evaluate import limits_at_rest
 from .drive import evaluate_load, has_brake, is_constant, segment_end
+from .records import REGIME_AT_REST, Load, Regime
 from .rhs import added_inertia
-from .workspace import REGIME_AT_REST, Load, Regime
 
 #: at rest for a time
 STAYS_AT_REST = 0

@@ -1,6 +1,6 @@
 """The drive at a time: force, torque, brake and prescribed speed, polynomials on each segment.
 
-A segment is a row of numbers (COL_* of :mod:`workspace`): its start, the scale of its time and the coefficients of five
+A segment is a row of numbers (COL_* of :mod:`records`): its start, the scale of its time and the coefficients of five
 polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the segment.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..compile.jit import kernel
 from .collocation import ROW_LENGTH, N
-from .workspace import (
+from .records import (
     COL_COEFFICIENTS,
     COL_SCALE,
     COL_START,
@@ -23,11 +23,9 @@ from .workspace import (
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
     ROUNDING,
-    ROW_DRIVE,
     Load,
-    last_output_tau,
-    node_time,
 )
+from .workspace import ROW_DRIVE, last_output_tau, node_time
 
 #: relative jump of a function or of its slope at the end of a segment, up to which it counts as smooth: fits of
 #: callables leave smaller ones

@@ -13,31 +13,33 @@ from .asymptotics import coast_to_end, is_coasting
 from .departure_from_rest import AMBIGUOUS, ROLLS_OFF, SLIDES_OFF, STAYS_AT_REST, depart_from_rest, find_departure_time
 from .drive import continues_smoothly, current_load, is_undriven, rest_threshold, segment_end
 from .output import record_switch, write_due_outputs, write_outputs_at_rest
+from .records import (
+    ADDED_MASS_EXHAUSTED,
+    AT_REST,
+    CAME_TO_REST,
+    COMPLETED,
+    DIRECTION_REVERSED,
+    N_QUADRATURES,
+    NOT_UNIQUE,
+    REGIME_AT_REST,
+    STEP_LIMIT,
+    STEP_TOO_SMALL,
+    State,
+    StepState,
+)
 from .regime_solver import integrate_regime
 from .regimes import ZERO_V_RATIO, apply_event, enter_segment, initial_regime, regime_code, rest_code
 from .rhs import added_inertia, added_mass_margin, creepage, current_rates, omega_and_delta
 from .workspace import (
-    ADDED_MASS_EXHAUSTED,
-    AT_REST,
     BELOW_REST_SPEED,
-    CAME_TO_REST,
-    COMPLETED,
     DELTA_ZERO,
-    DIRECTION_REVERSED,
-    N_QUADRATURES,
     N_SWITCHES,
     NO_EVENT,
-    NOT_UNIQUE,
     ONSET_TIME,
     QUADRATURE_TOTALS,
-    REGIME_AT_REST,
     REST_TIME,
     STEP_FAILED,
-    STEP_LIMIT,
-    STEP_TOO_SMALL,
     STICK_EDGE,
-    State,
-    StepState,
     change_slip,
     last_output_tau,
     with_step_length,

@@ -12,9 +12,9 @@ from ..compile.intrinsics import unlikely
 from ..compile.jit import kernel
 from .collocation import DIFFERENTIATION, EXTRAPOLATION_TO_START, N, multiply_matrix
 from .drive import drive_rounding, load_at_node
+from .records import ROUNDING
 from .rhs import has_strong_friction
 from .workspace import (
-    ROUNDING,
     ROW_D_SLOPE,
     ROW_DENSE_OMEGA_OR_D,
     ROW_DENSE_V,

@@ -6,15 +6,14 @@ from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from .collocation import NODES, ROW_LENGTH, N, evaluate_dense_output, fit_dense_output, row_range
 from .drive import load_at_node
+from .records import DRIVE_BRAKE, PRESCRIBED_V, State
 from .rhs import creepage, omega_and_delta, rhs_and_forces_at_node, stick_edge_function
 from .workspace import (
     BELOW_REST_SPEED,
     BRAKE_RELEASE,
     DELTA_ZERO,
-    DRIVE_BRAKE,
     NO_EVENT,
     OMEGA_ZERO,
-    PRESCRIBED_V,
     ROW_DENSE_EVENT,
     ROW_DRIVE,
     ROW_OMEGA_OR_D,
@@ -22,7 +21,6 @@ from .workspace import (
     ROW_V,
     STICK_EDGE,
     V_ZERO,
-    State,
     dense_state,
 )
 

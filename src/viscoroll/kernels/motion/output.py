@@ -9,19 +9,16 @@ from __future__ import annotations
 from ..compile.jit import kernel
 from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
 from .drive import evaluate_load, required_forces
+from .records import DIRECTION_REVERSED, N_QUADRATURES, REGIME_AT_REST, StepState
 from .regimes import regime_code
 from .rhs import evaluate_rhs, omega_and_delta, rhs_and_forces_at_node
 from .workspace import (
-    DIRECTION_REVERSED,
-    N_QUADRATURES,
     N_RECORDED,
     N_SWITCHES,
     QUADRATURE_TOTALS,
-    REGIME_AT_REST,
     ROW_DENSE_QUADRATURES,
     ROW_INTEGRANDS,
     ROW_V,
-    StepState,
     dense_position,
     dense_state,
     last_output_tau,

@@ -8,6 +8,7 @@ from ..compile.jit import kernel
 from .collocation import NODE_FRACTIONS, N, evaluate_dense_output
 from .departure_from_rest import solve_d_at_departure
 from .drive import evaluate_load
+from .records import State
 from .rhs import evaluate_rhs
 from .workspace import (
     ROW_DENSE_OMEGA_OR_D,
@@ -17,7 +18,6 @@ from .workspace import (
     ROW_V,
     ROW_V_RATE,
     ROW_WEIGHTED_RATE,
-    State,
     dense_position,
     node_time,
 )

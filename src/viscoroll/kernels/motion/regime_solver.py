@@ -19,14 +19,13 @@ from .events import (
     refine_event,
 )
 from .output import accept_step
+from .records import PRESCRIBED_V, ROUNDING, ZERO_SPEED, State, Step
 from .rhs import current_rates
 from .step import solve_step, store_rhs
 from .step_control import first_step_length, next_step_length, step_length_after_relaxation, time_to_V_zero
 from .workspace import (
     BELOW_REST_SPEED,
     NO_EVENT,
-    PRESCRIBED_V,
-    ROUNDING,
     ROW_OMEGA_OR_D,
     ROW_P_DIAGONAL,
     ROW_RELAXATION,
@@ -35,9 +34,6 @@ from .workspace import (
     STEP_FAILED,
     STICK_EDGE,
     V_ZERO,
-    ZERO_SPEED,
-    State,
-    Step,
     change_slip,
     count_step,
     dense_state,

@@ -7,24 +7,19 @@ import numpy as np
 from ..compile.jit import kernel
 from .collocation import row_range
 from .drive import applied_forces, current_load, has_brake, is_undriven, prescribed_speed
-from .rhs import critical_creepage, current_rates, excess_slip
-from .workspace import (
+from .records import (
     AT_REST,
-    DELTA_ZERO,
     FULL_SLIP,
     HELD_AT_REST,
     NOT_PRESCRIBED,
     OMEGA_LOCKED,
-    OMEGA_ZERO,
     PARTIAL_SLIP,
     PRESCRIBED_OMEGA,
-    ROW_V,
-    STICK_EDGE,
-    V_ZERO,
     Regime,
     State,
-    change_slip,
 )
+from .rhs import critical_creepage, current_rates, excess_slip
+from .workspace import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip
 
 #: V at the event divided by V at the left end of the step, below which V is 0: the stick zone closes at rest
 _STICK_ZONE_CLOSED = 1e-14

@@ -45,7 +45,8 @@ from ..rows.evaluate import (
     locate_row,
 )
 from .drive import applied_forces, current_load, load_at_node, required_forces
-from .workspace import ROW_OMEGA_OR_D, ROW_V, State
+from .records import State
+from .workspace import ROW_OMEGA_OR_D, ROW_V
 
 #: k relative to the smallest k at which dp/dV may vanish at d = -1; above it V is collocated, dimensionless
 _STRONG_FRICTION = 0.8

@@ -9,6 +9,7 @@ from ..rows.record import ALPHA, E0
 from .collocation import N
 from .departure_from_rest import solve_d_at_departure
 from .drive import current_load, evaluate_load, segment_end
+from .records import ZERO_SPEED, State
 from .rhs import evaluate_rhs
 from .workspace import (
     ROW_DV_DP,
@@ -20,8 +21,6 @@ from .workspace import (
     ROW_V,
     ROW_V_RATE,
     ROW_WEIGHTED_RATE,
-    ZERO_SPEED,
-    State,
 )
 
 #: relative change of the unknowns in the first step of a regime
