@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.by_reference import by_value
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..rows.cover import is_cover
 from ..rows.evaluate import limits_at_rest
 from .collocation import NODE_FRACTIONS, N
@@ -49,13 +49,13 @@ _COASTING_SPEED = 1e-4
 _COASTING_D = 1e-2
 
 
-@kernel(inline=True)
+@inline_kernel
 def equilibrium_tolerance(rtol):
     """Return the relative distance of V from its equilibrium at which a motion has reached it."""
     return max(_NEAR_EQUILIBRIUM * rtol, _NEAR_ROUNDING)
 
 
-@kernel(inline=True)
+@inline_kernel
 def may_be_at_equilibrium(noise, work):
     """Return whether V at node 0 may be at its equilibrium, by the derivative of p' in V alone.
 
@@ -158,7 +158,7 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     return True, State(state.V, state.omega_or_d + omega_change), accept_step(end, 2.0, step, regime, step_state, work)
 
 
-@kernel(inline=True)
+@inline_kernel
 def is_coasting(state, regime, step_state, work):
     """Return whether at most feedback drives any more and V decays exponentially up to a fraction of the tolerance.
 

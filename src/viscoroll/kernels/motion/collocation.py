@@ -11,7 +11,7 @@ from decimal import Decimal
 import numpy as np
 
 from ..compile.intrinsics import fma
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import Interpolation, radau
 from ..numerics.simd4 import LANES, broadcast, fma4, load, store
 
@@ -58,7 +58,7 @@ _IDENTITY = np.eye(ROW_LENGTH).ravel()
 _OFF_DIAGONAL = 1.0 - _IDENTITY
 
 
-@kernel(inline=True)
+@inline_kernel
 def multiply_matrix(matrix, row, offset, values, target, result):
     """Write the product of a matrix and a row, less ``offset``, to ``result`` from index ``target`` on.
 
@@ -73,7 +73,7 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     store(result, target + LANES, high)
 
 
-@kernel(inline=True)
+@inline_kernel
 def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     """Write diag(weights) D - diag(diagonal) to ``matrix``, D the differentiation matrix; row and column of node 0
     are 0.
@@ -91,7 +91,7 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
         )
 
 
-@kernel(inline=True)
+@inline_kernel
 def invert_matrix(matrix):
     """Invert a matrix in place, without pivoting: where that loses digits, Newton's iteration does not converge.
 
@@ -114,7 +114,7 @@ def invert_matrix(matrix):
         store(matrix, column + LANES, high)
 
 
-@kernel(inline=True)
+@inline_kernel
 def fit_dense_output(row, target, nodes):
     """Store the coefficients of the interpolant of a row, less its value at the left end, for
     :func:`evaluate_dense_output`.
@@ -130,7 +130,7 @@ def fit_integral(row, target, nodes):
     multiply_matrix(_INTEGRAL_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_dense_output(v, nodes, row):
     """Return the value at v of the interpolant whose coefficients are in ``row``, less its value at the left end.
 
@@ -142,7 +142,7 @@ def evaluate_dense_output(v, nodes, row):
     return v * value
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_integral(v, first, nodes, row):
     """Return the integral over t from the left end to v of the interpolant with value ``first`` at the left end.
 

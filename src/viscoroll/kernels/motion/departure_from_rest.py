@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.by_reference import by_value
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..rows.evaluate import limits_at_rest
 from .drive import evaluate_load, has_brake, is_constant, segment_end
 from .records import REGIME_AT_REST, Load, Regime
@@ -45,7 +45,7 @@ _SCAN_INTERVALS = 64
 _NEGLIGIBLE_FORCE = 1e-75
 
 
-@kernel(inline=True)
+@inline_kernel
 def _residual_of_d(d, load, scene):
     """Return (residual of the equation of d, its slope in d, V') at V = 0; the residual is the left less the right
     side.
@@ -62,7 +62,7 @@ def _residual_of_d(d, load, scene):
     return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
 
 
-@kernel(inline=True)
+@inline_kernel
 def _d_at_zero_omega(scene):
     """Return the d at which omega stays 0 as V grows from 0; above -1 only where mu > 2 kappa."""
     L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
@@ -108,7 +108,7 @@ def _effective_load(load, spin_sign, scene):
     return Load(force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _local_maximum_of_residual(load, scene):
     """Return the d < 0 at which the residual of :func:`_residual_of_d` has its local maximum; it is a cubic in d.
 

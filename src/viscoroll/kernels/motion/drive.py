@@ -6,7 +6,7 @@ polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the seg
 
 from __future__ import annotations
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import ROW_LENGTH, N
 from .records import (
     COL_COEFFICIENTS,
@@ -35,13 +35,13 @@ _SMOOTH_JUMP = 1e-4
 _ZERO_SPEED_ROUNDINGS = 30.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def n_coefficients(row):
     """Return the number of coefficients of each function of a segment; row: the segment."""
     return (row.size - COL_COEFFICIENTS) // N_DRIVE_FUNCTIONS
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_polynomial(row, function, x):
     """Return one function of a segment at x.
 
@@ -54,7 +54,7 @@ def evaluate_polynomial(row, function, x):
     return total
 
 
-@kernel(inline=True)
+@inline_kernel
 def _sum_of_moduli(row, first, last):
     """Return the sum of the moduli of the coefficients of functions ``first`` up to before ``last`` of a segment."""
     n_terms, total = n_coefficients(row), 0.0
@@ -105,7 +105,7 @@ def prescribed_speed(tau, segment, drive):
     return speed if abs(speed) > _ZERO_SPEED_ROUNDINGS * ROUNDING * size else 0.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def load_from_values(values, regime, work):
     """Return the Load with these values of the drive, oriented by the regime, without feedback.
 
@@ -153,7 +153,7 @@ def store_drive(step, work):
             nodes[ROW_DRIVE + ROW_LENGTH * n + i] = values[n]
 
 
-@kernel(inline=True)
+@inline_kernel
 def load_at_node(i, regime, work):
     """Return the Load at node i of the step whose drive is stored, oriented by the regime.
 
@@ -249,7 +249,7 @@ def rest_threshold(segment, work):
     return work.options.rest_speed if work.options.rest_speed > 0.0 and is_undriven(segment, work.drive) else 0.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def applied_forces(V, omega, load, regime):
     """Return (force, torque of the motor, torque of motor and brake) where both are given, oriented by the regime.
 
@@ -261,7 +261,7 @@ def applied_forces(V, omega, load, regime):
     return force, torque, torque - load.brake * regime.spin_sign
 
 
-@kernel(inline=True)
+@inline_kernel
 def required_forces(V, omega, rates, load, regime, j):
     """Return (force, torque of the motor, torque of the brake): the given ones, or those that hold a prescribed speed.
 

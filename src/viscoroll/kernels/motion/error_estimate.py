@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.intrinsics import unlikely
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import DIFFERENTIATION, EXTRAPOLATION_TO_START, N, multiply_matrix
 from .drive import drive_rounding, load_at_node
 from .records import ROUNDING
@@ -54,7 +54,7 @@ _LAST_COEFFICIENT_FACTOR = 0.1 / (_DEFECT_FACTOR * 2.0 ** (N - 1))
 _D_WEIGHT_FLOOR = 0.04
 
 
-@kernel(inline=True)
+@inline_kernel
 def _d_weight(d):
     """Return the weight of an error of d at this d, dimensionless.
 
@@ -77,7 +77,7 @@ def _rounding_scale_of_V(step, work):
     return V_error / max(NEWTON_FRACTION * ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
 
 
-@kernel(inline=True)
+@inline_kernel
 def error_scales(step, regime, work):
     """Return (scale of V, scale of the second unknown) by which errors and updates of a step are divided.
 
@@ -103,7 +103,7 @@ def error_scales(step, regime, work):
     return largest_speed, 1.0 / max(_d_weight(nodes[ROW_OMEGA_OR_D + N]), V_change)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _defect_at_start(row, slope_row, initial_slope, nodes):
     """Return the defect at the left end: its slope less that extrapolated from the nodes, times the length of the step.
 
@@ -116,7 +116,7 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     return 2.0 * abs(defect)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _variation_of_p_rate(half, nodes):
     """Return the largest difference of p' between nodes 1 ... N, times ``half`` (half the length of the step)."""
     smallest = largest = nodes[ROW_P_RATE + 1]
@@ -155,7 +155,7 @@ def _strong_friction_rounding(regime, work):
     return _STRONG_FRICTION_ROUNDING * work.scene.mu if strong else 0.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def estimate_error(step, regime, work):
     """Return the estimated error of the dense output of a step divided by its tolerance; 1 is the limit of
     acceptance.

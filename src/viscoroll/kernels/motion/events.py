@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compile.by_reference import by_value
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import NODES, ROW_LENGTH, N, evaluate_dense_output, fit_dense_output, row_range
 from .drive import load_at_node
 from .records import DRIVE_BRAKE, PRESCRIBED_V, State
@@ -50,7 +50,7 @@ _MAX_SECANT_MOVE = 0.1
 BRANCH_OVERLAP = 1e-8
 
 
-@kernel(inline=True)
+@inline_kernel
 def is_event_active(event, step, regime, work):
     """Return whether an event may end the regime on this step.
 
@@ -65,7 +65,7 @@ def is_event_active(event, step, regime, work):
     return event != BELOW_REST_SPEED or (step.undriven and work.options.rest_speed > 0.0)
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_event_functions(step, regime, work):
     """Store the event functions at all nodes of a solved step: positive within the regime, 0 at its end.
 
@@ -158,7 +158,7 @@ def _locate_double_crossing(event, nodes):
     return 0.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def find_first_event(step, regime, work):
     """Return (event whose function falls below 0 first, v there); (NO_EVENT, 2) for none.
 
@@ -180,7 +180,7 @@ def find_first_event(step, regime, work):
     return event, v
 
 
-@kernel(inline=True)
+@inline_kernel
 def find_missed_event(step, regime, work):
     """Return the event whose function begins at 0 and is negative at all nodes; NO_EVENT for none.
 
@@ -253,7 +253,7 @@ def _event_scale(event, nodes):
     return largest
 
 
-@kernel(inline=True)
+@inline_kernel
 def _event_tolerance(rtol):
     """Return the value of an event function, divided by its scale, up to which it counts as 0."""
     return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)

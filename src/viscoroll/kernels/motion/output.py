@@ -6,7 +6,7 @@ losses in the brake 10, in slip 11, in rolling 12.
 
 from __future__ import annotations
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
 from .drive import evaluate_load, required_forces
 from .records import DIRECTION_REVERSED, N_QUADRATURES, REGIME_AT_REST, StepState
@@ -126,14 +126,14 @@ def write_due_outputs(state, regime, step_state, work):
     return StepState(step_state.tau, column, step_state.segment, step_state.n_steps, step_state.n_ended, 0.0)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _quadrature_at(n, v, step, nodes):
     """Return the increase of quadrature ``n`` from the left end of a step to v."""
     first = nodes[ROW_INTEGRANDS + ROW_LENGTH * n]
     return 0.5 * step.h * evaluate_integral(v, first, nodes, ROW_DENSE_QUADRATURES + ROW_LENGTH * n)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _evaluate_integrands(regime, work):
     """Store the integrands of the quadratures at all nodes of an accepted step.
 
@@ -161,7 +161,7 @@ def _integral_over_step(row, step, nodes):
     return 0.5 * step.h * total
 
 
-@kernel(inline=True)
+@inline_kernel
 def accept_step(end, v, step, regime, step_state, work):
     """Accept a step up to the position v: write the outputs before its end and add up the quadratures.
 

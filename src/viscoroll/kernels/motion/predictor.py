@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import NODE_FRACTIONS, N, evaluate_dense_output
 from .departure_from_rest import solve_d_at_departure
 from .drive import evaluate_load
@@ -45,7 +45,7 @@ def predict(step, relaxation, dense_step, regime, work):
         _predict_from_rest(step, regime, work)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
     """Store V and the second unknown at node i; in partial slip limited to V >= 0 and |d| <= 1."""
     nodes[ROW_V + i] = V if full_slip else max(V, 0.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .asymptotics import continue_at_equilibrium, is_coasting, may_be_at_equilibrium
 from .collocation import N, row_range
 from .drive import drive_rounding, is_constant, is_undriven, is_unloaded, segment_end
@@ -65,7 +65,7 @@ SHORTEST_STEP = 1e-14
 BEFORE_SEGMENT_END = 1.0 - 1e-13
 
 
-@kernel(inline=True)
+@inline_kernel
 def _start_step(state, regime, step_state, work):
     """Store the right-hand side at node 0; return the Regime, at d = 0 that of the branch of the law to which d
     moves.
@@ -85,7 +85,7 @@ def _start_step(state, regime, step_state, work):
     return regime
 
 
-@kernel(inline=True)
+@inline_kernel
 def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 

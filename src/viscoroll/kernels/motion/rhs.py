@@ -32,7 +32,7 @@ import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.intrinsics import unlikely
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..rows.added_mass import added_mass
 from ..rows.cover import free_kinematics
 from ..rows.evaluate import (
@@ -82,7 +82,7 @@ class Rates(NamedTuple):
     dweight_dV: float
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_moments(u, scene):
     """Evaluate the critical creepage and the moments of the law.
 
@@ -115,14 +115,14 @@ def low_speed_limits(work):
     return half_space, cylinder, force, torque
 
 
-@kernel(inline=True)
+@inline_kernel
 def critical_creepage(V, scene):
     """Return the critical creepage delta_star at the speed V; scene: Scene."""
     u, law = scene.kappa * abs(V), by_value(scene.law)
     return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
 
 
-@kernel(inline=True)
+@inline_kernel
 def creepage(V, d, scene):
     """Return the creepage delta at V and d = delta/delta_star, |d| <= 1; of a cover it includes that of free
     rolling.
@@ -132,7 +132,7 @@ def creepage(V, d, scene):
     return delta if law.cover_rows is None else delta + 0.5 / scene.kappa * free_creep_and_slopes(u, law)[0]
 
 
-@kernel(inline=True)
+@inline_kernel
 def excess_slip(slip, V, scene):
     """Return the slip omega - V, given as ``slip``, less that of free rolling at V."""
     law = by_value(scene.law)
@@ -141,13 +141,13 @@ def excess_slip(slip, V, scene):
     return slip - V * (0.5 / scene.kappa * free_creep_and_slopes(scene.kappa * abs(V), law)[0])
 
 
-@kernel(inline=True)
+@inline_kernel
 def added_inertia(V, scene):
     """Return (gamma N, its derivative in V, its integral over V) at V, dimensionless."""
     return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
 
 
-@kernel(inline=True)
+@inline_kernel
 def omega_and_delta(state, regime, scene):
     """Return (omega, delta) of a state in a regime; delta is infinite at V = 0 in full slip."""
     if not regime.full_slip:
@@ -157,7 +157,7 @@ def omega_and_delta(state, regime, scene):
     return state.omega_or_d, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
 
 
-@kernel(inline=True)
+@inline_kernel
 def added_mass_margin(n, j):
     """Return the margin of the added mass: positive while n = gamma N leaves the equations regular; 1 without added
     mass.
@@ -167,7 +167,7 @@ def added_mass_margin(n, j):
     return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
 
 
-@kernel(inline=True)
+@inline_kernel
 def stick_edge_function(V, omega_or_d, regime, scene):
     """Return the event function of the edge of the stick zone at (V, omega_or_d): positive within the regime."""
     if not regime.full_slip:
@@ -176,7 +176,7 @@ def stick_edge_function(V, omega_or_d, regime, scene):
     return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(V, scene) * abs(V)
 
 
-@kernel(inline=True)
+@inline_kernel
 def has_strong_friction(load, regime, scene):
     """Return whether friction is so strong that V is collocated in place of p, with Q in its rate."""
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
@@ -184,7 +184,7 @@ def has_strong_friction(load, regime, scene):
     return strong and regime.sigma < 0.0 and not regime.full_slip
 
 
-@kernel(inline=True)
+@inline_kernel
 def partial_slip_rates(V, d, load, regime, scene):
     """Evaluate the right-hand side in partial slip: Rates.
 
@@ -248,7 +248,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     )  # fmt: skip
 
 
-@kernel(inline=True)
+@inline_kernel
 def full_slip_rates(V, omega, load, regime, scene):
     """Evaluate the right-hand side in full slip: Rates.
 
@@ -267,7 +267,7 @@ def full_slip_rates(V, omega, load, regime, scene):
     )  # fmt: skip
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
     """Evaluate the right-hand side of the regime, inlined where Newton's iteration needs it: Rates."""
     if regime.full_slip:

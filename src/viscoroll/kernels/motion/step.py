@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.by_reference import by_value
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import (
     DIFFERENTIATION,
     ROW_LENGTH,
@@ -70,14 +70,14 @@ _FIRST_CONTRACTION = 0.1
 _QUADRATIC_CONTRACTION = 10.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def store_rhs(i, rates, nodes):
     """Store p, p', the weighted rate and the larger speed at node i; rates: Rates there."""
     nodes[ROW_P_RATE + i], nodes[ROW_WEIGHTED_RATE + i] = rates.p_rate, rates.weighted_rate
     nodes[ROW_P + i], nodes[ROW_SPEED + i] = rates.p, max(abs(nodes[ROW_V + i]), abs(rates.omega))
 
 
-@kernel(inline=True)
+@inline_kernel
 def _evaluate_residuals(refactor, step, regime, work):
     """Evaluate the right-hand side and the residuals at nodes 1 ... N.
 
@@ -114,7 +114,7 @@ def _add_feedback_to_matrix(work):
             work.p_matrix[ROW_LENGTH * k + i] += feedback * work.nodes[ROW_COUPLING + k]
 
 
-@kernel(inline=True)
+@inline_kernel
 def _newton_iteration(refactor, coupled, step, regime, work):
     """Do one Newton iteration at nodes 1 ... N and return its largest update relative to the error scales.
 
@@ -153,7 +153,7 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     return max(change_V / scale_V, change_d / scale_d)
 
 
-@kernel(inline=True)
+@inline_kernel
 def solve_step(step, relaxation, dense_step, regime, work):
     """Solve a step from node 0 on and store its dense output; return whether Newton's iteration converged.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..rows.record import ALPHA, E0
 from .collocation import N
 from .departure_from_rest import solve_d_at_departure
@@ -57,7 +57,7 @@ _FIRST_REJECTION = 0.7
 _LATER_REJECTION = 0.4
 
 
-@kernel(inline=True)
+@inline_kernel
 def moderate_speed(scene):
     """Return the V that divides slow from fast rolling: 1/kappa divided by the longest time of the material, or half
     of it.
@@ -111,7 +111,7 @@ def first_step_length(stick_formed, step_state, regime, work):
     return min(h, _FIRST_CHANGE * V / V_rate) if V_rate > 0.0 else h
 
 
-@kernel(inline=True)
+@inline_kernel
 def time_to_V_zero(step, state, regime, work):
     """Return the time until V = 0 at the initial V', inf if V does not decrease; there the law has a kink.
 
@@ -130,7 +130,7 @@ def time_to_V_zero(step, state, regime, work):
     return -state.V / V_rate
 
 
-@kernel(inline=True)
+@inline_kernel
 def step_length_after_relaxation(step, regime, work):
     """Return the length of the step after one along which d has relaxed: there d follows V, which changes slowly.
 
@@ -145,7 +145,7 @@ def step_length_after_relaxation(step, regime, work):
     return _RELAXED_CHANGE * work.options.rtol ** (1.0 / (N + 1)) / relative_rate
 
 
-@kernel(inline=True)
+@inline_kernel
 def next_step_length(step, error, n_rejected, last_h, last_error):
     """Return the length of the step after ``step``, whose error divided by its tolerance is ``error`` (inf: Newton
     failed).

@@ -7,7 +7,7 @@ unknown, omega or d (:mod:`records`).
 
 from __future__ import annotations
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel
 from .collocation import NODE_FRACTIONS, ROW_LENGTH, evaluate_dense_output
 from .records import N_NODE_FUNCTIONS, N_QUADRATURES, Regime, State, Step, StepState
 
@@ -97,51 +97,51 @@ REST_TIME = N_SWITCHES + 3
 WORKSPACE_SIZE = N_SWITCHES + 4
 
 
-@kernel(inline=True)
+@inline_kernel
 def change_slip(regime, full_slip, sigma):
     """Return the Regime with full or partial slip and another ``sigma``; direction and brake stay."""
     return Regime(full_slip, regime.direction, sigma, regime.spin_sign, regime.locked)
 
 
-@kernel(inline=True)
+@inline_kernel
 def last_output_tau(work):
     """Return tau of the last output, at which the motion ends; work: Workspace."""
     return work.output_tau[work.output_tau.size - 1]
 
 
-@kernel(inline=True)
+@inline_kernel
 def shorten_step(step, h):
     """Return the step with another length ``length`` in tau."""
     return Step(step.tau, h, step.segment, step.initial_slope_known, step.undriven)
 
 
-@kernel(inline=True)
+@inline_kernel
 def node_time(step, i):
     """Return tau at node i of the step."""
     return step.tau + step.h * NODE_FRACTIONS[i]
 
 
-@kernel(inline=True)
+@inline_kernel
 def dense_position(tau, step):
     """Return the position v in [0, 2] of the time tau on the step: v = 0 is its left end, v = 2 its right end."""
     return 2.0 * (max(tau - step.tau, 0.0) / step.h)
 
 
-@kernel(inline=True)
+@inline_kernel
 def count_step(h, step_state):
     """Return the step state after one more trial step, with ``h`` as the length of the next one; 0: not known."""
     tau, next_output, segment, n_steps, n_ended, _ = step_state
     return StepState(tau, next_output, segment, n_steps + 1, n_ended, h)
 
 
-@kernel(inline=True)
+@inline_kernel
 def with_step_length(h, step_state):
     """Return the step state with ``h`` as the length of the next trial step; 0: not known."""
     tau, next_output, segment, n_steps, n_ended, _ = step_state
     return StepState(tau, next_output, segment, n_steps, n_ended, h)
 
 
-@kernel(inline=True)
+@inline_kernel
 def dense_state(v, nodes):
     """Return the State at position v in [0, 2] of the step whose dense output is stored in ``nodes``."""
     return State(
