@@ -34,7 +34,11 @@ EXTRAPOLATION_TO_START = _INNER.values([Decimal(-1)])[0]
 
 
 def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
-    """Divide polynomials that vanish at -1 by 1 + t; powers: coefficients [power, polynomial]."""
+    """Divide polynomials in t that vanish at t = -1 by 1 + t.
+
+    powers: (n, m), coefficients of m polynomials in ascending powers of t.
+    Returns (n - 1, m), coefficients of the quotients.
+    """
     found, quotient = np.zeros_like(powers[1:]), 0.0
     for k in range(len(powers) - 1, 0, -1):
         found[k - 1] = quotient = powers[k] - quotient
@@ -42,6 +46,7 @@ def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
 
 
 def _column_major(matrix: np.ndarray) -> np.ndarray:
+    """Return a matrix as a vector, column after column, as the kernels load it; matrix: (ROW_LENGTH, ROW_LENGTH)."""
     return np.ascontiguousarray(matrix.T).ravel()
 
 
@@ -60,9 +65,14 @@ _OFF_DIAGONAL = 1.0 - _IDENTITY
 
 @inline_kernel
 def multiply_matrix(matrix, row, offset, values, target, result):
-    """Write the product of a matrix and a row, less ``offset``, to ``result`` from index ``target`` on.
+    """Write the product of a matrix and a row, from whose values ``offset`` is subtracted.
 
-    matrix: by columns; row: index in ``values`` at which the row begins.
+    matrix: ROW_LENGTH^2 numbers, column by column.
+    row: int, index in ``values`` at which the row begins.
+    offset: float, subtracted from each value of the row.
+    values: array or pointer that contains the row.
+    target: int, index in ``result`` from which the product is written.
+    result: array or pointer, ROW_LENGTH numbers of which are written.
     """
     low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
@@ -75,10 +85,13 @@ def multiply_matrix(matrix, row, offset, values, target, result):
 
 @inline_kernel
 def assemble_newton_matrix(weights, diagonal, nodes, matrix):
-    """Write diag(weights) D - diag(diagonal) to ``matrix``, D the differentiation matrix; row and column of node 0
-    are 0.
+    """Write diag(weights) D - diag(diagonal), the matrix of a linear system of :mod:`step`.
 
-    weights, diagonal: rows of ``nodes``.
+    D is the differentiation matrix.  Row and column of node 0 are 0 or unchanged: node 0 is given.
+
+    weights, diagonal: int, indices in ``nodes`` of the rows with the numbers of either diagonal matrix.
+    nodes: Workspace.nodes.
+    matrix: pointer to ROW_LENGTH^2 numbers, written column by column.
     """
     low, high = load(nodes, weights), load(nodes, weights + LANES)
     for k in range(1, ROW_LENGTH):
@@ -93,9 +106,13 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
 
 @inline_kernel
 def invert_matrix(matrix):
-    """Invert a matrix in place, without pivoting: where that loses digits, Newton's iteration does not converge.
+    """Invert a Newton matrix in place, by Gauss-Jordan elimination without pivoting.
 
-    Only whole vectors are stored: a vector load behind the store of a single number into it would wait for that store.
+    Row and column of node 0 are left out.  Where a small pivot costs digits, Newton's iteration does not converge,
+    and the step is repeated with another length. Only whole vectors are stored: a vector load behind the store of a
+    single number into it would wait for that store.
+
+    matrix: pointer to ROW_LENGTH^2 numbers, column by column.
     """
     for i in range(1, ROW_LENGTH):
         column = ROW_LENGTH * i
@@ -116,25 +133,33 @@ def invert_matrix(matrix):
 
 @inline_kernel
 def fit_dense_output(row, target, nodes):
-    """Store the coefficients of the interpolant of a row, less its value at the left end, for
-    :func:`evaluate_dense_output`.
+    """Store the coefficients of the interpolant of a row, less its value at the left end.
 
-    row, target: indices in ``nodes`` of the values and of the coefficients.
+    row: int, index in ``nodes`` of the values at all nodes.
+    target: int, index in ``nodes`` of the coefficients, for :func:`evaluate_dense_output`.
+    nodes: Workspace.nodes.
     """
     multiply_matrix(_DENSE_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
 @kernel
 def fit_integral(row, target, nodes):
-    """Store the coefficients of the integral of the interpolant of a row for :func:`evaluate_integral`."""
+    """Store the coefficients of the integral of the interpolant of a row.
+
+    row: int, index in ``nodes`` of the values at all nodes.
+    target: int, index in ``nodes`` of the coefficients, for :func:`evaluate_integral`.
+    nodes: Workspace.nodes.
+    """
     multiply_matrix(_INTEGRAL_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
 @inline_kernel
 def evaluate_dense_output(v, nodes, row):
-    """Return the value at v of the interpolant whose coefficients are in ``row``, less its value at the left end.
+    """Return the interpolant of a row at a position, less its value at the left end; in the unit of the row.
 
-    v: position in [0, 2]; nodes: array; row: index of the coefficients.
+    v: float, position in [0, 2] on the step.
+    nodes: Workspace.nodes.
+    row: int, index of the coefficients of :func:`fit_dense_output`.
     """
     t, value = v - 1.0, 0.0
     for k in range(ROW_LENGTH - 1, -1, -1):
@@ -144,16 +169,26 @@ def evaluate_dense_output(v, nodes, row):
 
 @inline_kernel
 def evaluate_integral(v, first, nodes, row):
-    """Return the integral over t from the left end to v of the interpolant with value ``first`` at the left end.
+    """Return the integral of the interpolant of a row from the left end to a position.
 
-    It is accurate relative to itself as v -> 0.  row: index of the coefficients of :func:`fit_integral`.
+    It is over t in [-1, 1]: times half the length of the step it is the integral over tau.  It is accurate relative
+    to itself as v -> 0.
+
+    v: float, position in [0, 2] on the step.
+    first: float, value of the row at the left end.
+    nodes: Workspace.nodes.
+    row: int, index of the coefficients of :func:`fit_integral`.
     """
     return v * (first + evaluate_dense_output(v, nodes, row))
 
 
 @kernel
 def row_range(row, nodes):
-    """Return (smallest, largest) value of a row."""
+    """Return (smallest, largest) of the values of a row at all nodes.
+
+    row: int, index in ``nodes`` of the row.
+    nodes: Workspace.nodes.
+    """
     smallest = largest = nodes[row]
     for i in range(1, N + 1):
         smallest, largest = min(smallest, nodes[row + i]), max(largest, nodes[row + i])

@@ -56,20 +56,27 @@ _D_WEIGHT_FLOOR = 0.04
 
 @inline_kernel
 def _d_weight(d):
-    """Return the weight of an error of d at this d, dimensionless.
+    """Return the weight of an error of d, dimensionless: 1 at d = 0, 1/6 at |d| = 0.2, 0.96 at |d| = 1.
 
-    d acts through omega - V and V', whose error is that of V, and its errors decay.  The error is held relative to the
-    critical creepage, as an error of Q/mu, and less strictly relative to d itself.
+    d acts on the motion through omega - V and V', whose error is that of V, and its errors decay.  An error of d is
+    measured by the critical creepage, as an error of Q/mu, and less strictly relative to d itself.
+
+    d: float, delta/delta_star.
     """
     return max(_D_WEIGHT_FLOOR, d * d) / (abs(d) + _D_WEIGHT_FLOOR)
 
 
 @kernel
 def _rounding_scale_of_V(step, work):
-    """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration.
+    """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration,
+    dimensionless.
 
-    step: Step; work: Workspace with the values at its nodes. V' = Q - M + f may be a small difference of Q and f.
-    Its rounding changes V during the step, or during the relaxation time of V if that is shorter.
+    V' = Q - M + f may be a small difference of Q and f.  Its rounding changes V during the step, or during the
+    relaxation
+    time of V if that is shorter.
+
+    step: Step, the trial step.
+    work: Workspace, with the drive and the Newton diagonal at its nodes.
     """
     nodes = work.nodes
     V_error = ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h
@@ -79,10 +86,13 @@ def _rounding_scale_of_V(step, work):
 
 @inline_kernel
 def error_scales(step, regime, work):
-    """Return (scale of V, scale of the second unknown) by which errors and updates of a step are divided.
+    """Return (scale of V, scale of the second unknown) by which errors of a step are divided, dimensionless.
 
-    step: Step; regime: Regime; work: Workspace with the values at its nodes.
-    Speeds are measured by the largest one of the step; d by its weight.
+    Speeds are measured by the largest one of the step, V in full slip by itself; d by its weight.
+
+    step: Step, the trial step.
+    regime: Regime, that of the step.
+    work: Workspace, with the unknowns at its nodes.
     """
     nodes, largest_speed, largest_V, V_change = work.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):
@@ -105,9 +115,15 @@ def error_scales(step, regime, work):
 
 @inline_kernel
 def _defect_at_start(row, slope_row, initial_slope, nodes):
-    """Return the defect at the left end: its slope less that extrapolated from the nodes, times the length of the step.
+    """Return the defect of an interpolant at the left end of a step.
 
-    row: values; slope_row: row that receives the slopes of the interpolant; initial_slope: slope in t at the left end.
+    It is the slope there less that extrapolated from the nodes, times the length of the step.
+
+    row: int, index in ``nodes`` of the values at all nodes.
+    slope_row: int, index of the row that receives the slopes of the interpolant in t.
+    initial_slope: float, slope in t at the left end by the right-hand side, in the unit of the row.
+    nodes: Workspace.nodes.
+    Returns the modulus of the defect, in the unit of the row.
     """
     multiply_matrix(DIFFERENTIATION, row, nodes[row], nodes, slope_row, nodes)
     defect = initial_slope
@@ -118,7 +134,12 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
 
 @inline_kernel
 def _variation_of_p_rate(half, nodes):
-    """Return the largest difference of p' between nodes 1 ... N, times ``half`` (half the length of the step)."""
+    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step; in the unit of
+    p.
+
+    half: float, half the length of the step in tau.
+    nodes: Workspace.nodes.
+    """
     smallest = largest = nodes[ROW_P_RATE + 1]
     for i in range(2, N + 1):
         smallest, largest = min(smallest, nodes[ROW_P_RATE + i]), max(largest, nodes[ROW_P_RATE + i])
@@ -127,10 +148,13 @@ def _variation_of_p_rate(half, nodes):
 
 @kernel
 def _relative_speed_at_first_output(step, work):
-    """Return V at the first output time of a step divided by the largest V of the step: V is accurate relative to
-    itself there.
+    """Return V at the first output time of a step from V = 0 on, divided by the largest V of the step,
+    dimensionless.
 
-    step: Step from V = 0 on; work: Workspace with the values at its nodes.
+    By this the error of the step is divided, so that V is accurate relative to itself at its first output.
+
+    step: Step, from V = 0 on.
+    work: Workspace, with V at its nodes.
     """
     nodes, output_time = work.nodes, last_output_tau(work)
     for i in range(work.output_tau.size):
@@ -147,9 +171,12 @@ def _relative_speed_at_first_output(step, work):
 
 @kernel
 def _strong_friction_rounding(regime, work):
-    """Return the rounding error of a defect of V' under strong friction, per length of the step; 0 elsewhere.
+    """Return the rounding error of a defect of V' under strong friction, per unit of tau; 0 elsewhere.
 
     V' may be a small difference of Q and f.  Friction is strong only where mu > kappa.
+
+    regime: Regime, that of the step.
+    work: Workspace, with the drive at node 0.
     """
     strong = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
     return _STRONG_FRICTION_ROUNDING * work.scene.mu if strong else 0.0
@@ -157,11 +184,14 @@ def _strong_friction_rounding(regime, work):
 
 @inline_kernel
 def estimate_error(step, regime, work):
-    """Return the estimated error of the dense output of a step divided by its tolerance; 1 is the limit of
-    acceptance.
+    """Return the estimated error of the dense output of a step divided by its tolerance; a step is accepted up to 1.
 
-    step: Step that is solved; regime: Regime; work: Workspace with the values at its nodes.
-    Of an error of d only the part that its relaxation leaves at the end of the step counts.
+    The error is that of the interpolant of p, by its defect at the left end or by its last coefficient, and that of
+    the second unknown, of which only the part counts that its relaxation leaves at the end of the step.
+
+    step: Step, the solved trial step.
+    regime: Regime, that of the step.
+    work: Workspace, with the solution at its nodes and the dense output.
     """
     nodes, half = work.nodes, 0.5 * step.h
     scale_V, scale_d = error_scales(step, regime, work)

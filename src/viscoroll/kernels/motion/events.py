@@ -52,9 +52,12 @@ BRANCH_OVERLAP = 1e-8
 
 @inline_kernel
 def is_event_active(event, step, regime, work):
-    """Return whether an event may end the regime on this step.
+    """Return whether an event may end the regime on a step.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; step: Step; regime: Regime; work: Workspace.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    step: Step, the trial step.
+    regime: Regime, that of the step.
+    work: Workspace, of the motion.
     """
     if event == DELTA_ZERO:
         return not regime.full_slip
@@ -69,7 +72,9 @@ def is_event_active(event, step, regime, work):
 def evaluate_event_functions(step, regime, work):
     """Store the event functions at all nodes of a solved step: positive within the regime, 0 at its end.
 
-    step: Step; regime: Regime; work: Workspace with the unknowns at the nodes.
+    step: Step, the solved one.
+    regime: Regime, that of the step.
+    work: Workspace, with the unknowns at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written.
     """
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):
@@ -91,10 +96,11 @@ def evaluate_event_functions(step, regime, work):
 
 @kernel
 def _first_negative_node(event, last, nodes):
-    """Return the first node, up to ``last``, at which an event function has fallen below 0; 0 for none.
+    """Return the first node at which an event function has fallen below 0, having been positive before; 0 for none.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
-    A function that begins at 0, to rounding, must have been positive before.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    last: int, the last node that is considered.
+    nodes: Workspace.nodes, with the event functions.
     """
     _, largest = row_range(event, nodes)
     positive = nodes[event] > _START_ROUNDING * max(largest, 0.0)
@@ -108,10 +114,12 @@ def _first_negative_node(event, last, nodes):
 
 @kernel
 def locate_zero(event, node, nodes):
-    """Return the v at which the interpolant of an event function is 0, before ``node``, or beyond the step if that
-    is 0.
+    """Return the position at which the interpolant of an event function is 0, by bisection.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    node: int, first node at which the function is negative; 0: the zero is sought beyond the right end of the step.
+    nodes: Workspace.nodes, with the event functions; ROW_DENSE_EVENT is written.
+    Returns v in [0, 3], at least NOT_FOUND if beyond the step no zero is found.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
@@ -120,9 +128,11 @@ def locate_zero(event, node, nodes):
 
 @kernel
 def _bisect(start, low, high, nodes):
-    """Return the v in [low, high] at which the stored interpolant of an event function falls through 0.
+    """Return the v at which the stored interpolant of an event function falls through 0, by bisection.
 
-    start: value of the function at v = 0; nodes: Workspace.nodes with the interpolant.
+    start: float, value of the function at v = 0, in its unit.
+    low, high: float, ends of the interval of v, positive and negative values of the function there.
+    nodes: Workspace.nodes, with the interpolant.
     """
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -139,7 +149,10 @@ def _bisect(start, low, high, nodes):
 def _locate_double_crossing(event, nodes):
     """Return the v at which an event function falls through 0 between nodes at which it is positive; 0 for none.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    The minimum of the interpolant next to a node with a local minimum is located by a ternary search.
+
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    nodes: Workspace.nodes, with the event functions; ROW_DENSE_EVENT is written.
     """
     for i in range(1, N):
         if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
@@ -160,10 +173,14 @@ def _locate_double_crossing(event, nodes):
 
 @inline_kernel
 def find_first_event(step, regime, work):
-    """Return (event whose function falls below 0 first, v there); (NO_EVENT, 2) for none.
+    """Return the event whose function falls below 0 first on a solved step, and its position by the interpolant.
 
-    step: Step; regime: Regime; work: Workspace with the event functions.
-    Between the same two nodes the interpolants tell which event is first.
+    Between the same two nodes the zeros of the interpolants decide which event is first.
+
+    step: Step, the solved one.
+    regime: Regime, that of the step.
+    work: Workspace, with the event functions.
+    Returns (event, v in [0, 2]); (NO_EVENT, 2) for none.
     """
     event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
@@ -184,8 +201,11 @@ def find_first_event(step, regime, work):
 def find_missed_event(step, regime, work):
     """Return the event whose function begins at 0 and is negative at all nodes; NO_EVENT for none.
 
-    step: Step; regime: Regime; work: Workspace with the event functions.
     The regime has then ended before the first node.
+
+    step: Step, the solved one.
+    regime: Regime, that of the step.
+    work: Workspace, with the event functions.
     """
     nodes = work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
@@ -239,10 +259,12 @@ def refine_event(event, v, regime, work):
 
 @kernel
 def _event_scale(event, nodes):
-    """Return the scale of an event function on a step: the largest modulus of the quantities of which it is a
-    difference.
+    """Return the scale of an event function on a step, in the unit of the function.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with event functions, speeds and drive.
+    It is the largest modulus of the quantities of which the function is a difference.
+
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    nodes: Workspace.nodes, with event functions, speeds and drive.
     """
     smallest, largest = row_range(event, nodes)
     largest = max(largest, -smallest)
@@ -255,15 +277,17 @@ def _event_scale(event, nodes):
 
 @inline_kernel
 def _event_tolerance(rtol):
-    """Return the value of an event function, divided by its scale, up to which it counts as 0."""
+    """Return the value of an event function divided by its scale up to which it counts as 0; rtol: tolerance."""
     return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)
 
 
 @kernel
 def ends_at_event(event, nodes, rtol):
-    """Return whether the step ends at an event: its function has fallen to 0, and has not only started there.
+    """Return whether a step ends at an event: its function has fallen to 0 at the right end.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions; rtol: relative tolerance.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    nodes: Workspace.nodes, with the event functions.
+    rtol: float, relative tolerance, dimensionless.
     """
     scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
     return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

@@ -1,6 +1,8 @@
-"""Records of the solver of motions, the codes in its results and the columns of a segment of the drive; without numba.
+"""Records of the solver of motions, the codes in its results and the columns of a segment of the drive; without
+numba.
 
-Times are tau = gamma t, dimensionless.  `omega_or_d` is the second unknown: omega in full slip, d = delta/delta_star in
+Times are tau = gamma t, dimensionless.  Speeds are V T_epsilon/R and omega T_epsilon, forces are divided by the load
+P, torques by P R, as in Eq. (22).  `omega_or_d` is the second unknown: omega in full slip, d = delta/delta_star in
 partial slip.
 """
 
@@ -48,12 +50,14 @@ ZERO_SPEED = 1e-200
 
 
 class Scene(NamedTuple):
-    """Parameters of Eq. (22) of one motion.
+    """Parameters of Eq. (22) of one motion, dimensionless.
 
-    law : rows of the law (:mod:`..rows.evaluate`)
-    moments_differ : whether half-space and cylinder take unequal parts of M
-    kappa, mu, j : slenderness, coefficient of friction, moment of inertia, dimensionless
-    gamma : tau = gamma t; also the factor of the added mass N
+    law : rows of polynomials of the contact law of one material (:mod:`..rows.evaluate`)
+    moments_differ : whether half-space and cylinder take unequal parts of the rolling moment M
+    kappa : R/l0, radius of the cylinder divided by the length of the contact at rest
+    mu : coefficient of friction
+    gamma : P T_epsilon^2/(m R), Eq. (4): tau = gamma t; also the factor of the added mass N
+    j : J/(m R^2), moment of inertia of the cylinder
     """
 
     law: Any
@@ -65,7 +69,11 @@ class Scene(NamedTuple):
 
 
 class Gains(NamedTuple):
-    """Feedback: derivatives of force and torque in V and omega, dimensionless."""
+    """Feedback: derivatives of the applied force and torque in V and omega, dimensionless.
+
+    force_V, force_omega : of the force, in V and in omega
+    torque_V, torque_omega : of the torque of the motor, in V and in omega
+    """
 
     force_V: float
     force_omega: float
@@ -76,8 +84,8 @@ class Gains(NamedTuple):
 class Drive(NamedTuple):
     """External actions on one motion.
 
-    segments : one row for each segment of the drive, columns as COL_* below
-    gains : feedback
+    segments : [segment, column], each row one segment of the drive over tau, columns as COL_* below
+    gains : Gains, the feedback, the same on all segments
     prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V
     """
 
@@ -87,11 +95,17 @@ class Drive(NamedTuple):
 
 
 class Load(NamedTuple):
-    """The drive at one time, in the direction of the regime, dimensionless.
+    """The drive at one time, in the direction of the regime, dimensionless (docs/theory_motion.md, Driven motion).
 
     V' = inverse_mass (Q - M_half_space + force) + prescribed_V_rate
     omega' = inverse_inertia (-Q - M_cylinder + torque) + prescribed_omega_rate
-    brake : largest torque of the brake, at least 0
+
+    force, torque : force on the axis and torque of the motor, without feedback
+    prescribed_V_rate, prescribed_omega_rate : slope in tau of a prescribed speed; 0 where the speed is free
+    brake : largest torque of the brake, at least 0; it enters ``torque`` with the sign against omega
+    inverse_mass : 1, or 0 where V is prescribed
+    inverse_inertia : 1/j, or 0 where omega is prescribed or held at 0 by the brake
+    gains : Gains, the feedback
     """
 
     force: float
@@ -108,8 +122,8 @@ class Regime(NamedTuple):
     """Regime of a motion and the orientation in which its V is at least 0.
 
     full_slip : whether the whole contact slips
-    direction : 1 or -1; speeds times this are those of the regime, with V >= 0
-    sigma : sign of omega - V in full slip, sign of d of the branch of the law in partial slip
+    direction : 1 or -1; speeds, forces and torques times this are those of the regime, with V >= 0
+    sigma : 1 or -1, sign of omega - V in full slip, sign of d of the branch of the law in partial slip
     spin_sign : sign of omega where a brake acts, 0 where none does
     locked : whether a brake holds omega at 0
     """
@@ -133,29 +147,30 @@ class State(NamedTuple):
 
 
 class StepState(NamedTuple):
-    """Progress of the integration.
+    """Progress of the integration of one motion.
 
-    tau : time reached
-    next_output : index of the next output time
+    tau : time reached, dimensionless
+    next_output : index in ``Workspace.output_tau`` of the next output time
     segment : index of the segment of the drive
-    n_steps : trial steps so far
-    n_ended : accepted steps so far
-    h : length of the next trial step; 0: not known
+    n_steps : number of trial steps so far
+    n_accepted : number of accepted steps so far
+    h : length in tau of the next trial step; 0: not chosen yet
     """
 
     tau: float
     next_output: int
     segment: int
     n_steps: int
-    n_ended: int
+    n_accepted: int
     h: float
 
 
 class Step(NamedTuple):
     """One collocation step.
 
-    tau, h : left end and length
-    segment : segment of the drive in which it lies
+    tau : time of the left end, dimensionless
+    h : length in tau
+    segment : index of the segment of the drive in which it lies
     initial_slope_known : whether the slope of the second unknown at the left end is finite and known (V > 0)
     undriven : whether nothing drives from there on: then V is measured relative to itself and may come to rest
     """
@@ -168,7 +183,12 @@ class Step(NamedTuple):
 
 
 class Options(NamedTuple):
-    """Relative tolerance, rest threshold of the speeds (0: none), largest number of trial steps."""
+    """Options of the integration.
+
+    rtol : relative tolerance of the speeds, dimensionless
+    rest_speed : speed below which a motion that nothing drives ends at rest, dimensionless; 0: none
+    max_steps : largest number of trial steps of a motion
+    """
 
     rtol: float
     rest_speed: float
@@ -178,13 +198,14 @@ class Options(NamedTuple):
 class Workspace(NamedTuple):
     """The problem of one motion and the arrays that its solution uses.
 
-    scene, drive, options : the problem
-    output_tau : times of the outputs, increasing
-    outputs : [quantity, time], filled
-    with_quadratures, with_forces : whether distance, angle and energies, and whether force and torque are requested
-    switches : (k, 2), filled with t and the regime behind each regime change
+    scene, drive, options : Scene, Drive and Options, the problem
+    output_tau : (k,), times tau of the outputs, increasing
+    outputs : [quantity, time], filled; rows as in :mod:`output`
+    with_quadratures : whether distance, angle and energies are requested
+    with_forces : whether force and torque are requested
+    switches : (m, 2), filled with t and the code of the regime behind each regime change
     step_ends : filled with the end t of each accepted step, as far as it has room
-    nodes : pointer to WORKSPACE_SIZE numbers, rows ROW_* and single numbers below
+    nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`workspace`)
     p_matrix, d_matrix : pointers to the inverse Newton matrices of p and of the second unknown, column by column
     """
 
@@ -203,10 +224,12 @@ class Workspace(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Parameters and starts of many motions: arrays of one value for all, or of one for each motion.
+    """Parameters and starts of many motions: arrays of one value for all, or of one for each motion; dimensionless.
 
     law : of one material for all, or of each motion in turn (:mod:`..rows.record`)
-    moments_differ : as in ``Scene``
+    moments_differ : as in ``Scene``, the same for all
+    kappa, mu, gamma, j : as in ``Scene``
+    V0, omega0 : initial speeds
     """
 
     law: Any

@@ -55,13 +55,20 @@ _SMALL_D = 1e-4
 
 
 class Rates(NamedTuple):
-    """The right-hand side at a state, with its derivatives in V and in the second unknown (_dd: in d or omega).
+    """The right-hand side at a state and its derivatives in V and the second unknown (_dd), dimensionless.
 
-    omega, Q, M_half_space, M_cylinder : spin, traction and moments
+    omega : angular velocity
+    Q : traction, Eq. (17)
+    M_half_space, M_cylinder : the parts of the rolling moment, Eq. (18), that half-space and cylinder take
     V_rate : V'
-    p, p_rate : the collocated unknown and p'; p is V in full slip and under strong friction
+    p : the collocated unknown; V in full slip and under strong friction
+    p_rate : p'
     weighted_rate : ``weight`` times the slope of the second unknown
     weight : V in partial slip, 1 in full slip
+    dp_dV, dp_dd : derivatives of p
+    dp_rate_dV, dp_rate_dd : derivatives of p'
+    drate_dV, drate_dd : derivatives of ``weighted_rate``
+    dweight_dV : derivative of ``weight``
     """
 
     omega: float
@@ -84,10 +91,12 @@ class Rates(NamedTuple):
 
 @inline_kernel
 def evaluate_moments(u, scene):
-    """Evaluate the critical creepage and the moments of the law.
+    """Evaluate the critical creepage, Eq. (9), and the rolling moments, Eq. (18), of the law at one speed.
 
-    u: kappa |V|, dimensionless; scene: Scene.
-    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV).
+    u: float, kappa |V|, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), dimensionless; L = lam (1 +
+    epsilon) and its derivatives in u.
     """
     law = by_value(scene.law)
     index = locate_row(u, law)
@@ -100,32 +109,47 @@ def evaluate_moments(u, scene):
     return law_at_u.L, law_at_u.dL, law_at_u.ddL, scale * half_space, scale * cylinder, half_space_slope, cylinder_slope
 
 
+@inline_kernel
+def rest_limits(scene):
+    """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
+
+    scene: Scene, parameters of Eq. (22).
+    """
+    return limits_at_rest(scene.kappa, by_value(scene.law))
+
+
 @kernel
 def low_speed_limits(work):
-    """Return (M_half_space, M_cylinder, force and torque of feedback), each divided by V, for V -> 0 in free
-    rolling.
+    """Return moments, force and torque divided by V in the limit V -> 0 of free rolling.
 
-    work: Workspace of the motion.
+    work: Workspace, of the motion.
+    Returns (M_half_space, M_cylinder, force of feedback, torque of feedback), each divided by V, dimensionless.
     """
     _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
     gains = work.drive.gains
-    delta_0 = limits_at_rest(work.scene.kappa, by_value(work.scene.law))[1]
-    omega_over_V = 1.0 + delta_0
+    omega_over_V = 1.0 + rest_limits(work.scene)[1]
     force, torque = gains.force_V + gains.force_omega * omega_over_V, gains.torque_V + gains.torque_omega * omega_over_V
     return half_space, cylinder, force, torque
 
 
 @inline_kernel
 def critical_creepage(V, scene):
-    """Return the critical creepage delta_star at the speed V; scene: Scene."""
+    """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips, dimensionless.
+
+    V: float, speed of the axis, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    """
     u, law = scene.kappa * abs(V), by_value(scene.law)
     return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
 
 
 @inline_kernel
 def creepage(V, d, scene):
-    """Return the creepage delta at V and d = delta/delta_star, |d| <= 1; of a cover it includes that of free
-    rolling.
+    """Return the creepage delta, Eq. (5), in partial slip; on a cover it includes that of free rolling.
+
+    V: float, speed of the axis, dimensionless.
+    d: float, delta/delta_star of the excess over free rolling, |d| <= 1.
+    scene: Scene, parameters of Eq. (22).
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)
     delta = critical_creepage(V, scene) * d
@@ -134,7 +158,12 @@ def creepage(V, d, scene):
 
 @inline_kernel
 def excess_slip(slip, V, scene):
-    """Return the slip omega - V, given as ``slip``, less that of free rolling at V."""
+    """Return the slip omega - V less that of free rolling, dimensionless; for half-spaces the slip itself.
+
+    slip: float, omega - V, dimensionless.
+    V: float, speed of the axis, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    """
     law = by_value(scene.law)
     if law.cover_rows is None:
         return slip
@@ -143,13 +172,24 @@ def excess_slip(slip, V, scene):
 
 @inline_kernel
 def added_inertia(V, scene):
-    """Return (gamma N, its derivative in V, its integral over V) at V, dimensionless."""
+    """Return (n = gamma N, its derivative in V, its integral over V from 0) of the added mass N V', dimensionless.
+
+    The equations are in docs/theory_materials.md, Slowly changing speed; all are 0 for a law without added mass.
+
+    V: float, speed of the axis, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    """
     return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
 
 
 @inline_kernel
 def omega_and_delta(state, regime, scene):
-    """Return (omega, delta) of a state in a regime; delta is infinite at V = 0 in full slip."""
+    """Return (omega, creepage delta of Eq. (5)) of a state, dimensionless; delta is infinite at V = 0 in full slip.
+
+    state: State, the unknowns.
+    regime: Regime, which tells what the second unknown is.
+    scene: Scene, parameters of Eq. (22).
+    """
     if not regime.full_slip:
         delta = creepage(state.V, state.omega_or_d, scene)
         return state.V * (1.0 + delta), delta
@@ -159,17 +199,30 @@ def omega_and_delta(state, regime, scene):
 
 @inline_kernel
 def added_mass_margin(n, j):
-    """Return the margin of the added mass: positive while n = gamma N leaves the equations regular; 1 without added
-    mass.
+    """Return the margin of the added mass, above 0 while the equations are regular, dimensionless.
 
-    n is below 1 + j and leaves half of that, and of the 1 + n/2 in front of V'.  j: moment of inertia.
+    It is 1 without added mass, 0 where n = 1 + j, and 0 where a negative n takes half of the inertia 1 + j or of the
+    factor
+    1 + n/2 of V'.
+
+    n: float, gamma N, dimensionless.
+    j: float, moment of inertia, dimensionless.
     """
     return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
 
 
 @inline_kernel
 def stick_edge_function(V, omega_or_d, regime, scene):
-    """Return the event function of the edge of the stick zone at (V, omega_or_d): positive within the regime."""
+    """Return the event function of the edge of the stick zone: positive within the regime, 0 at its end.
+
+    In full slip it is |omega - V| less its limit delta_star |V|, Eq. (9); in partial slip 1 - |d|, times the margin
+    of the added mass.
+
+    V: float, speed of the axis, dimensionless.
+    omega_or_d: float, second unknown, dimensionless.
+    regime: Regime, the present one.
+    scene: Scene, parameters of Eq. (22).
+    """
     if not regime.full_slip:
         n, _, _ = added_inertia(V, scene)
         return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
@@ -178,7 +231,12 @@ def stick_edge_function(V, omega_or_d, regime, scene):
 
 @inline_kernel
 def has_strong_friction(load, regime, scene):
-    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate."""
+    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate.
+
+    load: Load, with the inverse masses.
+    regime: Regime; only d < 0 in partial slip is concerned.
+    scene: Scene, parameters of Eq. (22).
+    """
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
     strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
     return strong and regime.sigma < 0.0 and not regime.full_slip
@@ -186,12 +244,16 @@ def has_strong_friction(load, regime, scene):
 
 @inline_kernel
 def partial_slip_rates(V, d, load, regime, scene):
-    """Evaluate the right-hand side in partial slip: Rates.
+    """Evaluate the right-hand side in partial slip, with all derivatives: Rates, by the equations of the module.
 
-    V, d: unknowns; load: Load; regime: Regime; scene: Scene.
-    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
-    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives
-    of x in V and d.
+    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L, dVdelta_star = d(V
+    delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives of x in V and d.
+
+    V: float, speed of the axis in the direction of the regime, dimensionless.
+    d: float, delta/delta_star, dimensionless.
+    load: Load, the drive.
+    regime: Regime, of partial slip.
+    scene: Scene, parameters of Eq. (22), by value.
     """
     law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
     u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
@@ -250,9 +312,12 @@ def partial_slip_rates(V, d, load, regime, scene):
 
 @inline_kernel
 def full_slip_rates(V, omega, load, regime, scene):
-    """Evaluate the right-hand side in full slip: Rates.
+    """Evaluate the right-hand side in full slip, with all derivatives: Rates with Q = +-mu, Eqs. (17), (22).
 
-    V, omega: unknowns; load: Load; regime: Regime; scene: Scene.
+    V, omega: float, the speeds in the direction of the regime, dimensionless.
+    load: Load, the drive.
+    regime: Regime, of full slip.
+    scene: Scene, parameters of Eq. (22), by value.
     """
     u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
@@ -269,7 +334,14 @@ def full_slip_rates(V, omega, load, regime, scene):
 
 @inline_kernel
 def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
-    """Evaluate the right-hand side of the regime, inlined where Newton's iteration needs it: Rates."""
+    """Evaluate the right-hand side of the regime, inlined where Newton's iteration needs it: Rates.
+
+    V: float, speed of the axis, dimensionless.
+    omega_or_d: float, second unknown, dimensionless.
+    load: Load, the drive.
+    regime: Regime, the present one.
+    scene: Scene, parameters of Eq. (22), by value.
+    """
     if regime.full_slip:
         return full_slip_rates(V, omega_or_d, load, regime, scene)
     return partial_slip_rates(V, omega_or_d, load, regime, scene)
@@ -277,19 +349,36 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
 
 @kernel
 def evaluate_rhs(state, load, regime, scene):
-    """Evaluate the right-hand side of the regime at a State, outside the innermost loop: compiled once, not inlined."""
+    """Evaluate the right-hand side of the regime outside the innermost loop, compiled once and called: Rates.
+
+    state: State, the unknowns.
+    load: Load, the drive.
+    regime: Regime, the present one.
+    scene: Scene, parameters of Eq. (22).
+    """
     return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
 
 
 @kernel
 def current_rates(state, regime, step_state, work):
-    """Return the Rates at a state and the time of the step state."""
+    """Return the Rates at a state and the time reached.
+
+    state: State, the unknowns.
+    regime: Regime, the present one.
+    step_state: StepState, with that time and its segment.
+    work: Workspace, of the motion.
+    """
     return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
 
 
 @kernel
 def rhs_and_forces_at_node(i, regime, work):
-    """Return (Rates, (force, torque, torque of the brake)) at node i, evaluated from the unknowns stored there."""
+    """Return (Rates, (force, torque of the motor, torque of the brake)) at a node, dimensionless.
+
+    i: int, the node.
+    regime: Regime, that of the step.
+    work: Workspace, with unknowns and drive at the nodes.
+    """
     state, load = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i]), load_at_node(i, regime, work)
     rates = evaluate_rhs(state, load, regime, work.scene)
     return rates, required_forces(state.V, rates.omega, rates, load, regime, work.scene.j)

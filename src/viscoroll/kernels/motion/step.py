@@ -72,17 +72,24 @@ _QUADRATIC_CONTRACTION = 10.0
 
 @inline_kernel
 def store_rhs(i, rates, nodes):
-    """Store p, p', the weighted rate and the larger speed at node i; rates: Rates there."""
+    """Store p, p', the weighted rate of the second unknown and max(|V|, |omega|) at a node.
+
+    i: int, the node.
+    rates: Rates, the right-hand side there.
+    nodes: Workspace.nodes, with V at the node.
+    """
     nodes[ROW_P_RATE + i], nodes[ROW_WEIGHTED_RATE + i] = rates.p_rate, rates.weighted_rate
     nodes[ROW_P + i], nodes[ROW_SPEED + i] = rates.p, max(abs(nodes[ROW_V + i]), abs(rates.omega))
 
 
 @inline_kernel
 def _evaluate_residuals(refactor, step, regime, work):
-    """Evaluate the right-hand side and the residuals at nodes 1 ... N.
+    """Evaluate the right-hand side and the residuals of both collocation equations at nodes 1 ... N.
 
-    refactor: whether to store also the numbers of the Newton matrices; step: Step; regime: Regime; work: Workspace
-    with the unknowns and the drive at the nodes.
+    refactor: bool, whether to store also what the Newton matrices consist of.
+    step: Step, the trial step.
+    regime: Regime, that of the step.
+    work: Workspace, with the unknowns and the drive at the nodes; rows of residuals are written.
     """
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
@@ -107,7 +114,10 @@ def _evaluate_residuals(refactor, step, regime, work):
 
 @kernel
 def _add_feedback_to_matrix(work):
-    """Add the feedback of the second unknown, F S^-1 diag(c), to the Newton matrix of p."""
+    """Add the effect of the second unknown on p', diag(F) S^-1 diag(c) of the module, to the Newton matrix of p.
+
+    work: Workspace, with S^-1 in ``d_matrix``; ``p_matrix`` is changed.
+    """
     for k in range(1, ROW_LENGTH):
         for i in range(1, ROW_LENGTH):
             feedback = work.nodes[ROW_FEEDBACK + i] * work.d_matrix[ROW_LENGTH * k + i]
@@ -116,10 +126,14 @@ def _add_feedback_to_matrix(work):
 
 @inline_kernel
 def _newton_iteration(refactor, coupled, step, regime, work):
-    """Do one Newton iteration at nodes 1 ... N and return its largest update relative to the error scales.
+    """Do one Newton iteration at nodes 1 ... N.
 
-    refactor: whether to evaluate the Newton matrices again; coupled: whether p' depends on the second unknown; step:
-    Step; regime: Regime; work: Workspace with the unknowns and the drive at the nodes.
+    refactor: bool, whether to evaluate and invert the Newton matrices again.
+    coupled: bool, whether p' depends on the second unknown.
+    step: Step, the trial step.
+    regime: Regime, that of the step.
+    work: Workspace, with the unknowns and the drive at the nodes; the unknowns are changed.
+    Returns the largest update of an unknown divided by its error scale, dimensionless; NaN if an update is.
     """
     nodes, p_matrix, d_matrix = work.nodes, work.p_matrix, work.d_matrix
     if refactor:
@@ -155,10 +169,14 @@ def _newton_iteration(refactor, coupled, step, regime, work):
 
 @inline_kernel
 def solve_step(step, relaxation, dense_step, regime, work):
-    """Solve a step from node 0 on and store its dense output; return whether Newton's iteration converged.
+    """Solve a trial step from node 0 on by a simplified Newton iteration and store its dense output.
 
-    step: Step; relaxation: rate at which the second unknown relaxes at node 0; dense_step: Step whose dense output
-    is stored on entry (for the predictor); regime: Regime; work: Workspace.
+    step: Step, the trial step.
+    relaxation: float, derivative of the slope of the second unknown in itself at node 0, per unit of tau.
+    dense_step: Step, whose dense output is stored on entry, for the predictor.
+    regime: Regime, that of the step.
+    work: Workspace, with node 0; the nodes and the dense output are written.
+    Returns whether the iteration converged within _MAX_ITERATIONS.
     """
     nodes, tolerance = work.nodes, max(ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
     stop = max(NEWTON_FRACTION * tolerance, LEAST_TOLERANCE)

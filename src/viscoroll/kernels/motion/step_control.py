@@ -59,17 +59,23 @@ _LATER_REJECTION = 0.4
 
 @inline_kernel
 def moderate_speed(scene):
-    """Return the V that divides slow from fast rolling: 1/kappa divided by the longest time of the material, or half
-    of it.
+    """Return the V that divides slow from fast rolling, dimensionless.
+
+    It is 1/kappa divided by the longest time of the material, or half of that, read off the first row of the law.
+
+    scene: Scene, parameters of Eq. (22).
     """
     return 2.0 ** (scene.law.marks[E0] + _ROWS_BELOW_LONGEST_TIME) / scene.kappa
 
 
 @kernel
 def _time_to_reach_V(V_change, step_state, regime, work):
-    """Return the time in which V rises from 0 to about ``V_change``, with V' changing linearly as the drive does.
+    """Return the time in tau in which V rises from 0 to a small value, with V' linear as the drive makes it.
 
-    step_state, regime: StepState and Regime at V = 0; work: Workspace with node 0.
+    V_change: float, that V, dimensionless.
+    step_state: StepState, at V = 0.
+    regime: Regime, there.
+    work: Workspace, with node 0.
     """
     lookahead, V_rate = _LOOKAHEAD * (segment_end(step_state.segment, work) - step_state.tau), work.nodes[ROW_V_RATE]
     load = evaluate_load(step_state.tau + lookahead, step_state.segment, regime, work)
@@ -85,10 +91,11 @@ def _time_to_reach_V(V_change, step_state, regime, work):
 
 @kernel
 def first_step_length(stick_formed, step_state, regime, work):
-    """Return the length of the first step of a regime, inf if nothing limits it.
+    """Return the length in tau of the first step of a regime; inf if nothing limits it.
 
-    stick_formed: whether the stick zone has just formed; step_state: StepState; regime: Regime; work: Workspace with
-    node 0 stored.
+    stick_formed: bool, whether the stick zone has just formed, where d' changes on the scale of the slip that is
+    left. step_state: StepState, at the start of the regime. regime: Regime, the new one. work: Workspace, with node
+    0.
     """
     nodes, scene = work.nodes, work.scene
     V, V_rate, rate = nodes[ROW_V], abs(nodes[ROW_V_RATE]), abs(nodes[ROW_WEIGHTED_RATE])
@@ -113,10 +120,14 @@ def first_step_length(stick_formed, step_state, regime, work):
 
 @inline_kernel
 def time_to_V_zero(step, state, regime, work):
-    """Return the time until V = 0 at the initial V', inf if V does not decrease; there the law has a kink.
+    """Return the time in tau until V = 0 at the initial V'; inf if V does not decrease.
 
-    step: Step; state: State at its left end; regime: Regime; work: Workspace with node 0.
-    In partial slip V only comes to 0 against the drive.
+    At V = 0 the law has a kink, which no step may contain.  In partial slip V only comes to 0 against the drive.
+
+    step: Step, the trial step.
+    state: State, at its left end.
+    regime: Regime, that of the step.
+    work: Workspace, with node 0.
     """
     V_rate = work.nodes[ROW_V_RATE]
     if not V_rate < 0.0:
@@ -132,9 +143,13 @@ def time_to_V_zero(step, state, regime, work):
 
 @inline_kernel
 def step_length_after_relaxation(step, regime, work):
-    """Return the length of the step after one along which d has relaxed: there d follows V, which changes slowly.
+    """Return the length in tau of the step after one along which d has relaxed.
 
-    step: Step that was accepted; regime: Regime; work: Workspace with its nodes.
+    Behind it d follows V, which changes slowly.
+
+    step: Step, the accepted one.
+    regime: Regime, that of the step.
+    work: Workspace, with its nodes.
     Returns 0 in full slip, or if d has not relaxed.
     """
     nodes = work.nodes
@@ -147,11 +162,15 @@ def step_length_after_relaxation(step, regime, work):
 
 @inline_kernel
 def next_step_length(step, error, n_rejected, last_h, last_error):
-    """Return the length of the step after ``step``, whose error divided by its tolerance is ``error`` (inf: Newton
-    failed).
+    """Return the length in tau of the step after a trial step, by its error.
 
-    n_rejected: rejections before it; last_h, last_error: those of the last accepted step, last_h = 0 without one.
     Behind a boundary layer errors stay small although steps grow: then they may grow faster.
+
+    step: Step, the trial step.
+    error: float, its error divided by its tolerance; inf if Newton's iteration did not converge.
+    n_rejected: int, number of rejected trial steps with the same left end before it.
+    last_h: float, length in tau of the last accepted step; 0 without one.
+    last_error: float, error of that step divided by its tolerance.
     """
     h = _NEWTON_FAILURE * step.h
     if error < 1e300:

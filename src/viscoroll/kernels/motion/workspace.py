@@ -99,51 +99,62 @@ WORKSPACE_SIZE = N_SWITCHES + 4
 
 @inline_kernel
 def change_slip(regime, full_slip, sigma):
-    """Return the Regime with full or partial slip and another ``sigma``; direction and brake stay."""
+    """Return the Regime with full or partial slip and another sigma; direction and brake stay.
+
+    regime: Regime, the present one.
+    full_slip: bool, whether the whole contact slips.
+    sigma: float, 1 or -1, sign of omega - V in full slip, of d in partial slip.
+    """
     return Regime(full_slip, regime.direction, sigma, regime.spin_sign, regime.locked)
 
 
 @inline_kernel
 def last_output_tau(work):
-    """Return tau of the last output, at which the motion ends; work: Workspace."""
+    """Return tau of the last output, at which the motion ends; work: Workspace of the motion."""
     return work.output_tau[work.output_tau.size - 1]
 
 
 @inline_kernel
 def shorten_step(step, h):
-    """Return the step with another length ``length`` in tau."""
+    """Return the Step with the same left end and the length ``h`` in tau; step: Step, the longer one."""
     return Step(step.tau, h, step.segment, step.initial_slope_known, step.undriven)
 
 
 @inline_kernel
 def node_time(step, i):
-    """Return tau at node i of the step."""
+    """Return tau at node ``i`` (0 ... N) of a step; step: Step, whose left end is node 0."""
     return step.tau + step.h * NODE_FRACTIONS[i]
 
 
 @inline_kernel
 def dense_position(tau, step):
-    """Return the position v in [0, 2] of the time tau on the step: v = 0 is its left end, v = 2 its right end."""
+    """Return the position of a time on a step, in [0, 2]: 0 at its left end, 2 at its right end, more beyond it.
+
+    tau: float, the time; times before the left end count as the left end.
+    step: Step, with a length above 0.
+    """
     return 2.0 * (max(tau - step.tau, 0.0) / step.h)
 
 
 @inline_kernel
-def count_step(h, step_state):
-    """Return the step state after one more trial step, with ``h`` as the length of the next one; 0: not known."""
-    tau, next_output, segment, n_steps, n_ended, _ = step_state
-    return StepState(tau, next_output, segment, n_steps + 1, n_ended, h)
+def set_step_length(h, n_trials, step_state):
+    """Return the StepState with another length of the next trial step.
 
-
-@inline_kernel
-def with_step_length(h, step_state):
-    """Return the step state with ``h`` as the length of the next trial step; 0: not known."""
-    tau, next_output, segment, n_steps, n_ended, _ = step_state
-    return StepState(tau, next_output, segment, n_steps, n_ended, h)
+    h: float, that length in tau; 0 if it is not chosen yet.
+    n_trials: int, number of trial steps by which the count of steps grows.
+    step_state: StepState, the present one.
+    """
+    tau, next_output, segment, n_steps, n_accepted, _ = step_state
+    return StepState(tau, next_output, segment, n_steps + n_trials, n_accepted, h)
 
 
 @inline_kernel
 def dense_state(v, nodes):
-    """Return the State at position v in [0, 2] of the step whose dense output is stored in ``nodes``."""
+    """Return the State at a position of a step by its dense output.
+
+    v: float, position in [0, 2].
+    nodes: Workspace.nodes, with node 0 and the dense output of the step.
+    """
     return State(
         nodes[ROW_V] + evaluate_dense_output(v, nodes, ROW_DENSE_V),
         nodes[ROW_OMEGA_OR_D] + evaluate_dense_output(v, nodes, ROW_DENSE_OMEGA_OR_D),
