@@ -113,7 +113,7 @@ test-site: .venv/docs site-tools ## build the site and open every page of it in 
 	$(BIN)/pytest -rs tests/evidence/test_site.py
 
 site-tools:
-	command -v chromium >/dev/null || { $(SUDO) apt-get update -qq; \
+	command -v chromium chromium-browser google-chrome >/dev/null || { $(SUDO) apt-get update -qq; \
 	  $(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends chromium >/dev/null; } \
 	  || echo "test-site: not installed: chromium"
 
@@ -131,11 +131,12 @@ torture: setup tables ## kill, flip, cut and starve files and count what goes un
 matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (about 20 minutes; PYTHONS names others)
 	$(RUN) -m pipeline.evidence.matrix
 
-release-check: setup ## sdist and wheel, metadata, the README as a package page, licences, age of the numbers; what is left to decide
+release-check: setup ## sdist and wheel, metadata, the README as a package page, licences, age of the numbers; what is left to the owner
 	$(RUN) -m pipeline.evidence.release
 
-check: setup ## ruff, mypy and the import contract
+check: setup ## ruff, mypy, the import contract, and zizmor on the workflows
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
+	$(BIN)/zizmor --offline --quiet .github
 	MYPYPATH=src $(BIN)/mypy --strict --config-file= --follow-imports=silent --cache-dir .mypy_cache/user tests/typing
 
 clean: ## remove what was built (tables, out, site, caches), keep .venv

@@ -17,7 +17,7 @@ sys.path.insert(0, str(HERE))  # gallery_images below, imported by name so that 
 from sphinx_gallery.sorting import ExplicitOrder  # noqa: E402
 
 import viscoroll  # noqa: E402
-from viscoroll.io.config import read_bodies  # noqa: E402
+from viscoroll.io.config import read_law_source  # noqa: E402
 
 warnings.simplefilter("ignore", viscoroll.ModelWarning)  # pages on the paper's example say it in words
 os.environ["VISCOROLL_QUIET"] = "1"  # no word about compiling in the output of an example
@@ -171,7 +171,7 @@ def write_law(app: Any, error: Exception | None) -> None:
     """The law that live.md computes with, as a script, for a page that is opened from a disk may not fetch."""
     if error is None:
         path = Path(app.outdir) / "_static/rubber.json"
-        viscoroll.io.tables.export(viscoroll.io.tables.law(read_bodies(HERE / "examples/rubber.toml")), path)
+        viscoroll.io.tables.export(viscoroll.io.tables.law(read_law_source(HERE / "examples/rubber.toml")), path)
         path.with_suffix(".js").write_text(f"const RUBBER = {path.read_text(encoding='utf-8')};\n", encoding="utf-8")
 
 

@@ -9,7 +9,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import pytest
 from memory import forget
 
-from viscoroll.contact_law import known
+from viscoroll.contact_law.validity import model_warnings
 from viscoroll.motion import flow_store
 
 # what a user chose for other work does not reach the tests
@@ -36,7 +36,7 @@ def pytest_sessionfinish(session):
 @pytest.fixture(autouse=True)
 def nothing_said_yet(monkeypatch):
     """What is said of a material once a process is said in each test."""
-    monkeypatch.setattr(known, "_told", set())
+    monkeypatch.setattr(model_warnings, "_warned_records", set())
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import numpy as np
 
 from viscoroll.materials import law_table
 from viscoroll.motion import flow
-from viscoroll.motion.many import Ensemble
+from viscoroll.motion.ensemble_result import Ensemble
 
 
 def forget() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from refusals import refused
 
-from viscoroll.core.blocks import cores, run_blocks, thread_count
+from viscoroll.core.blocks import available_cores, run_blocks, thread_count
 
 
 @pytest.mark.parametrize("threads", ["two", "0", "-5", "1.5"])
@@ -15,7 +15,7 @@ def test_a_number_of_threads_that_is_none(monkeypatch, threads):
     refused(thread_count, f"VISCOROLL_THREADS = '{threads}': must be a whole number >= 1")
     refused(lambda: run_blocks(lambda start, stop: None, 2, 100), "VISCOROLL_THREADS")
     monkeypatch.setenv("VISCOROLL_THREADS", "")
-    assert thread_count() == cores()
+    assert thread_count() == available_cores()
 
 
 def test_blocks_after_an_error_are_not_begun():

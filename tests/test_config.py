@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import viscoroll as vr
-from viscoroll.io.config import read_bodies, read_body
+from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.materials.file import read_materials
 
 CYLINDER = "[cylinder]\nR = 0.1\nm = 35.5\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\nmu = 0.2\n"
@@ -34,7 +34,7 @@ def test_scene(toml):
         ('preset = "paper-figures-2-3"', vr.presets.PAPER_FIGURES_2_3),
         ('preset = "paper-figures-2-3"\n[scene]\nmu = 0.3', vr.presets.PAPER_FIGURES_2_3.replace(mu=0.3)),
     ):
-        assert read_body(toml(content)).scene() == scene
+        assert read_roller(toml(content)).scene() == scene
 
 
 ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
@@ -44,12 +44,12 @@ SERIES = vr.Prony([2.0, 6.0], [1.0, 1e-4])
 
 def test_scene_of_a_series(toml):
     prony = SCENE.replace("alpha = 11", "prony = { E = [2.0, 6.0], tau = [1.0, 1e-4] }")
-    assert read_body(toml(prony)) == vr.Scene(kappa=2.91, mu=0.2, material=SERIES)
+    assert read_roller(toml(prony)) == vr.Scene(kappa=2.91, mu=0.2, material=SERIES)
     rubber = vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
     cylinder = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=rubber, load=500.0)
-    assert read_body(toml(ROLLER + "load = 500\n" + RUBBER)) == cylinder
+    assert read_roller(toml(ROLLER + "load = 500\n" + RUBBER)) == cylinder
     creep = SCENE.replace("alpha = 11", "creep = { J = [0.5], T = [1.0], alpha = 2.0 }")
-    assert read_body(toml(creep)) == vr.Scene(kappa=2.91, mu=0.2, material=vr.Prony.creep([0.5], [1.0]))
+    assert read_roller(toml(creep)) == vr.Scene(kappa=2.91, mu=0.2, material=vr.Prony.creep([0.5], [1.0]))
 
 
 def test_materials(toml):
@@ -79,10 +79,10 @@ def test_materials(toml):
 
 def test_bodies_of_a_file(toml):
     """What has a law: materials, else a scene or a cylinder."""
-    assert read_bodies(toml(RUBBER)).base is None
-    assert read_bodies(toml(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n")).base.E == 2e11
-    assert read_bodies(toml(ROLLER + RUBBER)) == read_bodies(toml(RUBBER))
-    assert read_bodies(toml(CYLINDER)).cylinder == vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
-    assert read_bodies(toml("[scene]\nalpha = 11\nkappa = 3\nmu = 0.2")) == 11.0
+    assert read_law_source(toml(RUBBER)).base is None
+    assert read_law_source(toml(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n")).base.E == 2e11
+    assert read_law_source(toml(ROLLER + RUBBER)) == read_law_source(toml(RUBBER))
+    assert read_law_source(toml(CYLINDER)).cylinder == vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
+    assert read_law_source(toml("[scene]\nalpha = 11\nkappa = 3\nmu = 0.2")) == 11.0
     series = "[scene]\nprony = { E = [1.0], tau = [0.1] }\nkappa = 3\nmu = 0.2"
-    assert read_bodies(toml(series)) == vr.Prony([1.0], [0.1])
+    assert read_law_source(toml(series)) == vr.Prony([1.0], [0.1])

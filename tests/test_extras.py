@@ -13,7 +13,7 @@ import pytest
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.core.extras import imported
+from viscoroll.core.extras import import_extra
 from viscoroll.io.runs import export_netcdf, open_run, read_run, run_ensemble
 
 RUN = """
@@ -74,7 +74,7 @@ def test_what_an_extra_itself_misses_is_not_the_extra(tmp_path, monkeypatch):
     (tmp_path / "broken_extra.py").write_text("import not_there_at_all")
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(ModuleNotFoundError, match="not_there_at_all"):
-        imported("broken_extra", "broken", "runs")
+        import_extra("broken_extra", "broken", "runs")
 
 
 # --- systems that are not POSIX ---

@@ -129,7 +129,7 @@ def test_a_full_disk(tmp_path: Path) -> None:
 def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text("as it was")
-    with pytest.raises(TypeError), files.replacing(path) as temporary:
+    with pytest.raises(TypeError), files.replace_file(path) as temporary:
         temporary.write_text("half") + "no number"
     assert path.read_text() == "as it was"
     assert list(tmp_path.iterdir()) == [path]
@@ -152,12 +152,12 @@ def test_all_is_on_disk_before_the_name_is(tmp_path: Path, monkeypatch: pytest.M
 def test_no_change_goes_unnoticed() -> None:
     """Every flipped bit breaks the seal or unmakes it; so does what is cut or added."""
     sealed = files.seal(b"some content")
-    assert files.seal_holds(sealed)
+    assert files.seal_matches(sealed)
     whole = int.from_bytes(sealed, "big")
     changed = [(whole ^ 1 << bit).to_bytes(len(sealed), "big") for bit in range(8 * len(sealed))]
     changed += [sealed[:end] for end in range(len(sealed))] + [sealed + b"\n"]
-    assert not any(map(files.seal_holds, changed))
-    assert files.seal_holds(b"some content") is None
+    assert not any(map(files.seal_matches, changed))
+    assert files.seal_matches(b"some content") is None
 
 
 # --- what is read is what was written ---
@@ -211,7 +211,7 @@ def test_damage_is_told(form: str, tmp_path: Path) -> None:
 
 RAW = {"open", "write_text", "write_bytes", "savefig", "to_netcdf", "save", "savez", "savez_compressed", "savemat",
        "savetxt", "to_csv", "to_parquet", "netcdf_file", "File", "copyfile"}  # fmt: skip
-#: composed in memory and written by ``write_bytes``, to a path that ``replacing`` gave, or to a temporary folder
+#: composed in memory and written by ``write_bytes``, to a path that ``replace_file`` gave, or to a temporary folder
 KNOWN = {
     "files.py: dataset.to_netcdf", "flow_store.py: np.savez", "export.py: h5netcdf.File", "export.py: path.open",
     "folder.py: temporary.write_bytes", "build.py: (folder / name).write_text", "output.py: frame.to_csv",
@@ -225,8 +225,8 @@ SCRATCH = (
 
 
 def calls(node: ast.AST) -> list[ast.Call]:
-    """Calls outside the body of ``with replacing(...)``."""
-    if isinstance(node, ast.With) and any("replacing(" in ast.unparse(item) for item in node.items):
+    """Calls outside the body of ``with replace_file(...)``."""
+    if isinstance(node, ast.With) and any("replace_file(" in ast.unparse(item) for item in node.items):
         return []
     found = [node] if isinstance(node, ast.Call) else []
     return found + [call for child in ast.iter_child_nodes(node) for call in calls(child)]
@@ -242,7 +242,7 @@ def writes(call: ast.Call) -> bool:
 
 
 def test_every_file_is_written_whole_or_not_at_all() -> None:
-    """Whatever writes in the package and the pipeline does so inside ``replacing``, but for what is known."""
+    """Whatever writes in the package and the pipeline does so inside ``replace_file``, but for what is known."""
     found = {
         f"{path.name}: {ast.unparse(call.func)}"
         for folder in ("src/viscoroll", "pipeline") for path in (ROOT / folder).rglob("*.py")

@@ -24,7 +24,7 @@ from processes import printed
 
 import viscoroll as vr
 from viscoroll.motion import flow_store
-from viscoroll.motion.batch import FIELDS
+from viscoroll.motion.ensemble import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

@@ -14,7 +14,7 @@ from places import ROOT
 
 import viscoroll as vr
 from viscoroll.core.files import write_dataset
-from viscoroll.motion.batch import FIELDS
+from viscoroll.motion.ensemble import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from viscoroll.contact_law import known
+from viscoroll.contact_law.validity import model_warnings
 
 ONE = vr.Scene(11.0, 10.0, 0.5, 120.0)
 UNLIKE = ROLLER.replace(material=vr.Bodies(DMA, vr.Prony([4.0], [3e-3]), 0.3))
@@ -144,5 +144,5 @@ def test_a_program_is_told_once_a_line():
 
 
 def test_workers_are_quiet(monkeypatch):
-    monkeypatch.setattr(known, "is_worker", lambda: True)
+    monkeypatch.setattr(model_warnings, "is_worker", lambda: True)
     vr.roll(ROLLER, 3.0, 3.0, 1.0)  # warnings are errors here

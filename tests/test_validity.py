@@ -8,7 +8,7 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.contact_law.assumptions import REACH_LIMIT, WAVE_LIMIT, coupling
+from viscoroll.contact_law.validity.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
 
 SCENE = vr.presets.PAPER_SECTION_5
 V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])
@@ -90,9 +90,9 @@ def test_dundurs_constant_at_its_ends():
 
 def test_bodies_assumption():
     found = pair(vr.Material.elastic(1e6, 0.3), STEEL)
-    assert coupling(*found.pair.dundurs, like=False).value == found.pair.dundurs[0]
+    assert assess_coupling(*found.pair.dundurs, like=False).value == found.pair.dundurs[0]
     assert not found.validity(1.0).bodies.holds
-    assert vr.presets.PAPER_CYLINDER.validity(1.0).bodies == coupling(0.0, 0.0, like=True)
+    assert vr.presets.PAPER_CYLINDER.validity(1.0).bodies == assess_coupling(0.0, 0.0, like=True)
 
 
 def test_waves_of_a_pair():

@@ -287,7 +287,7 @@ STEADY_GRIP = 1e-14
 #: What goes in and what is lost, where force and torque nearly cancel; measured 2e-13.
 STEADY_POWER = 1e-11
 
-# --- contact_law/steadiness.py (test_steadiness.py) ---
+# --- contact_law/validity/steadiness.py (test_steadiness.py) ---
 #: N, M and their integrals by splines over sixteenths of octaves, against quadrature of the law itself.
 STEADINESS = 1e-6
 #: |N| (kappa V)^2 over 1 - 1/alpha: 1.3418/16 was found at most, of one mode and alpha near 100.

@@ -2,16 +2,18 @@
 
 python -m pipeline.evidence.release
 
-Builds both packages, without a network, and says of each check whether it holds.  What only a person can decide, the
-repository's address say, is listed as open.  Exit code 1 if a check fails.
+Builds both packages, without a network, and prints each check that fails, with the reason, and each entry of
+OWNER.toml that is open: the entries that only the owner of the project can fill in.  Exit code 1 if a check fails.
 """
 
 from __future__ import annotations
 
+import datetime
 import re
 import sys
 import tarfile
 import tempfile
+import tomllib
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -30,11 +32,11 @@ from .stamps import SHORT, kernels_digest, outdated
 #: data that others made: their files need a licence beside them in the sdist
 MATERIALS = "data/materials/"
 #: of the wheel, and of the sdist beside those
-SHIPPED = (".py", ".pyi", ".npy", ".h", ".c", "py.typed")
+SHIPPED = (".py", ".pyi", ".npy", ".h", ".c", ".csv", "py.typed")
 LARGEST = 4_000_000
 #: marks of the machine that built, and what never ships
 FOREIGN = re.compile(r"(^|/)(__pycache__|_build|\.venv|\.git|out|data/tables)(/|$)|\.pyc$")
-_LINK = re.compile(r"\]\((?!https?:|#|mailto:)([^)\s]+)\)")
+_DATE = re.compile(r'^date-released: "(\d{4}-\d\d-\d\d)"$', re.MULTILINE)
 
 
 class Packages(NamedTuple):
@@ -68,10 +70,13 @@ def metadata(packages: Packages) -> Iterator[str]:
     found = packages.metadata
     if str(found.version) != vr.__version__:
         yield f"the metadata say version {found.version}, the package {vr.__version__}"
-    if f"version: {vr.__version__}\n" not in packages.texts.get("CITATION.cff", ""):
+    citation = packages.texts.get("CITATION.cff", "")
+    if f"version: {vr.__version__}\n" not in citation:
         yield f"CITATION.cff does not name version {vr.__version__}"
-    if f"## {vr.__version__}" not in packages.texts.get("CHANGELOG.md", ""):
-        yield f"the CHANGELOG has no section {vr.__version__}"
+    if (date := _DATE.search(citation)) is None or datetime.date.fromisoformat(date[1]) > datetime.date.today():
+        yield "CITATION.cff has no date-released, or one to come"
+    if f"\n## {vr.__version__}\n" not in packages.texts.get("CHANGELOG.md", ""):
+        yield f"the CHANGELOG has no section {vr.__version__}, or not as released"
     if found.license_expression != "BSD-3-Clause" or not found.summary or not found.description:
         yield "licence expression, summary or description is missing"
 
@@ -116,17 +121,12 @@ def numbers(packages: Packages) -> Iterator[str]:
         yield f"of other kernels than these, {kernels_digest()[:SHORT]}, in data/results: {files}"
 
 
-def undecided(packages: Packages) -> Iterator[str]:
-    """What only a person can decide."""
-    if not (packages.metadata.project_urls or {}).get("Repository"):
-        links = sorted(set(_LINK.findall(packages.metadata.description or "")))
-        yield (
-            f"the repository has no address ([project.urls] in pyproject.toml): {len(links)} links and pictures of "
-            "the README lead nowhere on a package page"
-        )
-    unreleased = packages.texts["CHANGELOG.md"].partition("## Unreleased")[2].partition("\n## ")[0]
-    if unreleased.strip():
-        yield "the CHANGELOG has an unreleased section: give it the version and set __version__ and CITATION.cff"
+def left_to_the_owner() -> Iterator[str]:
+    """Entries of OWNER.toml that are open: their file lacks the text, or they are no text of a file."""
+    for entry in tomllib.loads((ROOT / "OWNER.toml").read_text(encoding="utf-8"))["open"]:
+        pattern = entry.get("has")
+        if pattern is None or not re.search(pattern, (ROOT / entry["file"]).read_text(encoding="utf-8"), re.MULTILINE):
+            yield f"{entry['what']} ({entry['file']})"
 
 
 CHECKS = {
@@ -142,12 +142,9 @@ def main() -> int:
     said(__doc__).parse_args()
     with tempfile.TemporaryDirectory(prefix="viscoroll-release-") as folder:
         packages = built(Path(folder))
-    problems = {name: list(check(packages)) for name, check in CHECKS.items()}
-    for name, found in problems.items():
-        print(f"{name}: " + ("; ".join(found) or "as it should be"))
-    for text in undecided(packages):
-        print(f"open: {text}")
-    return int(any(problems.values()))
+    problems = [f"{name}: {problem}" for name, check in CHECKS.items() for problem in check(packages)]
+    print("\n".join([*problems, *(f"owner: {entry}" for entry in left_to_the_owner())]))
+    return int(bool(problems))
 
 
 if __name__ == "__main__":

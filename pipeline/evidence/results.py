@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.core.blocks import cores
+from viscoroll.core.blocks import available_cores
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_text
 
@@ -172,7 +172,7 @@ def machine() -> dict[str, Any]:
         cpu = platform.processor() or platform.machine()
     return {
         "cpu": cpu,
-        "cores": cores(),
+        "cores": available_cores(),
         "system": platform.system(),
         "python": platform.python_version(),
         "numpy": np.__version__,

@@ -8,7 +8,7 @@ import numpy as np
 
 from viscoroll.contact_law.contact import contact
 from viscoroll.contact_law.stress import stress
-from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
+from viscoroll.core.plots.style import LINES, THIN, axis_label, new_figure
 from viscoroll.scene import Scene
 
 if TYPE_CHECKING:
@@ -53,9 +53,9 @@ def _body(axes: Any) -> None:
     axes.plot(0.0, _HEIGHT, "o", color="black", markersize=4)
     axes.plot(x[:-3], y[:-3], color="black", linewidth=1.3)
     axes.plot([0.0, np.cos(down)], [_HEIGHT, _HEIGHT + np.sin(down)], color="0.5", linewidth=0.8)
-    _arrow(axes, (0.0, _HEIGHT), (1.45, _HEIGHT), labelled("V"))
+    _arrow(axes, (0.0, _HEIGHT), (1.45, _HEIGHT), axis_label("V"))
     _arrow(axes, (0.0, 2.45), (0.0, 2.0), "load $P$")
-    _arrow(axes, (x[-4], y[-4]), (x[-1], y[-1]), labelled("omega"))
+    _arrow(axes, (x[-4], y[-4]), (x[-1], y[-1]), axis_label("omega"))
     _arrow(axes, (half + 0.12, -0.17), (half + 0.75, -0.17), "$QP$", zorder=6)
     axes.annotate("$R$", (0.5 * np.cos(down), _HEIGHT + 0.5 * np.sin(down)), (-3, 5), **_TEXT)
     axes.annotate("contact", (0.0, 0.0), (0, -16), textcoords="offset points", ha="center", zorder=5)
@@ -72,14 +72,14 @@ def _contact(axes: Any, scene: Scene, V: float, delta: float) -> None:
     top, edge, middle = float(s.p.max()), front - c.beta * c.lam, 0.5 * (rear + front)
     axes.axvspan(edge, front, color="0.92", linewidth=0.0)
     axes.plot(x, s.p / top, label="pressure $p$", **LINES[0])
-    axes.plot(x, scene.mu * s.p / top, label=rf"{labelled('mu')} $p$", **LINES[1])
+    axes.plot(x, scene.mu * s.p / top, label=rf"{axis_label('mu')} $p$", **LINES[1])
     axes.plot(x, s.tau / top, label=r"shear $\tau$", **LINES[2])
     axes.axvline(0.0, **THIN | {"linestyle": "--"})
     axes.annotate("below the axis", (0.0, 1.3), (-4, 0), textcoords="offset points", ha="right", fontsize="small")
     for n, (low, high, text) in enumerate((
-        (rear, front, f"{labelled('lam')} $l_0$: contact"),
-        (edge, front, f"{labelled('beta')} {labelled('lam')} $l_0$: stick"),
-        (0.0, middle, f"{labelled('epsilon')} {labelled('lam')} $l_0/2$: shift"),
+        (rear, front, f"{axis_label('lam')} $l_0$: contact"),
+        (edge, front, f"{axis_label('beta')} {axis_label('lam')} $l_0$: stick"),
+        (0.0, middle, f"{axis_label('epsilon')} {axis_label('lam')} $l_0/2$: shift"),
     )):  # fmt: skip
         height = -0.12 - 0.2 * n
         axes.annotate("", (high, height), (low, height), arrowprops=_SPAN)

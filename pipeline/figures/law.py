@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from viscoroll.contact_law.contact import contact
-from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
+from viscoroll.core.plots.style import LINES, THIN, axis_label, new_figure
 from viscoroll.presets import PAPER_FIGURES_2_3, RUBBER_CYLINDER
 
 from .title import describe, scaled
@@ -26,8 +26,8 @@ def figure_2() -> Figure:
     figure, axes = new_figure(f"Critical creep ratio, Eq. (9), for {describe(scene, 'mu', 'kappa')}")
     for alpha, line in zip((1.0, 1.5, 21.5, 81.5), LINES, strict=True):
         star = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="delta_star").delta_star
-        axes.plot(V, 1e3 * star, label=rf"{labelled('alpha')} = {alpha:g}", **line)
-    axes.set(xlabel=labelled("V"), ylabel=r"$\delta^*_\alpha\times 10^3$", xlim=(0.0, _MOST_SPEED), ylim=(0.0, None))
+        axes.plot(V, 1e3 * star, label=rf"{axis_label('alpha')} = {alpha:g}", **line)
+    axes.set(xlabel=axis_label("V"), ylabel=r"$\delta^*_\alpha\times 10^3$", xlim=(0.0, _MOST_SPEED), ylim=(0.0, None))
     axes.legend(frameon=False)
     return figure
 
@@ -40,12 +40,12 @@ def figure_3() -> Figure:
     delta, V = np.linspace(-_MOST_CREEP, _MOST_CREEP, 801), np.linspace(-_MOST_SPEED, _MOST_SPEED, 801)
     for speed, line in zip((0.1, 0.2, 0.4), LINES, strict=False):
         Q = contact(scene, speed, delta=delta, fields="Q").Q
-        left.plot(1e3 * delta, Q, label=f"{labelled('V')} = {speed:g}", **line)
+        left.plot(1e3 * delta, Q, label=f"{axis_label('V')} = {speed:g}", **line)
     for alpha, line in zip((1.5, 21.5, 81.5), LINES, strict=False):
         M = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="M").M
-        right.plot(V, 1e3 * M, label=f"{labelled('alpha')} = {alpha:g}", **line)
-    left.set(xlabel=scaled("delta", 3), ylabel=labelled("Q"), title=f"a) {describe(scene, 'alpha')}")
-    right.set(xlabel=labelled("V"), ylabel=scaled("M", 3), title=f"b) any {labelled('delta')}")
+        right.plot(V, 1e3 * M, label=f"{axis_label('alpha')} = {alpha:g}", **line)
+    left.set(xlabel=scaled("delta", 3), ylabel=axis_label("Q"), title=f"a) {describe(scene, 'alpha')}")
+    right.set(xlabel=axis_label("V"), ylabel=scaled("M", 3), title=f"b) any {axis_label('delta')}")
     for axes in (left, right):
         axes.axhline(0.0, **THIN)
         axes.axvline(0.0, **THIN)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from viscoroll.motion.single import roll
 
 from viscoroll.contact_law.stress import stress
-from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
-from viscoroll.motion.single import roll
+from viscoroll.core.plots.style import LINES, THIN, axis_label, new_figure
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 
 from .title import describe, number
@@ -39,8 +39,8 @@ def figure_7() -> Figure:
         axes.plot(x, 1e3 * scene.mu * found.p, label=r"$\mu p/E'$", **LINES[1])
         axes.axvline(front - state.lam[n] * state.beta[n], **THIN, label="slip | stick")
         axes.axvline(0.0, color="0.7", linewidth=0.6, linestyle=":")
-        text = f"{labelled('delta')} = ${number(motion.delta[n], 2)}$, {labelled('beta')} = {state.beta[n]:.3f}"
-        axes.set_title(rf"{labelled('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
+        text = f"{axis_label('delta')} = ${number(motion.delta[n], 2)}$, {axis_label('beta')} = {state.beta[n]:.3f}"
+        axes.set_title(rf"{axis_label('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
     for axes in panels[1]:
         axes.set_xlabel("$x/l_0$")
     for axes in panels[:, 0]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from viscoroll.io.tables.check import Check
-from viscoroll.motion.single import roll
+from viscoroll.motion.roll import roll
 from viscoroll.presets import PAPER_SECTION_5_ROUNDED, PAPER_STARTS
 from viscoroll.scene import Scene
 

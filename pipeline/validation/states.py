@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from viscoroll.contact_law.contact import Values, contact
 from viscoroll.io.tables.check import Check
-from viscoroll.motion.single import roll
+from viscoroll.motion.roll import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_SECTION_5_ROUNDED, PAPER_STARTS
 from viscoroll.scene import Scene
 

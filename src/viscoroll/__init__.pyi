@@ -13,15 +13,15 @@ from .app.identification import Coastdown as Coastdown
 from .app.identification import Resistance as Resistance
 from .app.identification import Traction as Traction
 from .app.identification import identify as identify
-from .contact_law.assumptions import Validity as Validity
-from .contact_law.bound import Law as Law
-from .contact_law.bound import law as law
 from .contact_law.contact import contact as contact
 from .contact_law.equilibria.resistance import resistance_extrema as resistance_extrema
 from .contact_law.equilibria.result import Steady as Steady
 from .contact_law.equilibria.steady import steady as steady
-from .contact_law.judged import validity as validity
+from .contact_law.law import Law as Law
+from .contact_law.law import law as law
 from .contact_law.stress import stress as stress
+from .contact_law.validity.assumptions import Validity as Validity
+from .contact_law.validity.validity import validity as validity
 from .core.drive import Feedback as Feedback
 from .core.drive import Schedule as Schedule
 from .core.errors import ConvergenceError as ConvergenceError
@@ -44,10 +44,10 @@ from .materials.measured import Measured as Measured
 from .materials.prony import Prony as Prony
 from .materials.shift import WLF as WLF
 from .materials.shift import Arrhenius as Arrhenius
-from .motion.batch import ensemble as ensemble
-from .motion.many import Ensemble as Ensemble
-from .motion.one import Motion as Motion
-from .motion.single import roll as roll
+from .motion.ensemble import ensemble as ensemble
+from .motion.ensemble_result import Ensemble as Ensemble
+from .motion.motion_result import Motion as Motion
+from .motion.roll import roll as roll
 from .scene import Scene as Scene
 
 __version__: str

@@ -1,4 +1,4 @@
-"""``python -m viscoroll``."""
+"""The command line as ``python -m viscoroll``."""
 
 from .app.cli import main
 

@@ -1,4 +1,4 @@
-"""What rolls, in SI units: :class:`Cylinder`."""
+"""A roller in SI units: :class:`Cylinder`."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contact_law.assumptions import WAVE_LIMIT, Validity
-from .contact_law.known import Known, say
-from .core.checks import broadcast_shape, checked, frozen, one_name
-from .core.drive import slope_factor
-from .core.errors import ParameterError, one_of
-from .core.results import Row, Shown, short
+from .contact_law.validity.cylinder import BodyData
+from .core.checks import broadcast_shape, check_array, check_choice, read_only
+from .core.drive import slope_tan_cos
+from .core.errors import ParameterError, exactly_one_error
+from .core.results import Result, SummaryRow, format_value
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
 from .materials.law_table import LawTable
@@ -24,10 +23,13 @@ from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
 from .scene import Methods, Scene
 
-#: thicknesses over l0 this near, relative, are one
+#: Largest relative difference of two thicknesses divided by l0 that count as the same.
 _SAME_THICKNESS = 1e-9
-_SOLID = ("E", "nu", "T_epsilon", "T_sigma")
-_NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
+#: Names of the parameters of the paper's material.
+_SLS = ("E", "nu", "T_epsilon", "T_sigma")
+#: Names of the fields that are numbers.
+_NUMBERS = ("R", "m", *_SLS, "mu", "j", "g", "pressed")
+#: Units of the fields.
 UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
 
 
@@ -89,64 +91,64 @@ class Cylinder(Methods):
         material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
     ) -> None:  # fmt: skip
-        given: dict[str, Any] = {
+        """Check and freeze the parameters, which the class describes.
+
+        R, m, E, nu, T_epsilon, T_sigma, mu, j, g, plane, material, base, load: as of the class.
+        pressed: field of ``load``, for :func:`dataclasses.replace`.
+        Raises ParameterError as the class says.
+        """
+        values: dict[str, Any] = {
             "R": R, "m": m, "E": E, "nu": nu, "T_epsilon": T_epsilon, "T_sigma": T_sigma, "mu": mu, "j": j, "g": g,
             "plane": plane, "material": material, "base": base, "pressed": pressed if load is None else load,
         }  # fmt: skip
-        solid = [name for name in _SOLID if given[name] is not None]
+        missing = ", ".join(name for name in _SLS if values[name] is None)
+        solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
-            raise one_of("material", ", ".join(solid), both=True)
-        if material is None and len(solid) < len(_SOLID):
-            missing = ", ".join(name for name in _SOLID if name not in solid)
+            raise exactly_one_error("material", solid, both=True)
+        if material is None and missing:
             sentence = f"give material=, or all of E, nu, T_epsilon and T_sigma: {missing} not given"
             raise ParameterError(missing, None, "given, or material", sentence)
-        for name in ("R", "m", "mu", "j", "g", *(() if material is not None else _SOLID)):
+        optional = (*_SLS, "pressed")
+        numbers = [name for name in _NUMBERS if values[name] is not None or name not in optional]
+        for name in numbers:
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
-            given[name] = frozen(checked(name, given[name], unit=SI, low=low, strict=True, high=high))
-        if given["pressed"] is not None:
-            given["pressed"] = frozen(checked("load", given["pressed"], unit=SI, low=0.0, strict=True))
-        numbers = {name: given[name] for name in _NUMBERS if given[name] is not None}
-        broadcast_shape(**{name: np.asarray(value) for name, value in numbers.items()})
-        one_name("plane", plane, "strain", "stress")
-        for name, value in given.items():
+            called = "load" if name == "pressed" else name
+            values[name] = read_only(check_array(called, values[name], unit=SI, low=low, strict=True, high=high))
+        broadcast_shape(**{name: np.asarray(values[name]) for name in numbers})
+        check_choice("plane", plane, "strain", "stress")
+        for name, value in values.items():
             object.__setattr__(self, name, value)
         if material is None:
-            if np.ndim(given["T_epsilon"]) > 1:
-                raise ParameterError("T_epsilon", f"of shape {given['T_epsilon'].shape}", "a number or a vector (n,)")
-            refuse_short_retardation(given["T_epsilon"], given["T_sigma"])
+            if np.ndim(values["T_epsilon"]) > 1:
+                raise ParameterError("T_epsilon", f"of shape {values['T_epsilon'].shape}", "a number or a vector (n,)")
+            refuse_short_retardation(values["T_epsilon"], values["T_sigma"])
         if material is not None or base is not None:
             _ = self.pair  # refuses what the materials do not allow
 
     @property
-    def _papers(self) -> bool:
+    def _sls_parameters(self) -> bool:
         """Whether both bodies are of the paper's material, by its own parameters."""
         return self.material is None and (self.base is None or self.pair.like)
 
     @cached_property
     def pair(self) -> Pair:
-        """Both materials."""
-        if isinstance(self.material, LawTable):
-            return self._pair_of_law(self.material)
-        if self.material is not None:
-            return Pair(self.material, self.base, self.plane)
-        solid: dict[str, Any] = {name: getattr(self, name) for name in _SOLID}
-        return Pair(Material.sls(**solid), self.base, self.plane)
-
-    def _pair_of_law(self, law: LawTable) -> Pair:
-        """The bodies of a law; raises ParameterError where it has none in SI units, or they are not those given."""
-        pair = law.pair
-        if pair is None:
+        """Both materials; raises ParameterError where they do not go together."""
+        law = self.material
+        if not isinstance(law, LawTable):
+            sls: dict[str, Any] = {name: getattr(self, name) for name in _SLS}
+            return Pair(Material.sls(**sls) if law is None else law, self.base, self.plane)
+        if law.pair is None:
             raise ParameterError("material", "a law without units", "the law of a Material, in SI units")
         if self.base is not None:
-            raise ParameterError("base", "given", "left out: the law knows its bodies")
-        if self.plane != pair.plane and not pair.like:
-            raise ParameterError("plane", repr(self.plane), f"{pair.plane!r}, as of the law")
-        return Pair(pair.cylinder, pair.base, self.plane)
+            raise ParameterError("base", "given", "left out: the law contains both bodies")
+        if self.plane != law.pair.plane and not law.pair.like:
+            raise ParameterError("plane", repr(self.plane), f"{law.pair.plane!r}, as of the law")
+        return Pair(law.pair.cylinder, law.pair.base, self.plane)
 
     @property
     def T_ref(self) -> float:
         """What dimensionless times are counted in, s: T_epsilon, or T_ref of the materials."""
-        if self.T_epsilon is None or not self._papers:
+        if self.T_epsilon is None or not self._sls_parameters:
             return self.pair.T_ref
         return float(np.max(self.T_epsilon, initial=0.0)) if np.ndim(self.T_epsilon) else self.T_epsilon
 
@@ -155,32 +157,34 @@ class Cylinder(Methods):
 
         A load that was given stays; ``load=None`` makes it the weight again.
         """
-        given = {name: getattr(self, name) for name in (*_NUMBERS, "plane", "material", "base")}
-        given["load"] = given.pop("pressed")
+        values = {name: getattr(self, name) for name in (*_NUMBERS, "plane", "material", "base")}
+        values["load"] = values.pop("pressed")
         if changes.get("material") is not None:
-            given |= dict.fromkeys(_SOLID)
-        elif changes.keys() & set(_SOLID):
-            given["material"] = None
-        return Cylinder(**(given | changes))
+            values |= dict.fromkeys(_SLS)
+        elif changes.keys() & set(_SLS):
+            values["material"] = None
+        return Cylinder(**(values | changes))
 
     @property
     def numbers(self) -> dict[str, Any]:
         """What was given in numbers, by name."""
-        given = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
-        return {name: value for name, value in given.items() if value is not None}
+        values = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
+        return {name: value for name, value in values.items() if value is not None}
 
-    def tilted(self, slope: Any) -> Cylinder:
-        return self.replace(load=self.load * slope_factor(slope)[1])
+    def on_slope(self, slope: Any) -> Cylinder:
+        """Return the same cylinder under the load P cos(slope); ``slope`` in rad."""
+        return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
-    def _card(self) -> tuple[str, list[Row]]:
-        given = self.numbers | {"load": self.load, "plane": self.plane}
-        rows = [Row(name, short(value), UNITS.get(name, "")) for name, value in given.items()]
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Title and rows of the printed report."""
+        values = self.numbers | {"load": self.load, "plane": self.plane}
+        rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in values.items()]
         for name in ("material", "base"):
             if (body := getattr(self, name)) is not None:
-                rows.append(Row(name, getattr(body, "name", "") or repr(body)))
+                rows.append(SummaryRow(name, getattr(body, "name", "") or repr(body)))
         return "Cylinder, SI units, per m of length", rows
 
-    __repr__, _repr_html_ = Shown.__repr__, Shown._repr_html_
+    __repr__, _repr_html_ = Result.__repr__, Result._repr_html_
 
     @property
     def load(self) -> Any:
@@ -193,7 +197,7 @@ class Cylinder(Methods):
 
         Of two bodies 2/(1/E'_1 + 1/E'_2).
         """
-        return effective_modulus(self.E, self.nu, self.plane) if self._papers else self.pair.E_prime
+        return effective_modulus(self.E, self.nu, self.plane) if self._sls_parameters else self.pair.E_prime
 
     @property
     def l0(self) -> Any:
@@ -202,7 +206,7 @@ class Cylinder(Methods):
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        """What 1 of each quantity of the scene is, in SI units: ``scale["V"]`` in m/s."""
+        """1 of each quantity of the scene, in SI units: ``scale["V"]`` in m/s."""
         return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
 
     def scene(self) -> Scene:
@@ -211,11 +215,12 @@ class Cylinder(Methods):
 
     @cached_property
     def _scene(self) -> Scene:
+        """The scene, which is computed once; raises ParameterError for a law of another load."""
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and law.cover is not None:
             self._refuse_other_load(law)
-        if self._papers:
-            slow, fast = (np.asarray(each, np.float64) for each in (self.T_epsilon, self.T_sigma))
+        if self._sls_parameters:
+            slow, fast = (np.asarray(T, np.float64) for T in (self.T_epsilon, self.T_sigma))
             with np.errstate(all="ignore"):
                 law = (slow / fast)[()]
             if slow.ndim:
@@ -226,71 +231,46 @@ class Cylinder(Methods):
         return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
 
     def _refuse_other_load(self, law: LawTable) -> None:
-        """Raise ParameterError where the law of a layer is that of another l0."""
-        given: Any = law.material
+        """Raise ParameterError where the ``law`` of a layer is that of another l0."""
+        cover: Any = law.material
         own = self.pair.cover(self.l0)
-        if own.shape or abs(own.thickness / given.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"the law of a layer of {given.thickness:.6g} l0"
-            raise ParameterError("material", found, f"that of {short(own.thickness)} l0, as the load and R have it")
+        if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
+            found = f"the law of a layer of {cover.thickness:.6g} l0"
+            raise ParameterError("material", found, f"that of {format_value(own.thickness)} l0, which load and R give")
 
     @cached_property
-    def _known(self) -> Known:
-        pair, G = (None, self.E / (2.0 * (1.0 + self.nu))) if self._papers else (self.pair, None)
-        return Known(pair, G, self.R, self.l0, self.T_ref, self._scene)
-
-    def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
-        return self._known.judge(found, lam, V, omega, density, self.plane)
-
-    @property
-    def watched(self) -> bool:
-        return self._known.silent is not None
-
-    def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
-        """Warn where the contact at a speed of V, m/s, is longer than the radius or than a layer allows, or asks for
-        frequencies that the data of a body do not hold.
-        """
-        if V is not None and self._known.silent is not None:
-            self._known.look(V, extent)
-
-    def look_at_starts(self, V0: Any, omega0: Any) -> None:
-        """Warn of starts beyond the speed of shear waves, where a density is known."""
-        if self._known.wave_speed is None:
-            return
-        V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))
-        if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._known.wave_speed:
-            fault = f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"
-            say([fault], "motion", "validity() of cylinder or result")
-
-    def look_at_motion(self, V0: Any, V: Any) -> None:
-        """Warn where the fastest speed of a motion, or of each, asks for frequencies that the data do not hold, or its
-        contact is longer than a layer allows.
-        """
-        if self._known.silent is not None:
-            fastest = np.abs(0.0 if V0 is None else V0)
-            self._known.look(
-                fastest if V is None else np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1)), None, motion=True
-            )
+    def body_data(self) -> BodyData:
+        """Data of the bodies in SI units, from which validity and warnings are computed."""
+        pair, G = (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
+        return BodyData(pair, G, self.R, self.l0, self.T_ref, self.plane, self._scene)
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]
-        """Between which speeds the materials were measured, for datasets."""
-        held = self._known.held
-        return {} if held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in held]}
+        """Attributes of datasets: the speeds between which the materials were measured, m/s."""
+        rates = self.body_data.measured_rates
+        return {} if rates is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in rates]}
 
 
 def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
-    """l0 of Sect. 3.1, m."""
+    """Return l0 of Sect. 3.1, m, of a radius, m, a load, N/m, and a contact modulus, Pa."""
     return np.sqrt(32.0 * R * load / E_prime)
 
 
 def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: Any, j: Any) -> Scene:
-    """The scene of a :class:`Cylinder`, or of many: numbers or arrays, unchecked.
+    """Return the scene of one cylinder or of many; the arguments are numbers or arrays, unchecked.
 
-    ``law`` : alpha, one or one each, or what a scene takes for its material, with times over ``T_ref``.
+    R: radius, m.
+    m: mass per length, kg/m.
+    load: N/m.
+    E_prime: contact modulus, Pa.
+    T_ref: unit of time, s.
+    law: alpha, one or one for each, or a material of a scene, with times divided by ``T_ref``.
+    mu, j: friction and moment of inertia, dimensionless.
+    Raises ParameterError by the names of the scene's parameters.
     """
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
     with np.errstate(all="ignore"):
         kappa, gamma = R / contact_length(R, load, E_prime), load * T**2 / (m * R)
-    of = "alpha" if isinstance(law, float | np.ndarray) else "material"
-    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{of: law})
+    material = "alpha" if isinstance(law, float | np.ndarray) else "material"
+    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{material: law})

@@ -1,4 +1,4 @@
-"""Scenes by name: what the paper computes, with its cylinder and its starts, and a rubber roller beside it."""
+"""Scenes by name: the cylinder, the scenes and the starts of the paper, and a rubber roller."""
 
 from __future__ import annotations
 
@@ -12,22 +12,25 @@ __all__ = [
     "RUBBER_CYLINDER", "RUBBER_ROLLER",
 ]  # fmt: skip
 
-#: Sect. 5 as it was computed: from the dimensional list of Sect. 4 with g = 9.81 m/s^2 and
-#: mu = 0.2.  Gives alpha = 11.031, kappa = 2.9210, gamma = 11231 and the paper's numbers.
+#: Cylinder of Sect. 5 as computed in the paper: from the dimensional list of Sect. 4 with g = 9.81 m/s^2 and
+#: mu = 0.2, SI units.  Gives alpha = 11.031, kappa = 2.9210, gamma = 11231 and the paper's numbers.
 PAPER_CYLINDER = Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+#: Its dimensionless scene.
 PAPER_SECTION_5 = PAPER_CYLINDER.scene()
 #: The rounded parameters printed at the end of Sect. 4; stick onset of IC1 moves 2 % later.
 PAPER_SECTION_5_ROUNDED = Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4, j=0.5)
 #: Figs. 2 and 3 use kappa = 29.1, ten times that of Sects. 4-5; alpha is varied there
 #: (1, 1.5, 21.5, 81.5 in Figs. 2 and 3b, 11 in Fig. 3a).
 PAPER_FIGURES_2_3 = Scene(alpha=11.0, kappa=29.1, mu=0.2, gamma=1.1e4, j=0.5)
-#: The paper's cylinder of a rubber with short times, so that the law of steady rolling may drive its motion at any
-#: speed (:meth:`Scene.validity`).  T_ref is 1 s: V is the speed in radii a second.
+#: The paper's cylinder made of a rubber with short times, so that the law of steady rolling may drive its motion at
+#: any speed (:meth:`Scene.validity`).  T_ref is 1 s: V is the speed in radii a second.
 RUBBER_CYLINDER = Cylinder(
     R=0.1, m=35.5, mu=0.3,
     material=Material(3e6, 0.5, Prony([0.3, 0.6, 1.5], [2e-2, 1e-3, 1e-5]), name="rubber", density=1130.0),
 )  # fmt: skip
+#: Its dimensionless scene.
 RUBBER_ROLLER = RUBBER_CYLINDER.scene()
+#: Scenes by the names of the command line.
 PRESETS = {
     "paper-section-5": PAPER_SECTION_5,
     "paper-section-5-rounded": PAPER_SECTION_5_ROUNDED,

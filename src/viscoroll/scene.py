@@ -1,20 +1,20 @@
-"""What rolls, dimensionless: :class:`Scene`; and what it and a cylinder can do, :class:`Methods`."""
+"""A dimensionless roller, :class:`Scene`, and the methods that it shares with a cylinder, :class:`Methods`."""
 
 from __future__ import annotations
 
-from .contact_law.bound import law
 from .contact_law.contact import contact
 from .contact_law.equilibria.resistance import ResistanceExtrema, resistance_extrema
 from .contact_law.equilibria.steady import steady
-from .contact_law.judged import validity
-from .contact_law.parameters import Parameters, Rolls
+from .contact_law.law import law
+from .contact_law.parameters import Parameters, Roller
 from .contact_law.stress import stress
+from .contact_law.validity.validity import validity
 from .core.renamed import warn_renamed
-from .motion.batch import ensemble
-from .motion.single import roll
+from .motion.ensemble import ensemble
+from .motion.roll import roll
 
 
-class Methods(Rolls):
+class Methods(Roller):
     """The functions of the package as methods: ``vr.contact(roller, V, ...)`` is ``roller.contact(V, ...)``."""
 
     contact = contact
@@ -42,9 +42,9 @@ class Scene(Methods, Parameters):
     alpha : T_epsilon/T_sigma, retardation over relaxation time, >= 1 (1: elastic) and <= 1e12;
         the unit of time is T_epsilon.
     kappa : R/l0 = sqrt(E' R/(32 P)), radius over contact length at rest, > 0;
-        the half-space theory asks for kappa >> 1.
+        the half-space theory requires kappa >> 1.
     mu : coefficient of friction, > 0.
-    gamma : P T_epsilon^2/(m R), > 0; only scales time.  What moves needs it: roll and ensemble.
+    gamma : P T_epsilon^2/(m R), > 0; only scales time.  Motions need it: roll and ensemble.
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
     material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
@@ -56,4 +56,11 @@ class Scene(Methods, Parameters):
     ParameterError
         Where a value is not finite or out of range, the shapes do not broadcast, or both or neither of
         ``alpha`` and ``material`` are given.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3)
+    >>> bool(scene.contact(0.1, delta=0.5).full_slip)
+    True
     """

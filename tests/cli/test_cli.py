@@ -238,7 +238,7 @@ def test_a_belt_of_a_fit_that_was_saved(run, here):
     (here / "roller.toml").write_text(f'{roller}[base]\nfile = "belt.toml"\nthickness = 0.006\n')
     shown = run("validity", "roller.toml", "--V", "100")
     assert "the base was measured from 0.0628 to 628 rad/s" in shown
-    assert "half the contact is up to" in shown
+    assert "half the contact length is up to" in shown
 
 
 def test_a_cylinder_of_a_file_is_in_si(run, here):
@@ -306,7 +306,7 @@ def test_a_warning_is_one_line(capsys):
         warnings.simplefilter("default")
         assert main(["roll", *START, "--t", "1e-6"]) == 0
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("viscoroll: warning: the model is not good for this motion: it is too slow ")
+    assert line.startswith("viscoroll: warning: the model does not hold for this motion: it is too slow ")
 
 
 PAPER, T = vr.presets.PAPER_SECTION_5, np.linspace(0.0, 3e-3, 7)

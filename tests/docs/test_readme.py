@@ -22,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 
 HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
 PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in sorted((ROOT / folder).rglob("*.md")))]
-LOADING = ROOT / "docs/loading/README.md"
+FMUS = ROOT / "docs/loading/fmus.md"
 
 
 def blocks(path: Path, language: str) -> list[str]:
@@ -35,7 +35,7 @@ def test_readme_block_runs(capsys):
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
     assert "slides for 0.13 s, then rolls to 27.1 m" in printed
-    assert "V is right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s" in printed
+    assert "the error of V is below 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s" in printed
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -46,7 +46,7 @@ def test_variables_of_fmus_are_listed(model):
         for v in MODELS[model].variables
     ]
     head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
-    assert head + "\n".join(rows) + "\n\n" in LOADING.read_text()
+    assert head + "\n".join(rows) + "\n\n" in FMUS.read_text()
 
 
 def test_readme_grid(tmp_path, monkeypatch, capsys):
@@ -104,11 +104,11 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys):
 
 
 def test_howto_scene_files_are_read(tmp_path):
-    from viscoroll.io.config import read_body
+    from viscoroll.io.config import read_roller
 
     for text in (text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")):
         (tmp_path / "scene.toml").write_text(text)
-        assert read_body(tmp_path / "scene.toml").scene()
+        assert read_roller(tmp_path / "scene.toml").scene()
 
 
 def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):

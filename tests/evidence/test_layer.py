@@ -9,7 +9,7 @@ from closeness import close
 from places import DOCS, kept
 
 from pipeline.evidence.prove import layer
-from viscoroll.contact_law.assumptions import THICK_LIMIT
+from viscoroll.contact_law.validity.assumptions import THICK_LIMIT
 
 
 @pytest.mark.parametrize("nu", layer.RATIOS)

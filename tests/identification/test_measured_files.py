@@ -8,7 +8,7 @@ from places import ROOT
 
 import viscoroll as vr
 from viscoroll.app import cli
-from viscoroll.app.identification.file import read_measurements
+from viscoroll.app.identification.measurements_toml import read_measurements
 
 EXAMPLE = ROOT / "docs/examples/measured.toml"
 

@@ -261,7 +261,7 @@ def test_what_was_measured_goes_with_the_temperature():
     """a_T = 100: the data hold a hundredth of their frequencies."""
     rubber = dataclasses.replace(STORED[0], measured=vr.Measured(0.1, 300.0, 0.01, "dma.csv"))
     assert rubber.at(0.0, lambda _: 100.0).measured == vr.Measured(1e-3, 3.0, 0.01, "dma.csv")
-    assert "0.1 to 300 rad/s, misfit 1 % (dma.csv)" in repr(rubber._card())
+    assert "0.1 to 300 rad/s, misfit 1 % (dma.csv)" in repr(rubber._summary())
 
 
 def test_edited_materials(tmp_path):

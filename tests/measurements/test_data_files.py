@@ -7,7 +7,7 @@ from closeness import close
 from experiments import FILE
 
 import viscoroll as vr
-from viscoroll.app.identification.file import read_measurements
+from viscoroll.app.identification.measurements_toml import read_measurements
 from viscoroll.io.runs.uncertain import read_column
 
 V, M = np.geomspace(0.1, 10.0, 5), np.array([0.1, 0.3, 0.7, 0.5, 0.2])

@@ -7,7 +7,8 @@ from closeness import close
 from drives import RUBBER
 
 import viscoroll as vr
-from viscoroll.motion.batch import FIELDS, STATES
+from viscoroll.motion.drive import STATES
+from viscoroll.motion.ensemble import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

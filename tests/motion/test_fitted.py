@@ -10,7 +10,8 @@ from closeness import close
 from drives import ROLLER
 
 import viscoroll as vr
-from viscoroll.motion import fitted, schedule
+from viscoroll.motion import drive_fit
+from viscoroll.motion.piecewise import Piecewise, check_function, piecewise
 
 END = 20.0
 #: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a slope without bounds
@@ -41,7 +42,7 @@ class Counted:
         return float(self.function(t))
 
 
-def values(curve: schedule.Curve, t: np.ndarray) -> np.ndarray:
+def values(curve: Piecewise, t: np.ndarray) -> np.ndarray:
     """A curve of one motion at these times."""
     (starts,), (ends,) = curve.starts, curve.ends
     k = np.searchsorted(starts, t, side="right") - 1
@@ -54,7 +55,7 @@ def values(curve: schedule.Curve, t: np.ndarray) -> np.ndarray:
 def test_a_callable_is_met_in_few_values(name, rtol):
     """Off by a tenth of rtol of the largest value so far, in thousands of values; most of these took no end of them."""
     function = Counted(CALLABLES[name])
-    curve = schedule.curve(schedule.course("torque", function, END, rtol))
+    curve = piecewise(check_function("torque", function, END, rtol))
     assert function.calls <= tol.CALLABLE_VALUES
     assert curve.starts.size <= tol.CALLABLE_PIECES
     assert (np.diff(curve.starts) > 0.0).all()
@@ -69,14 +70,14 @@ def test_a_callable_is_met_in_few_values(name, rtol):
 
 def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many values as it may."""
-    monkeypatch.setattr(fitted, "MOST", 20_000)
+    monkeypatch.setattr(drive_fit, "MOST", 20_000)
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
         with pytest.raises(
             vr.ParameterError, match=r"^torque = a callable that no polynomials follow near t = .*Schedule"
         ):
             vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
-        assert function.calls <= 2 * fitted.MOST
+        assert function.calls <= 2 * drive_fit.MOST
 
 
 @pytest.mark.parametrize("many", [False, True])

@@ -10,7 +10,9 @@ from memory import forget
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
 from viscoroll.motion import flow, flow_store
-from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
+from viscoroll.motion.batch import FLOW_PAYS
+from viscoroll.motion.drive import LOSSES
+from viscoroll.motion.ensemble import FIELDS
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 16)

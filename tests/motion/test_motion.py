@@ -124,7 +124,7 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
         r"bound, loosen rtol; it stood at "
         r"t = (\S+)( s)? in partial slip, V = (\S+)( m s-1)?, omega = (\S+)( rad s-1)?(; |$)"
     )
-    with pytest.warns(RuntimeWarning, match="says where it stood"):
+    with pytest.warns(RuntimeWarning, match="gives the last state"):
         cut = vr.roll(ROUNDED, 1.5, 0.5, [1e-6, 1.0], max_steps=10)
     assert cut.status == vr.MotionStatus.STEP_LIMIT
     assert np.isfinite(cut.V).tolist() == [True, False]
@@ -134,7 +134,7 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
     assert 1e-6 < t < 1.0
     assert close([V, omega], [there.V[0], there.omega[0]], rel=tol.SIX_DIGITS)
     for steps in range(1, 30):
-        with pytest.warns(RuntimeWarning, match="says where it stood"):
+        with pytest.warns(RuntimeWarning, match="gives the last state"):
             cut = vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0, max_steps=steps)
         stood = words.match(cut.message.replace("full slip", "partial slip"))
         assert stood.group(2, 4, 6) == (" s", " m s-1", " rad s-1"), steps

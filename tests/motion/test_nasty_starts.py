@@ -9,7 +9,7 @@ from maps import beside, decay_time
 
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
-from viscoroll.motion.batch import FIELDS
+from viscoroll.motion.ensemble import FIELDS
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 METHODS = ("integrate", "flow")

@@ -10,20 +10,27 @@ from memory import taken_beside
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.motion import courses, driven
+from viscoroll.motion import drive_functions
+from viscoroll.motion.drive import Drive
+
+
+def pieces_of(drive: Drive, end: float) -> np.ndarray:
+    """The pieces of a drive of one motion."""
+    functions = drive_functions.prepare_drive(drive, 0.1, 0.1, end, 1e-8).functions
+    assert functions is not None
+    return functions.pieces
 
 
 @pytest.mark.parametrize("count", [2_000, 200_000])
 def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
     times = np.arange(count) * 1e-3
-    drive = driven.Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
-    driven.prepared(driven.Drive(torque=0.1), 0.1, 0.1, 1.0, 1e-8)  # imports take memory too
+    drive = Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
+    assert pieces_of(Drive(torque=0.1), 1.0).size  # imports take memory too
     tracemalloc.start()
-    ready = driven.prepared(drive, 0.1, 0.1, times[-1], 1e-8)
+    pieces = pieces_of(drive, times[-1])
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert ready.pieces is not None
-    assert ready.pieces.shape[1] == 2 * count - 2
+    assert pieces.shape[1] == 2 * count - 2
     assert peak <= tol.BYTES_A_CORNER * 2 * count
 
 
@@ -54,8 +61,8 @@ def test_motions_with_corners_of_their_own_have_the_bits_of_each_alone(monkeypat
     times, values = np.sort(random.uniform(0.0, 9.0, (12, 7)), axis=1), random.uniform(-0.1, 0.3, (12, 7))
     times[:, 0] = 0.0
     start = (None, 0.2) if name == "V" else (0.3, 0.2)
-    for size in (1, 2_000, courses._BLOCK_BYTES):
-        monkeypatch.setattr(courses, "_BLOCK_BYTES", size)
+    for size in (1, 2_000, drive_functions._BLOCK_BYTES):
+        monkeypatch.setattr(drive_functions, "_BLOCK_BYTES", size)
         many = vr.ensemble(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times, values)})
         for n in range(12):
             one = vr.roll(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times[n], values[n])})

@@ -130,7 +130,7 @@ def test_a_short_rest_costs_less(t_w):
 
 def test_caught_in_the_imprint():
     """V = 1.3 is 4.3 cm/s, of which validity says it too."""
-    with pytest.warns(RuntimeWarning, match="caught in the imprint of its rest"):
+    with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of its rest"):
         m = vr.roll(ROLLER, 1.3, 1.3, T, rested=True, unsteady=True)
     assert m.status == vr.MotionStatus.CAUGHT
     assert np.isnan(m.V).all()

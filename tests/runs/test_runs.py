@@ -16,7 +16,8 @@ from viscoroll import sampling
 from viscoroll.io.runs import estimate, store
 from viscoroll.io.runs.evaluate import roll_block
 from viscoroll.io.runs.inputs import Distribution, Inputs
-from viscoroll.motion.summaries import QUANTITIES, histogram, merged, quantiles, summarise
+from viscoroll.motion.histogram import Histogram
+from viscoroll.motion.summaries import QUANTITIES, merge_summaries, summarise
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -109,37 +110,37 @@ def test_the_copula_keeps_marginals_and_gives_the_correlation():
 def test_moments_and_quantiles(size):
     values = np.random.default_rng(2).normal(0.3, 1.0, size)
     values[::7] = np.nan
-    kept, one = values[np.isfinite(values)], histogram(values)
+    kept, one = values[np.isfinite(values)], Histogram.of(values)
     levels = (0.0, 0.01, 0.3, 0.5, 0.99, 1.0)
     ordered = np.sort(kept)
     at = (np.array(levels) * (kept.size - 1)).astype(int)
     beside = np.maximum(np.abs(ordered[at]), np.abs(ordered[np.minimum(at + 1, kept.size - 1)]))
-    assert (np.abs(quantiles(one, levels) - np.quantile(kept, levels)) <= 2.0**-8 * beside).all()
+    assert (np.abs(one.quantiles(levels) - np.quantile(kept, levels)) <= 2.0**-8 * beside).all()
     assert (one.low, one.high, one.count) == (kept.min(), kept.max(), kept.size)
     assert abs(one.mean - kept.mean()) <= tol.MOMENT
     assert abs(one.spread / one.count - kept.var()) <= tol.MOMENT
 
 
 def test_quantiles_of_those_at_rest_are_zero():
-    one = histogram(np.array([0.0] * 8 + [-1.0, 0.5, 2.0]))
-    assert quantiles(one, (0.1, 0.2, 0.5, 0.8)).tolist() == [0.0] * 4
+    one = Histogram.of(np.array([0.0] * 8 + [-1.0, 0.5, 2.0]))
+    assert one.quantiles((0.1, 0.2, 0.5, 0.8)).tolist() == [0.0] * 4
 
 
 def test_of_nothing_there_are_none():
-    one = histogram(np.array([np.nan]))
+    one = Histogram.of(np.array([np.nan]))
     assert one.count == 0
-    assert np.isnan(quantiles(one, (0.5,))).all()
+    assert np.isnan(one.quantiles((0.5,))).all()
 
 
 def test_merged_summaries_are_those_of_all(run):
     blocks = [roll_block(run, block) for block in range(run.blocks)]
-    total = merged(summarise(motions, run.settings.summaries) for _, motions in blocks)
+    total = merge_summaries(summarise(motions, run.settings.summaries) for _, motions in blocks)
     assert sum(total.statuses.values()) == run.settings.n
     for name in run.settings.summaries:
         for k, one in enumerate(total.histograms[name]):
             values = np.concatenate([QUANTITIES[name].values(motions, k) for _, motions in blocks])
             assert one.count == np.isfinite(values).sum()
-            assert np.array_equal(one.counts, histogram(values).counts)
+            assert np.array_equal(one.counts, Histogram.of(values).counts)
             assert close(one.mean, np.nanmean(values), rel=tol.MOMENT, scale=1.0)
             assert close(one.spread / one.count, np.nanvar(values), rel=tol.MOMENT, scale=1.0)
 

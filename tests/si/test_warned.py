@@ -12,8 +12,7 @@ from run_files import run_of
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll.contact_law import known
-from viscoroll.contact_law.bound import Law, WatchedLaw
+from viscoroll.contact_law.validity import model_warnings
 from viscoroll.core.plots import draw
 from viscoroll.io.runs import estimate
 
@@ -26,7 +25,7 @@ LAST = 2.866
 
 def test_where_the_data_end():
     """Of the same contact, by the law itself: the two ends are passed at the frequencies of the data."""
-    for at, end in zip(BELT._known.held, (DATA.low, DATA.high), strict=True):
+    for at, end in zip(BELT.body_data.measured_rates, (DATA.low, DATA.high), strict=True):
         speed = at * BELT.l0
         assert close(speed / BELT.contact(speed, delta=0.0, fields="length").length, end, rel=tol.CONTACT)
     found = BELT.validity(np.array([0.99, 1.01]) * LAST).measured
@@ -35,8 +34,8 @@ def test_where_the_data_end():
 
 @pytest.mark.parametrize("worker", [False, True])
 def test_a_word_once_a_material_and_none_in_workers(monkeypatch, worker):
-    monkeypatch.setattr(known, "_told", set())
-    monkeypatch.setattr(known, "is_worker", lambda: worker)
+    monkeypatch.setattr(model_warnings, "_warned_records", set())
+    monkeypatch.setattr(model_warnings, "is_worker", lambda: worker)
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
         for _ in range(2):
@@ -66,10 +65,7 @@ def test_every_call_warns_of_large_contacts(call):
     assert (said[0].category, said[0].filename) == (vr.ModelWarning, __file__)
 
 
-def test_a_law_of_sound_contacts_does_not_look():
-    assert type(BELT.replace(base=replace(RUBBER, measured=None)).law()) is Law
-    assert type(vr.presets.PAPER_SECTION_5.law()) is Law
-    assert type(BELT.law()) is WatchedLaw
+def test_a_law_with_and_without_data_has_the_same_numbers():
     assert BELT.law()(0.1, 1.0) == BELT.replace(base=replace(RUBBER, measured=None)).law()(0.1, 1.0)
 
 
@@ -123,7 +119,7 @@ temperature = { distribution = "norm", loc = 20.0, scale = 5.0 }
 
 def test_the_share_of_motions_that_were_not_measured(tmp_path, monkeypatch):
     """N(20, 5) degrees: the contact at 1 m/s is passed at a rate that the data hold where a_T is below a bound."""
-    monkeypatch.setattr(known, "_told", set())
+    monkeypatch.setattr(model_warnings, "_warned_records", set())
     text = RUN.format(E="2.0e6", spread=1e-9).replace("n = 20", "n = 1000")
     text = text.replace("[start]", WARM + "[start]")
     rate = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5).validity(1.0).measured.value
@@ -141,7 +137,7 @@ def test_the_share_of_motions_that_were_not_measured(tmp_path, monkeypatch):
 @pytest.mark.parametrize("spread", [1.0, 9.0])
 def test_a_run_file_beyond_what_was_measured(tmp_path, monkeypatch, E, spread):
     """Of materials that are known and of uncertain ones, by the share of the starts."""
-    monkeypatch.setattr(known, "_told", set())
+    monkeypatch.setattr(model_warnings, "_warned_records", set())
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
         estimate(run_of(RUN.format(E=E, spread=spread), tmp_path), 1)

@@ -15,7 +15,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.core import files
-from viscoroll.io.config import read_bodies, read_body
+from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.tables.check import check_table
 from viscoroll.materials.law_file import table_of
 from viscoroll.materials.law_store import checksum
@@ -133,12 +133,12 @@ def test_scene_files_and_material_files(saved, tmp_path):
     cylinder = "[cylinder]\nR = 0.1\nm = 30.0\nmu = 0.3\n"
     path = tmp_path / "scene.toml"
     path.write_text(f'[material]\nfile = "rubber.nc"\n{cylinder}')
-    assert read_body(path).material == RUBBER
-    assert read_bodies(path) == table_of(RUBBER).pair
+    assert read_roller(path).material == RUBBER
+    assert read_law_source(path) == table_of(RUBBER).pair
     vr.tables.save(vr.tables.law(RUBBER, STEEL), tmp_path / "rubber.nc")
-    refused(partial(read_body, path), "line 2", "law of a pair: give one material", error=vr.FileError)
+    refused(partial(read_roller, path), "line 2", "law of a pair: give one material", error=vr.FileError)
     vr.tables.save(vr.tables.law(11.0), tmp_path / "rubber.nc")
-    refused(partial(read_body, path), "line 2", "without units", error=vr.FileError)
+    refused(partial(read_roller, path), "line 2", "without units", error=vr.FileError)
 
 
 # --- files that are refused ---
@@ -169,7 +169,7 @@ def test_rewritten_by_another_program(copy, saved):
     """Another frame, the same numbers; texts as arrays of one text are not what netCDF's own programs write."""
     with xr.open_dataset(saved, engine="h5netcdf", decode_times=False) as file:
         file.load().to_netcdf(copy, engine="h5netcdf")
-    assert files.seal_holds(copy.read_bytes()) is None
+    assert files.seal_matches(copy.read_bytes()) is None
     same(vr.load_law(copy), vr.load_law(saved))
 
 

@@ -25,7 +25,7 @@ slope = np.radians(0.5)
 print(roller.validity(2.0))
 
 # %%
-# All holds, and V is right to 1 % to the end.  At 20 °C the relaxation times are 300 times
+# All holds, and the error of V is below 1 % to the end.  At 20 °C the relaxation times are 300 times
 # longer.  That matters at low speeds alone (:doc:`/validity`):
 print(roller.replace(base=cool).validity(2.0).steady.sentence)
 

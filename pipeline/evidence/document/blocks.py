@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from viscoroll.core.scale import DIMENSIONS, si_unit
-from viscoroll.core.symbols import SYMBOLS, meaning
+from viscoroll.core.symbols import SYMBOLS, describe_quantity
 
 from ..results import Results, rows_of, table
 from . import house, identification
@@ -104,6 +104,18 @@ def grids(results: Results) -> str:
         f"The rows are what the runtime reads: in the same integrator motions from them are off by up to "
         f"{two(exact['error, random'])} of the first speed, from splines in a grid of 161 by 161 nodes by "
         f"{two(grid['error, random'])}.\n"
+    )
+
+
+def mutants(results: Results) -> str:
+    """Number of defects planted in the kernels, and of those that the tests noticed."""
+    outcomes = [row["outcome"] for row in results["mutants"].values()]
+    killed = outcomes.count("killed")
+    noticed = "all of them" if killed == len(outcomes) else f"{killed}"
+    return (
+        "Coverage by lines cannot be measured in compiled kernels.  Instead "
+        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.py) were planted in them, one at a time: "
+        f"the tests noticed {noticed} ([results](data/results/mutants.json)).\n"
     )
 
 
@@ -265,14 +277,14 @@ def symbols(_: Results) -> Iterator[Row]:
     """Every symbol of a result: what it is, in which unit a scene and a cylinder give it, its range and equation."""
     for name, symbol in SYMBOLS.items():
         unit = si_unit(name).translate(_POWERS) if name in DIMENSIONS else ""
-        said = {"meaning": meaning(name), "range": symbol.range, "equation": symbol.equation}
+        said = {"meaning": describe_quantity(name), "range": symbol.range, "equation": symbol.equation}
         yield said | {"name": name, "greek": greek(name), "unit": unit}
 
 
 MAKERS: dict[str, Callable[[Results], Any]] = {
     made.__name__: made
     for made in (
-        three, headline, grids, ensembles, ensembles_plan, proofs, independent_paper,
+        three, headline, grids, mutants, ensembles, ensembles_plan, proofs, independent_paper,
         unsteady_gamma, unsteady, unsteady_ways, bench_peers, bench_own, bench_driven, bench_bound_law,
         bench_series, symbols, house.rooms, house.commands, house.sections, *identification.MAKERS,
     )

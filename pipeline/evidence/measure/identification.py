@@ -24,7 +24,7 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.app.identification import Identification
-from viscoroll.app.identification.profile import Walk
+from viscoroll.app.identification.profile import ProfileWalk
 from viscoroll.app.identification.records import Record
 
 from ..results import run_parts
@@ -175,7 +175,7 @@ def first(group: dict[str, Any], sizes: dict[str, Any]) -> Iterable[tuple[str, A
 
 def _measured(record: Record, rng: np.random.Generator | None, bearing: dict[str, float] | None = None) -> Record:
     """A planned record with values, at the truth, with noise."""
-    exact = record.model(roller().replace(**record.own), bearing or {})
+    exact = record.model(roller().replace(**record.overrides), bearing or {})
     values = {
         name: exact[name] + (0.0 if rng is None else sigma * rng.standard_normal(exact[name].shape))
         for name, sigma in record.sigma.items()
@@ -223,9 +223,9 @@ def coverage(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
 def rise_at_truth(fit: Identification, product: str) -> float:
     """By what chi2 rises with an unknown, or a product of some, held at its true value, all others following."""
-    walk = Walk(fit._about, np.array([float(name in product.split()) for name in fit.values]))
+    walk = ProfileWalk(fit._likelihood, np.array([float(name in product.split()) for name in fit.values]), RISE)
     true = np.log([TRUTH.get(name, 1.0) for name in fit.values])
-    return walk.at(walk.way(true), fit._about.best.u).chi2 - fit.chi2
+    return walk.minimum_at(walk.distance(true), fit._likelihood.best.u).chi2 - fit.chi2
 
 
 def reach(sizes: dict[str, Any]) -> list[dict[str, Any]]:

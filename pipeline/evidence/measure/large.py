@@ -3,7 +3,7 @@
     python -m pipeline.evidence.measure.large [--config FILE] [--quick] [-o FILE]
 
 Each call runs in a process of its own, whose peak is read from the system.  Numbers of elements are in [large] of
-the configuration; 10^8 motions want 8 GB.  pipeline/evidence/document/ puts the table into docs/accuracy.md.
+the configuration; 10^8 motions want 8 GB.  pipeline/evidence/document/ puts the table into docs/times.md.
 """
 
 from __future__ import annotations

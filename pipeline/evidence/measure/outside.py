@@ -24,7 +24,7 @@ import numpy as np
 import viscoroll as vr
 from viscoroll import tables
 from viscoroll.core.errors import MissingDependencyError
-from viscoroll.io.config import read_bodies
+from viscoroll.io.config import read_law_source
 
 from ...stage import ROOT
 from ..results import run
@@ -96,7 +96,7 @@ int main(void) {
 
 def measure(sizes: dict[str, Any]) -> dict[str, Any]:
     """All that outside.json holds beside the machine."""
-    law = tables.law(read_bodies(RUBBER))
+    law = tables.law(read_law_source(RUBBER))
     with TemporaryDirectory() as name:
         folder = Path(name)
         tables.export(law, folder / "rubber.json")
@@ -135,7 +135,9 @@ def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
     shown = printed(folder, program(*BROWSERS), *options, (folder / "page.html").as_uri())
     found = json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', shown, re.DOTALL)[1]))  # type: ignore[index]
     at = {name: np.array([one[name] for one in found]) for name in found[0]}
-    exact = vr.contact(vr.Scene(kappa=1.0, mu=at["mu"], material=read_bodies(RUBBER).law), at["u"], delta=at["creep"])
+    exact = vr.contact(
+        vr.Scene(kappa=1.0, mu=at["mu"], material=read_law_source(RUBBER).law), at["u"], delta=at["creep"]
+    )
     ms = at["ms"]
     return {
         "median_ms": float(np.median(ms)), "slowest_ms": float(ms.max()), "bytes": len(rubber),
@@ -153,7 +155,7 @@ def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
     random, count = np.random.default_rng(sizes["seed"]), sizes["states"]
     kappa, mu = 10.0 ** random.uniform(0, 2, count), 10.0 ** random.uniform(-3, 0, count)
     V = 10.0 ** random.uniform(-4, 9, count) / kappa
-    star = vr.contact(vr.Scene(kappa=kappa, mu=mu, material=read_bodies(RUBBER).law), V, delta=0.0).delta_star
+    star = vr.contact(vr.Scene(kappa=kappa, mu=mu, material=read_law_source(RUBBER).law), V, delta=0.0).delta_star
     states = np.column_stack([kappa, mu, V, star * V * random.uniform(-1, 1, count)]).tolist()
     (folder / "states.json").write_text(json.dumps(states))
     (folder / "node.js").write_text(NODE)

@@ -5,7 +5,7 @@
 One table of proofs (claim.py): what is drawn, and which claims are made of its errors.  Each part holds its sizes, the
 machine, and rows: the claim, its domain, the bound, the worst that was found, and where.  Sizes and seeds are in
 [prove] of the configuration, those of --quick in [prove.quick].  Exit code 1 where a bound is exceeded.
-pipeline/evidence/document/ puts the table into docs/accuracy.md.
+pipeline/evidence/document/ puts the table into docs/accuracy_proofs.md.
 """
 
 from __future__ import annotations

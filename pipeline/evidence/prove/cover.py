@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.contact_law.cover_validity import stated_error
+from viscoroll.contact_law.validity.cover import stated_error
 
 from ..truth.cover import extrapolated
 from .claim import Found, Proof, at

@@ -5,7 +5,7 @@
 The files of data/reference, whose README says where each comes from: six cases of Wang & Knothe, 114 states
 and three profiles of a half-space code, an implicit integration of the motion, and the numbers that the paper prints.
 Deviations are this package's value less the other's.  tests/evidence/test_independent.py says how large they may be;
-pipeline/evidence/document/ puts the tables into docs/accuracy.md.
+pipeline/evidence/document/ puts the tables into docs/accuracy_independent.md.
 """
 
 from __future__ import annotations

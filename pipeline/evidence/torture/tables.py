@@ -13,7 +13,7 @@ import numpy as np
 
 from viscoroll import ViscorollError, tables
 from viscoroll.core.errors import FileError
-from viscoroll.core.files import seal_holds
+from viscoroll.core.files import seal_matches
 from viscoroll.presets import RUBBER_CYLINDER
 
 from ... import offline
@@ -31,6 +31,12 @@ alpha = [8, 16]
 material = { E = 2.3e5, nu = 0.49, T_epsilon = 10.7, T_sigma = 0.97 }
 [tables.laws.rubber]
 material = { E = 3e6, nu = 0.5, prony = { E = [0.3, 0.6, 1.5], tau = [2e-2, 1e-3, 1e-5] } }
+[tables.grid]
+preset = "paper-section-5-rounded"
+V = [0.1, 2.0, 5]
+delta = 5
+alpha = [8.0, 11.0, 13.0, 16.0]
+allowed = 1e-12
 """
 #: seconds within which it is killed once a temporary file is there: what a write and its two fsyncs take
 WRITE = 0.02
@@ -98,7 +104,7 @@ def hashes(folder: Path) -> dict[str, str] | None:
 
 def whole(path: Path) -> Any:
     """A table whose seal holds."""
-    if not seal_holds(path.read_bytes()):
+    if not seal_matches(path.read_bytes()):
         raise FileError(path, "has no seal that holds")
     return tables.load(path)
 

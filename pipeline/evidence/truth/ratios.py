@@ -17,7 +17,7 @@ import numpy as np
 from flint import arb
 from tqdm import tqdm
 
-from viscoroll.core.files import replacing
+from viscoroll.core.files import replace_file
 from viscoroll.kernels.bessel import layout as layout
 
 from .enclosures import ratio_i2, ratio_k, ratio_r
@@ -67,7 +67,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("-o", "--output", type=Path, default=TARGET)
     output = parser.parse_args().output
-    with replacing(output) as temporary:
+    with replace_file(output) as temporary:
         np.save(temporary, np.array(table()))
 
 

@@ -1,41 +1,26 @@
-"""The public contact law: :func:`contact`.
-
-Checks and broadcasts the input, chooses the method, and asks the kernels for no more than
-the fields that were named.
-"""
+"""The public contact law: :func:`contact`, the state of the contact at given speeds and creepages."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import lru_cache
-from typing import Any, Literal, overload
+from typing import Literal, overload
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..core.checks import broadcast_shape, checked, checked_extent, yes_or_no
-from ..core.errors import ParameterError, one_of
-from ..core.labels import unlabelled
+from ..core.array_types import Numbers
+from ..core.checks import check_array, check_array_extent, check_bool
+from ..core.errors import exactly_one_error
+from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
-from ..core.typed import Numbers
-from ..materials.bodies import Bodies
 from ..materials.cover import Cover
-from ..materials.law_table import LawTable
-from ..materials.prony import Prony
-from .contact_fields import FREE, OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
-from .contact_table import FASTEST, refuse_overflow, states_of
-from .parameters import Parameters, Rolls, framed
-
-#: of bodies that are alike, half of each
-_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
-#: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
-_FASTEST_DIRECT = 1e12
+from .contact_fields import field_names
+from .contact_table import evaluate_contact
+from .parameters import Roller, resolve_model
+from .validity.model_warnings import warn_of_contact
 
 
 @overload
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     delta: Numbers,
@@ -45,7 +30,7 @@ def contact(
 ) -> Values: ...
 @overload
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     omega: Numbers,
@@ -54,7 +39,7 @@ def contact(
     method: Literal["table", "direct"] = "table",
 ) -> Values: ...
 def contact(
-    roller: Rolls,
+    roller: Roller,
     V: Numbers,
     *,
     delta: Numbers | None = None,
@@ -65,7 +50,7 @@ def contact(
 ) -> Values:
     """State of the contact: Eqs. (6)-(10), (15)-(18).
 
-    Arguments broadcast against each other and against array parameters of what rolls; if all are scalars so are the
+    Arguments broadcast against each other and against array parameters of the roller; if all are scalars so are the
     results.
 
     Parameters
@@ -73,22 +58,21 @@ def contact(
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, everything dimensionless; or a
         :class:`Cylinder`, in SI units per m of its length.
     V : velocity of the axis, any sign; of a Cylinder m/s.
-    delta, omega : exactly one: creep ratio (omega R - V)/V, or angular velocity (rad/s); any sign.
+    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity (rad/s); any sign.
         At V = 0 a given ``delta`` means the limit V -> 0+.
-    fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
-        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
-        ``M_half_space M_cylinder``, the parts of M in either body, and ``N``, of M(V) + N V' where speed
-        changes slowly, in units of T_ref^2; ``grip``, 1 - |Q|/mu to all its digits; ``delta_0``, the creep of free
-        rolling on a cover by the strain that the pressure makes, 0 of half-spaces;
-        ``length`` of the contact, over l0 or in m, and ``C_rr`` = M/(P R), the coefficient of rolling resistance; only
-        these are computed.  Default: the first nine; of bodies that differ, and of a Cylinder, the two parts too;
-        of a Cylinder ``length`` and ``C_rr``, and of a cover ``delta_0``.
+    fields : names of the fields to compute.  ``lam zeta epsilon delta_star delta full_slip beta Q M`` are the
+        default; of bodies that differ, and of a Cylinder, ``M_half_space M_cylinder`` too, the parts of M in either
+        body; of a Cylinder also ``length``, the contact length in m, and ``C_rr`` = M/(P R), the coefficient of rolling
+        resistance; of a cover also ``delta_0``, the creepage of free rolling by the strain that the pressure causes.
+        Further ``grip``, the friction reserve 1 - |Q|/mu with all its digits; ``N``, the added mass of slow speed
+        changes, where the moment is M(V) + N dV/dt (of a Scene in units of T_ref^2); and single slopes: ``dQ_dV
+        dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
         ``dQ_domega`` is infinite.  Of bodies that differ, ``dM_half_space_dV`` and ``dM_cylinder_dV`` too.
-    method : "table" (the rows of the law: no equation is solved) or "direct" (the paper's
-        equations as printed, solved by Brent-Dekker; no slopes).
+    method : "table" (from the rows of the law: no equation is solved) or "direct" (the equations as the paper prints
+        them, solved by Brent-Dekker; no slopes).
 
     Returns
     -------
@@ -104,7 +88,7 @@ def contact(
         NaN or infinite input, kappa |V| above 1e300 (for Q by method "direct" above 1e12), both or
         neither of delta and omega, unknown field or method, shapes that do not broadcast.
     ConvergenceError
-        If a solve hits its iteration cap.
+        If an iteration reaches its limit.
 
     Examples
     --------
@@ -115,90 +99,40 @@ def contact(
 
     Notes
     -----
-    Accuracy of method "table" for one material (one alpha, a series or two bodies): 5e-15 relative in delta_star, M and
-    Q, the parts of M over M, in lam and epsilon too but for one octave of speed at alpha from 20 to 35, where it is
-    1.5e-14 and 3e-14, for any speed and creep (``tests/materials/test_law_table.py``); for an alpha or a material each
-    1e-13 for alpha in [1, 1e4], kappa V in [1e-7, 1e5].  beta as lam, and grip, times
-    1/(1 - |delta|/delta_star), their condition number, of the grip twice that.  N: 2e-14 of its largest size
+    Accuracy of method "table" for one material (one alpha, a series or two bodies): the relative error of delta_star, M
+    and Q is below 5e-15, that of the parts of M too, relative to M.  For lam and epsilon it is 5e-15, and 1.5e-14 and
+    3e-14 in one octave of speed at alpha from 20 to 35.  This holds for any speed and creepage
+    (``tests/materials/test_law_table.py``).  Where each state has its own alpha or material it is 1e-13 for alpha in
+    [1, 1e4] and kappa V in [1e-7, 1e5].  The error of beta is that of lam times 1/(1 - |delta|/delta_star), its
+    condition number, and the error of grip twice that.  The error of N is 2e-14 of its largest value
     (``tests/kernels/rows/test_unsteady.py``).
 
-    The law of one material is read from polynomials of one variable (:mod:`.materials.law_table`), made on first use in
-    some milliseconds and kept.  A state's result depends on nothing else in the call.
+    The law of one material is evaluated from polynomials of one variable (:mod:`.materials.law_table`), which are
+    computed at first use in some milliseconds and kept.  The result of a state does not depend on other states of the
+    call.
 
-    Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
-    however they broadcast (``tests/test_invariance.py``).
+    Beside float64 input and its result a call takes a few megabytes, for any sizes and any
+    broadcasting (``tests/test_invariance.py``).
     """
-    _, scene, scale = framed(roller, "contact")
+    _, scene, scale = resolve_model(roller, "contact")
     if (delta is None) == (omega is None):
-        raise one_of("delta", "omega", both=delta is not None)
+        raise exactly_one_error("delta", "omega", both=delta is not None)
     if slopes is not False:
-        slopes = yes_or_no("slopes", slopes)
-    names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
-    if type(scene.material) is Cover:
-        names = _of_cover(names, fields is None)
+        slopes = check_bool("slopes", slopes)
+    cover = type(scene.material) is Cover
+    names = field_names(fields, slopes, method, like=scene.like_bodies, si=scale.si, cover=cover)
     creep_name = "omega" if delta is None else "delta"
-    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta}, scale)
-    speed, ends = checked_extent("V", given["V"])
-    creep = checked(creep_name, given[creep_name])
+    given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
+    speed, ends = check_array_extent("V", given["V"])
+    creep = check_array(creep_name, given[creep_name])
     given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
-        roller.look(speed, ends)
+        warn_of_contact(roller, speed, ends)
         about = roller.about
         speed = speed / scale["V"]
         creep = creep / scale["omega"] if delta is None else creep
-    found = states(scene, speed, creep, delta is None, names, method)
+    found = evaluate_contact(scene, speed, creep, delta is None, names, method)
     if scale.si:
         found = {name: value * scale[name] if name in DIMENSIONS else value for name, value in found.items()}
     return Values(found, given, si=scale.si, labels=labels, about=about)
-
-
-def states(
-    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
-) -> dict[str, Any]:
-    """Fields without dimension, at checked speeds, and creeps or angular velocities."""
-    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
-    arrays["omega" if creep_is_omega else "delta"] = creep
-    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else FASTEST
-    shape: tuple[int, ...] = ()
-    if V.ndim or creep.ndim or scene.shape:
-        arrays = {name: np.asarray(value) for name, value in arrays.items()}
-        shape = broadcast_shape(**arrays)
-        refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * float(V)) <= fastest:
-        refuse_overflow(np.asarray(scene.kappa), V, fastest)
-    if scene.material is not None and method == "direct":
-        raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
-    one = None if method == "direct" else scene.table or scene.each
-    if isinstance(one, Prony | Bodies):
-        if UNSTEADY in names:
-            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
-        arrays["alpha"] = np.arange(len(one), dtype=np.float64)
-    # what the kernels are asked for, and what is half of it
-    unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, Bodies)
-    solved = _solved(names, unlike)
-    broadcast = [*arrays.values()], shape, creep_is_omega, solved
-    found = states_of(one, *broadcast, method == "direct")
-    rows: dict[str, Any] = dict(zip(solved, found if shape else found[:, 0].tolist(), strict=True))
-    if solved != names:
-        rows |= {name: 0.5 * rows[of] for name, of in _HALVES.items() if name in names and name not in rows}
-        rows |= {name: rows[of] for name, of in SAME.items() if name in names}
-    if "full_slip" in names:
-        rows["full_slip"] = rows["full_slip"] != 0.0
-    return {name: rows[name].reshape(shape) if shape else rows[name] for name in names}
-
-
-def _of_cover(names: tuple[str, ...], plain: bool) -> tuple[str, ...]:
-    """The fields of a cover: where none were named, delta_0 with them; raises ParameterError where N is."""
-    if UNSTEADY in names:
-        raise ParameterError(
-            "fields", repr(UNSTEADY), "left out for a cover: N of a layer of finite thickness is not known"
-        )
-    return (*names, FREE) if plain else names
-
-
-@lru_cache(maxsize=64)
-def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
-    """What the kernels are asked for: not what is half of it, or the same in other units."""
-    made = SAME if unlike else SAME | _HALVES
-    return tuple(dict.fromkeys(made.get(name, name) for name in names))

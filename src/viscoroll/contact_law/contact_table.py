@@ -1,4 +1,4 @@
-"""The law at many states, by rows of one table, of an alpha each or of a material each, for :mod:`rolling_contact`."""
+"""The law at many states, in blocks on threads: one law for all states, or an alpha or a material for each."""
 
 from __future__ import annotations
 
@@ -9,107 +9,183 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.blocks import elements, run_blocks
-from ..core.checks import extent
+from ..core.array_types import Floats
+from ..core.blocks import block_reader, run_blocks
+from ..core.checks import broadcast_shape, extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from ..materials.law_modes import by_modes
 from ..materials.law_table import LawTable
 from ..materials.prony import Prony
-from .contact_fields import UNSTEADY
+from .contact_fields import UNSTEADY, complete, computed_fields, kernel_rows
+from .parameters import Parameters
 
-#: states of a block, where each has a material of its own, which takes some kilobytes, and where not
-_BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
-#: states of one law that a kernel works on side by side; up to so many take no blocks
+#: States of a block: some milliseconds of work.
+_BLOCK = 1 << 15
+#: States of a block in which each has a material of its own, which takes some kilobytes.
+_BLOCK_OF_MATERIALS = 1 << 8
+#: States of one law that a kernel evaluates side by side; a call of no more states is evaluated without blocks.
 _TOGETHER = 64
+#: Order of states as they are.
 _NO_ORDER = np.empty(0, np.int64)
-#: kappa |V|, where zeta is 0 in doubles, or nearly
+#: Largest kappa |V|: beyond it zeta underflows.
 FASTEST = 1e300
+#: Largest kappa |V| for Q by the printed Eq. (15), in which the rounding error of a bracket grows with kappa |V|:
+#: beyond it Q has lost four digits of mu and more.
+_FASTEST_DIRECT = 1e12
 
 
-def states_of(
-    given: LawTable | Prony | Bodies | None,
+def evaluate_contact(
+    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
+) -> dict[str, Any]:
+    """Return dimensionless fields of the contact by name, at checked arguments.
+
+    Parameters
+    ----------
+    scene : parameters of the roller.
+    V : speeds, dimensionless.
+    creep : angular velocities if ``creep_is_omega``, else creepages.
+    names : fields, as of :func:`.contact_fields.field_names`.
+    method : as of :func:`contact`.
+
+    Raises
+    ------
+    ParameterError
+        Speeds out of range, shapes that do not broadcast, a material with method "direct", N of many materials.
+    """
+    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
+    arrays["omega" if creep_is_omega else "delta"] = creep
+    direct = method == "direct"
+    fastest = _FASTEST_DIRECT if direct and "Q" in names else FASTEST
+    shape: tuple[int, ...] = ()
+    if V.ndim or creep.ndim or scene.shape:
+        arrays = {name: np.asarray(value) for name, value in arrays.items()}
+        shape = broadcast_shape(**arrays)
+        refuse_overflow(arrays["kappa"], V, fastest)
+    elif not abs(scene.kappa * float(V)) <= fastest:
+        refuse_overflow(np.asarray(scene.kappa), V, fastest)
+    if scene.material is not None and direct:
+        raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
+    material = None if direct else scene.table or scene.material_array
+    if isinstance(material, Prony | Bodies):
+        if UNSTEADY in names:
+            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
+        arrays["alpha"] = np.arange(len(material), dtype=np.float64)
+    unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
+    computed = computed_fields(names, unlike)
+    rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
+    return complete(names, computed, rows, shape)
+
+
+def evaluate_law(
+    material: LawTable | Prony | Bodies | None,
     arrays: list[Any],
     shape: tuple[int, ...],
     creep_is_omega: bool,
     names: tuple[str, ...],
     direct: bool = False,
-) -> NDArray:
-    """The fields ``names``, a row each, of the alphas, kappa, mu, V and the creep broadcast to ``shape``.
+) -> Floats:
+    """Return fields of the contact, a row each, at states of one or many laws.
 
-    ``given``: one law for all; many materials, with their numbers in place of the alphas; or, None, alphas.
-    ``direct``: by the printed equations, of alphas.
+    Parameters
+    ----------
+    material : one law for all states; or many materials; or None: laws of one relaxation time.
+    arrays : alpha (the index of the material, where there are many), kappa, mu, V, and delta or omega; dimensionless,
+        broadcast to ``shape``.
+    shape : of the states.
+    creep_is_omega : whether the last of ``arrays`` is omega, else delta.
+    names : fields that kernels compute.
+    direct : whether to solve the printed equations (without a material).
+
+    Returns
+    -------
+    array, (fields, states)
+
+    Raises
+    ------
+    ConvergenceError
+        If an iteration of the printed equations reaches its limit.
     """
     count = math.prod(shape)
+    loop, states = _kernel(direct)
+    rows = kernel_rows(names)
     out = np.empty((len(names), count))
-    loop, of, to = _asked(names, direct)
-    single = isinstance(given, LawTable)
-    room = _TOGETHER if single else 1
+    record = material.record if isinstance(material, LawTable) else None
 
-    def fill(start: int, stop: int, each: NDArray, *parts: NDArray) -> None:
-        law: Any = each
-        order = _NO_ORDER
-        if isinstance(given, LawTable):
-            law = given.record
-        elif given is not None:
-            law = law_of_materials(given, each.astype(np.int64))
-            order = np.argsort(each, kind="stable") if each.size > 1 else order
-        elif not direct:
-            law, order = law_of_alphas(each), order_of_alphas(each, parts[0], parts[2])
-        asked = of.Request(of.State(*parts, creep_is_omega), order, to, out, start)
+    def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
+        law, order = (record, _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
+        request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
+        workspace = np.empty((4, _TOGETHER if record else 1))
         if direct:
-            if loop(law, asked, stop - start):
+            if loop(law, request, stop - start):
                 raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")
-            return
-        if set(names) - {UNSTEADY}:
-            loop(law, asked, np.empty((4, room)), stop - start)
+        elif names != (UNSTEADY,):
+            loop(law, request, workspace, stop - start)
         if UNSTEADY not in names:
             return
         N = out[names.index(UNSTEADY), start:stop]
-        if isinstance(given, LawTable):
+        if isinstance(material, LawTable):
             from ..kernels.rows.added_mass import unsteady_loop
 
-            unsteady_loop(given.unsteady_record, parts[0], parts[2], N)
+            unsteady_loop(material.unsteady_record, parts[0], parts[2], N)
         else:
-            to_zeta = _asked(("zeta",), direct)[-1]
-            loop(law, asked._replace(to=to_zeta, out=N[None], first=0), np.empty((4, room)), stop - start)
-            N[:] = by_modes(each, N).N
+            zeta = np.empty((1, stop - start))
+            loop(law, request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0), workspace, stop - start)
+            N[:] = by_modes(alpha, zeta[0]).N
 
-    if count <= _TOGETHER and single:
-        states = np.empty((len(arrays), *(shape or (1,))))
-        for row, array in zip(states, arrays, strict=True):
+    if count <= _TOGETHER and record:
+        numbers = np.empty((len(arrays), *(shape or (1,))))
+        for row, array in zip(numbers, arrays, strict=True):
             row[...] = array
-        states = states.reshape(len(arrays), count)
-        states.flags.writeable = False  # as all that a kernel reads, see elements
-        fill(0, count, *states)
+        numbers = numbers.reshape(len(arrays), count)
+        numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)
+        evaluate_block(0, count, *numbers)
         return out
-    parts = [elements(np.asarray(array), shape) for array in arrays]
-    block = _BLOCK_EACH if isinstance(given, Prony | Bodies) else _BLOCK
-    run_blocks(lambda start, stop: fill(start, stop, *(part(start, stop) for part in parts)), count, block)
+    readers = [block_reader(np.asarray(array), shape) for array in arrays]
+    block = _BLOCK_OF_MATERIALS if isinstance(material, Prony | Bodies) else _BLOCK
+    run_blocks(lambda start, stop: evaluate_block(start, stop, *(read(start, stop) for read in readers)), count, block)
     return out
 
 
-def rolling(law: LawTable, u: NDArray, *names: str) -> NDArray:
-    """Fields in pure rolling at kappa |V| = u, a row each; kappa = mu = 1."""
-    return states_of(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
-
-
-@lru_cache(maxsize=64)
-def _asked(names: tuple[str, ...], direct: bool) -> tuple[Any, Any, Any]:
-    """(The kernel, what it takes, the row of each field)."""
-    from ..kernels.rows import contact_states
+@lru_cache(maxsize=2)
+def _kernel(direct: bool) -> tuple[Any, Any]:
+    """Return (the loop over states, the module with its arguments), of the printed equations if ``direct``."""
+    from ..kernels.rows import contact_states as states
 
     if direct:
         from ..kernels.printed.loop import direct_loop as loop
     else:
         from ..kernels.rows.contact import contact_loop as loop
-    to = contact_states.Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
-    return loop, contact_states, to
+    return loop, states
+
+
+def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool) -> tuple[Any, NDArray]:
+    """Return (the laws of the states as kernels take them, the order in which states are evaluated) of a block.
+
+    material, direct: as of :func:`evaluate_law`.  alpha: alphas, or indices of materials.  parts: kappa, mu, V, creep.
+    """
+    if material is not None:
+        order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
+        return law_of_materials(material, alpha.astype(np.int64)), order
+    if direct:
+        return alpha, _NO_ORDER
+    return law_of_alphas(alpha), order_of_alphas(alpha, parts[0], parts[2])
+
+
+def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
+    """Return fields of pure rolling (delta = 0) at kappa |V| = u and kappa = mu = 1, a row each.
+
+    law: rows of the material.  u: speeds, (n,).  names: fields that kernels compute.
+    """
+    return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
-    """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly (zeta would be 0), or that given."""
+    """Raise ParameterError where kappa |V| exceeds its largest allowed value.
+
+    kappa: slenderness.  V: speeds, dimensionless; the arrays broadcast.  fastest: largest allowed kappa |V|.
+    """
     if not (kappa.size and V.size):
         return
     low, high = extent(V)

@@ -1,4 +1,4 @@
-"""Pressure and shear along the contact: :func:`stress`."""
+"""Pressure and shear stress along the contact: :func:`stress`."""
 
 from __future__ import annotations
 
@@ -7,40 +7,44 @@ from typing import Any, overload
 
 import numpy as np
 
-from ..core.blocks import elements, run_blocks
-from ..core.checks import broadcast_shape, checked
-from ..core.errors import one_of
-from ..core.labels import unlabelled
+from ..core.array_types import Floats, Numbers
+from ..core.blocks import block_reader, run_blocks
+from ..core.checks import broadcast_shape, check_array
+from ..core.errors import exactly_one_error
+from ..core.labels import strip_labels
 from ..core.results import Values
-from ..core.typed import Floats, Numbers
 from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
-from .contact import states
-from .parameters import Parameters, Rolls, framed, refuse_cover
+from .contact_table import evaluate_contact
+from .parameters import Parameters, Roller, refuse_cover, resolve_model
+from .validity.model_warnings import warn_of_contact
 
+#: Points of a block: some milliseconds of work.
 _BLOCK = 1 << 15
+#: Fields of the contact that the stresses depend on.
+_FIELDS = "lam", "epsilon", "beta", "zeta", "delta"
 
 
 @overload
-def stress(roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers) -> Values: ...
 @overload
-def stress(roller: Rolls, x: Numbers, V: Numbers, *, omega: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers) -> Values: ...
 def stress(
-    roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
+    roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
 ) -> Values:
     """Pressure and shear stress along the contact, Eqs. (11)-(14).
 
     Parameters
     ----------
-    roller : a :class:`Scene`, of which alpha, kappa and mu are used; or a :class:`Cylinder`, in SI units.
-    x : position over l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
-        value, the stresses are 0 outside the contact.
+    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a :class:`Cylinder`, in SI units.
+    x : position divided by l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
+        value: the stresses are 0 outside the contact.
     V, delta, omega : as for :func:`contact`; all arguments broadcast.
 
     Returns
     -------
     Values
-        ``p``: p/E' >= 0.  ``tau``: shear stress on the cylinder over E', of the sign of
+        ``p``: pressure divided by E', >= 0.  ``tau``: shear stress on the cylinder divided by E', of the sign of
         omega - V, |tau| <= mu p.  Of a Cylinder in Pa.
 
     Raises
@@ -48,63 +52,75 @@ def stress(
     ParameterError, ConvergenceError
         As for :func:`contact`.
 
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import viscoroll as vr
+    >>> x = np.linspace(-0.01, 0.01, 201)  # m
+    >>> found = vr.stress(vr.presets.RUBBER_CYLINDER, x, 0.1, delta=0.001)
+    >>> bool(found.p.max() > 0.0)
+    True
+
     Notes
     -----
-    Relative to the peak the error is below 1e-11 for alpha zeta from 1e-8 to 1e8
-    (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
-    held beside the result: 56 bytes an element of theirs.
+    The error relative to the peak is below 1e-11 for alpha zeta from 1e-8 to 1e8
+    (``tests/test_stress.py``).  Where V or the creepage are arrays, the state of the contact takes
+    56 bytes for each of their elements, beside the result.
     """
     from ..kernels.rows.stress import Points
 
-    _, scene, scale = framed(roller, "stress")
+    _, scene, scale = resolve_model(roller, "stress")
     refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
-        raise one_of("delta", "omega", both=delta is not None)
+        raise exactly_one_error("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
-    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
-    at, speed, creep = (checked(*given) for given in places.items())
-    places = dict(zip(places, (at, speed, creep), strict=True))
+    given, labels = strip_labels({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
+    given = {name: check_array(name, value) for name, value in given.items()}
+    position, speed, creep = given.values()
     if scale.si:
-        roller.look(speed)
-        with np.errstate(over="ignore"):  # a place so far away has no stress, such a speed is refused
-            at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
-    state = states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
-    # for V < 0 everything is mirrored, tau once more
+        warn_of_contact(roller, speed)
+        # A position that overflows lies outside the contact, a speed that overflows is refused.
+        with np.errstate(over="ignore"):
+            position, speed, creep = position / scale["length"], speed / scale["V"], creep / scale[creep_name]
+    lam, epsilon, beta, zeta, delta = evaluate_contact(scene, speed, creep, creep_name == "omega", _FIELDS).values()
+    # For V < 0 positions are mirrored, and tau changes its sign.
     mirror = np.where(speed < 0.0, -1.0, 1.0)
-    many = scene.each
-    given = {"x": at, "kappa": scene.kappa, "mu": scene.mu}
-    given |= {name: state[name] for name in ("lam", "epsilon", "beta", "zeta")}
-    given |= {"alpha": scene.alpha if many is None else np.arange(len(many), dtype=np.float64)}
-    given |= {"mirror": mirror, "sign": np.sign(state["delta"]) * mirror}
-    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
+    alpha = scene.alpha if scene.material_array is None else np.arange(len(scene.material_array), dtype=np.float64)
+    arrays = {"x": position, "kappa": scene.kappa, "mu": scene.mu, "lam": lam, "epsilon": epsilon, "beta": beta}
+    arrays |= {"zeta": zeta, "alpha": alpha, "mirror": mirror, "sign": np.sign(delta) * mirror}
+    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in arrays.items()}
     shape = broadcast_shape(**arrays)
-    x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
-    count = int(np.prod(shape))
-    p, tau = np.empty(count), np.empty(count)
+    read_x, *readers, read_alpha, read_mirror, read_sign = (block_reader(array, shape) for array in arrays.values())
+    p, tau = np.empty((2, int(np.prod(shape))))
 
     def work(start: int, stop: int) -> None:
-        mirrored = mirror_of(start, stop) * x_of(start, stop)
-        mirrored.flags.writeable = False  # as all that a kernel reads, see elements
-        points = Points(mirrored, *(part(start, stop) for part in others))
-        _fill(scene, alpha_of(start, stop), points, p[start:stop], tau[start:stop])
-        tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
+        mirrored = read_mirror(start, stop) * read_x(start, stop)
+        mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
+        points = Points(mirrored, *(read(start, stop) for read in readers))
+        _fill(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
+        tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
-    run_blocks(work, count, _BLOCK)
-    rows = {"p": p, "tau": tau}
-    found = {name: scale.of(name, row.reshape(shape) if shape else row.item()) for name, row in rows.items()}
-    return Values(found, places, si=scale.si, title="Stresses", labels=labels)
+    run_blocks(work, p.size, _BLOCK)
+    unit = scale["p"]
+    found = {name: unit * (row.reshape(shape) if shape else row.item()) for name, row in (("p", p), ("tau", tau))}
+    return Values(found, given, si=scale.si, title="Stresses", labels=labels)
 
 
-def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Floats) -> None:
-    """The stresses at points; ``numbers``: alphas, or of the materials, which lie together where they share one."""
+def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
+    """Compute the stresses at points.
+
+    scene: parameters of the roller.  alpha: alphas, or of many materials their indices; points of one material lie
+    together.  points: record of the kernel, whose fields have one value, or one for each point.  p, tau: results, (n,).
+    """
     from ..kernels.rows.stress import new_memory_weights, stress_loop
 
-    ends: Any = [] if scene.each is None else 1 + np.flatnonzero(np.diff(numbers))
+    ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
     for first, last in pairwise([0, *ends, p.size]):
-        given: Any = numbers if scene.series is None else scene.series
-        if scene.each is not None:
-            given = one_series(scene.each[int(numbers[min(first, numbers.size - 1)])])
-        series, alpha = kernel_series(given)
-        some = points._make(part[first:last] if part.size > 1 else part for part in points)
-        weights = new_memory_weights(series), new_memory_weights(series)
-        stress_loop(series, alpha, *weights, some, p[first:last], tau[first:last])
+        material: Any = alpha if scene.series is None else scene.series
+        if scene.material_array is not None:
+            material = one_series(scene.material_array[int(alpha[min(first, alpha.size - 1)])])
+        series, alphas = kernel_series(material)
+        part = points._make(each[first:last] if each.size > 1 else each for each in points)
+        stress_loop(
+            series, alphas, new_memory_weights(series), new_memory_weights(series), part, p[first:last], tau[first:last]
+        )

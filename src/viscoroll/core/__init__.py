@@ -1,1 +1,1 @@
-"""What every room stands on: errors, checks, units, results and their labels, files, plots."""
+"""Foundations of all layers: errors, checks, units, results and their labels, files, figures."""

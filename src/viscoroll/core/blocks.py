@@ -1,9 +1,8 @@
-"""Cut array work into fixed blocks, gather their elements, and run them on threads, with a progress bar.
+"""Work on arrays in fixed blocks: the elements of a block, threads, progress bar.
 
-The kernels release the GIL, so plain threads give the cores' full speed without a compiled
-parallel region: no second compilation, no threading layer to clash with a host program's,
-safe in forked processes and from several threads.  Blocks are fixed by the size of the
-work alone, so results do not depend on the number of threads.
+The kernels release the GIL, so that plain threads use all cores without a parallel region of numba: no second
+compilation, no threading layer that could clash with that of a host program, safe in forked processes and from several
+threads.  Blocks follow from the size of the work alone, so that results do not depend on the number of threads.
 """
 
 from __future__ import annotations
@@ -19,42 +18,45 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import whole
+from .array_types import Floats
+from .checks import check_integer
 from .errors import ParameterError
-from .typed import Floats
 
-#: blocks in hand, a worker
-_WAITING = 8
+#: Blocks submitted for each worker and not yet awaited.  A future takes a kilobyte, so that not all are submitted.
+_BLOCKS_IN_QUEUE = 8
 
 
-def elements(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
-    """(start, stop) -> those elements of ``array`` broadcast to ``shape``, as a vector; a single value stays one.
+def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
+    """Return a function that gives the elements of a block of a broadcast array.
 
-    A view where they lie so in memory, else a copy of these elements alone.  Read-only whatever was
-    given: a kernel is compiled anew for every kind of array that it sees.
+    array: numbers that broadcast to ``shape``.  shape: of all work.
+
+    Returns a function (start, stop) -> vector of the elements start to stop of the flattened broadcast array; of a
+    single number always that number, (1,).  Vectors are views where memory allows it, else copies, and read-only,
+    because a kernel is compiled again for each kind of array.
     """
     if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
-        vector = array.reshape(-1).view()
-        vector.flags.writeable = False
+        vector = broadcast_vector(array, array.shape)
         return (lambda start, stop: vector) if array.size == 1 else (lambda start, stop: vector[start:stop])
     whole = np.broadcast_to(array, shape)
 
-    def gathered(start: int, stop: int) -> Floats:
-        iterator: Any = np.nditer  # its stubs do not know "contig"
+    def read_block(start: int, stop: int) -> Floats:
+        iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
         flags = ["external_loop", "buffered", "ranged"]
         chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)
         chunks.iterrange = start, stop
-        vector = np.concatenate([chunk.copy() for chunk in chunks])  # each is overwritten by the next
+        # The iterator overwrites each chunk by the next one.
+        vector = np.concatenate([chunk.copy() for chunk in chunks])
         vector.flags.writeable = False
         return vector
 
-    return gathered
+    return read_block
 
 
-def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
-    """One value, or one for each element of ``shape``, as a contiguous vector.
+def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
+    """Return an array, broadcast to a shape and flattened, as a contiguous read-only vector; a single number as (1,).
 
-    Read-only whatever was given: a kernel is compiled anew for every kind of array that it sees.
+    array: numbers that broadcast to ``shape``.  shape: of the result before it is flattened.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
     vector = whole.reshape(-1).view()
@@ -63,18 +65,18 @@ def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
 
 def thread_count(threads: int | None = None) -> int:
-    """``threads``, else ``$VISCOROLL_THREADS``, else the cores this process may use.
+    """Return the number of threads: ``threads``, else ``$VISCOROLL_THREADS``, else that of the available cores.
 
     Raises
     ------
     ParameterError
-        Where either is no whole number >= 1.
+        If either is not a whole number >= 1.
     """
-    return whole("threads", threads, 1) if threads is not None else _threads_of_environment() or cores()
+    return check_integer("threads", threads, 1) if threads is not None else _environment_threads() or available_cores()
 
 
-def _threads_of_environment() -> int | None:
-    """``$VISCOROLL_THREADS``, None where it is not set; raises ParameterError where it is no whole number >= 1."""
+def _environment_threads() -> int | None:
+    """Return ``$VISCOROLL_THREADS``, None where it is not set; raise ParameterError unless it is an integer >= 1."""
     if not (given := os.environ.get("VISCOROLL_THREADS")):
         return None
     with suppress(ValueError):
@@ -83,8 +85,8 @@ def _threads_of_environment() -> int | None:
     raise ParameterError("VISCOROLL_THREADS", repr(given), "a whole number >= 1, or not set")
 
 
-def cores() -> int:
-    """Cores that this process may use, as far as the system tells."""
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
     if hasattr(os, "process_cpu_count"):  # Python 3.13
         return os.process_cpu_count() or 1
     if hasattr(os, "sched_getaffinity"):
@@ -92,12 +94,12 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-_heeded = threading.local()
+_cancellation = threading.local()
 
 
-def heed(event: threading.Event) -> None:
-    """From now on :func:`run_blocks` of this thread ends with CancelledError where the event is set."""
-    _heeded.event = event
+def cancel_with(event: threading.Event) -> None:
+    """Let :func:`run_blocks` of this thread raise CancelledError before its next block once ``event`` is set."""
+    _cancellation.event = event
 
 
 def run_blocks(
@@ -108,21 +110,31 @@ def run_blocks(
     threads: int | None = None,
     progress: str | None = None,
 ) -> None:
-    """Call ``work(start, stop)`` for consecutive blocks of ``range(count)``.
+    """Call a function for consecutive blocks of ``range(count)``, on several threads.
 
-    ``progress`` names a progress bar, drawn on standard error after the first second.
+    Parameters
+    ----------
+    work : function of (start, stop), the ends of a block.
+    count : number of elements.
+    block : elements of a block.
+    threads : as of :func:`thread_count`.
+    progress : title of a progress bar on standard error, which appears after one second; None: no bar.
+
+    Raises
+    ------
+    CancelledError
+        If the event of :func:`cancel_with` is set.
     """
     edges: Iterable[tuple[int, int]] = ((start, min(start + block, count)) for start in range(0, count, block))
-    blocks = -(-count // block)
-    workers = blocks
+    workers = blocks = -(-count // block)
     if blocks > 1 or threads is not None:
         workers = min(thread_count(threads), blocks)
     elif count > 1:
-        _threads_of_environment()  # refuses what is wrong for small work too
+        _environment_threads()  # a wrong value is an error of small work too
     if workers <= 1 and progress is None:
-        ended = getattr(_heeded, "event", None)
+        event = getattr(_cancellation, "event", None)
         for start, stop in edges:
-            if ended is not None and ended.is_set():
+            if event is not None and event.is_set():
                 raise CancelledError
             work(start, stop)
         return
@@ -131,19 +143,23 @@ def run_blocks(
 
         edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
     with ThreadPoolExecutor(max(workers, 1)) as pool:
-        _run(pool, work, edges, workers)
+        _submit_all(pool, work, edges, _BLOCKS_IN_QUEUE * workers)
 
 
-def _run(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], workers: int) -> None:
-    """Keep the workers busy with no more than a few blocks waiting: a future for each would take a kilobyte a block."""
+def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int) -> None:
+    """Run all blocks on a pool, and await them in order.
+
+    pool: threads.  work: function of (start, stop).  edges: (start, stop) of each block.  most: blocks that wait at the
+    same time.  After an error no further block starts.
+    """
     waiting: deque[Future[None]] = deque()
     try:
         for edge in edges:
             waiting.append(pool.submit(work, *edge))
-            if len(waiting) > _WAITING * workers:
+            if len(waiting) > most:
                 waiting.popleft().result()
         while waiting:
             waiting.popleft().result()
-    finally:  # after an error the others need not start
+    finally:
         for future in waiting:
             future.cancel()

@@ -1,6 +1,6 @@
-"""Numbers that callers give, as float64 in the unit of the argument, or refused by name.
+"""Checks of numbers that callers give: they become float64 in the unit of the argument, or raise ParameterError.
 
-Numbers are finite, in range, and of shapes that go together; what carries a unit is converted
+Numbers must be finite and in range, and the shapes of arrays must broadcast.  A number that has a unit is converted
 (:mod:`.quantities`).
 """
 
@@ -12,133 +12,150 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import ParameterError, described
-from .quantities import in_unit, is_plain, is_real
+from .array_types import Booleans, Floats
+from .errors import ParameterError, describe_value
+from .quantities import has_no_unit, is_real, to_unit
 from .scale import Units
-from .typed import Booleans, Floats
 
-#: bytes of a double
+#: Bytes of a double.  Wider floats may overflow in the conversion.
 _DOUBLE = 8
 
 
-def checked(name: str, value: ArrayLike, **bounds: Any) -> Floats:
-    """``value`` as float64, finite, >= ``low`` (> if ``strict``) and <= ``high``, which may be given.
+def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
+    """Return the numbers of an argument as a finite float64 array in its unit.
 
-    ``unit`` : what the argument is counted in, as of :func:`checked_extent`.
+    Parameters
+    ----------
+    name : of the argument.
+    value : a number, an array or a list.
+    **bounds : ``unit``, ``low``, ``strict``, ``high`` of :func:`check_array_extent`.
 
     Raises
     ------
     ParameterError
-        If it is not numeric, not finite, below ``low`` or above ``high``, or carries another unit.
+        If it is not numeric, not finite, below ``low``, above ``high``, or of another dimension.
     """
-    return checked_extent(name, value, **bounds)[0]
+    return check_array_extent(name, value, **bounds)[0]
 
 
-def checked_extent(
+def check_array_extent(
     name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, strict: bool = False,
     high: float = math.inf,
 ) -> tuple[Floats, tuple[float, float]]:  # fmt: skip
-    """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array.
+    """Return the array of :func:`check_array`, and its smallest and largest element ((0, 0) if it is empty).
 
     Parameters
     ----------
-    unit : what the argument is counted in, to which what carries a unit is converted: an SI unit as "m s-1", "1" of
-        a number without dimension; or what has units by name, as a :class:`.scale.Scale`.
+    name, value : as of :func:`check_array`.
+    unit : of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a dimensionless
+        number, or an object that has units by name, as a :class:`.scale.Scale`.
+    low : smallest allowed value, which is excluded if ``strict``.
+    high : largest allowed value.
     """
     if type(value) is float and low < value < high:
         return np.asarray(value), (value, value)
-    array = _numbers(name, value, unit, (low, strict, high))
+    array = _as_doubles(name, value, unit, (low, strict, high))
     smallest, largest = extent(array) if array.size else (0.0, 0.0)
-    # a NaN compares false; without one, no mask of the size of the array is needed
+    # A NaN makes both comparisons false.  An array without errors needs no mask of its size.
     above = smallest > low if strict else smallest >= low
     if array.size and not (above and -math.inf < smallest and largest < math.inf and largest <= high):
-        bad = ~(np.isfinite(array) & (array > low if strict else array >= low) & (array <= high))
-        raise ParameterError(name, _listed(array, bad), _allowed(low, strict, high) or "a finite number")
+        wrong = ~(np.isfinite(array) & (array > low if strict else array >= low) & (array <= high))
+        raise ParameterError(name, _first_wrong(array, wrong), _range_words(low, strict, high) or "a finite number")
     return array, (smallest, largest)
 
 
-def _allowed(low: float, strict: bool, high: float) -> str:
-    """A range in words; "" of all finite numbers."""
+def _range_words(low: float, strict: bool, high: float) -> str:
+    """Return a range in words, "" for all finite numbers; arguments as of :func:`check_array_extent`."""
     least = [] if low == -math.inf else [f"finite and {'>' if strict else '>='} {low:g}"]
     return ", ".join(least + ([] if high == math.inf else [f"<= {high:g}"]))
 
 
-def _numbers(name: str, value: Any, unit: Units, bounds: tuple[float, bool, float]) -> Floats:
-    """``value`` as float64 in ``unit``; raises ParameterError for what is no number, with its ``bounds`` in words."""
+def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, bool, float]) -> Floats:
+    """Return numbers as float64 in the unit of the argument.
+
+    name: of the argument.  value: what a caller gave.  unit: as of :func:`check_array_extent`.  bounds: low, strict
+    and high of the range, for the ParameterError of a value that is not numeric.
+    """
     plain = value
-    if not is_plain(value):
-        plain = in_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
+    if not has_no_unit(value):
+        plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
             raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
     try:
-        given = np.asarray(plain)
-        if given.dtype.kind == "O" and all(map(is_real, given.flat)):
-            given = given.astype(np.float64)
-    except (TypeError, ValueError, OverflowError):  # ragged, or an integer beyond the doubles
-        given = np.asarray(None)
-    if given.dtype.kind not in "iuf":
-        allowed = _allowed(*bounds)
-        raise ParameterError(name, described(value), f"a number, {allowed}" if allowed else "a finite number")
-    if given.dtype.itemsize <= _DOUBLE:
-        return given.astype(np.float64, copy=False)
-    with np.errstate(over="ignore"):  # of long doubles, which are infinite then
-        return given.astype(np.float64)
+        array = np.asarray(plain)
+        if array.dtype.kind == "O" and all(map(is_real, array.flat)):
+            array = array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):  # a ragged list, or an integer that no double holds
+        array = np.asarray(None)
+    if array.dtype.kind not in "iuf":
+        words = _range_words(*bounds)
+        raise ParameterError(name, describe_value(value), f"a number, {words}" if words else "a finite number")
+    if array.dtype.itemsize <= _DOUBLE:
+        return array.astype(np.float64, copy=False)
+    with np.errstate(over="ignore"):  # long doubles beyond the doubles become infinite, which is refused
+        return array.astype(np.float64)
 
 
-def _listed(array: Floats, bad: Booleans) -> str:
-    """The first bad value, its place, and how many more there are."""
+def _first_wrong(array: Floats, wrong: Booleans) -> str:
+    """Return the first wrong element of an array, its index, and the number of further ones.
+
+    array: numbers.  wrong: mask of the same shape.
+    """
     if array.size == 1:
         return str(array.item())
-    first = tuple(int(n[0]) for n in np.nonzero(bad))
-    place = f"at row {first[0]}" if array.ndim == 1 else f"at {first}"
-    more = int(np.count_nonzero(bad)) - 1
-    return f"{array[first]} {place}" + (f", and {more} more" if more else "")
+    first = tuple(map(int, np.argwhere(wrong)[0]))
+    index = f"at row {first[0]}" if array.ndim == 1 else f"at {first}"
+    more = int(np.count_nonzero(wrong)) - 1
+    return f"{array[first]} {index}" + (f", and {more} more" if more else "")
 
 
 def extent(array: Floats) -> tuple[float, float]:
-    """Least and largest element, both NaN if there is one."""
+    """Return the smallest and the largest element; both are NaN if the array has a NaN."""
     if array.ndim == 0:
         return float(array), float(array)
     return float(array.min()), float(array.max())
 
 
-def number(
-    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, strict: bool = False,
-    high: float = math.inf,
-) -> float:  # fmt: skip
-    """As :func:`checked`, and a single number.
+def check_number(
+    name: str, value: ArrayLike, *, low: float = -math.inf, high: float = math.inf, **bounds: Any
+) -> float:
+    """Return a single number, checked as by :func:`check_array`.
+
+    Parameters
+    ----------
+    name, value, low, high, **bounds : as of :func:`check_array`.
 
     Raises
     ------
     ParameterError
-        As there, or for an array.
+        As there, and for an array.
     """
     if type(value) is float and low < value < high:
         return value
-    array = checked(name, value, unit=unit, low=low, strict=strict, high=high)
+    array = check_array(name, value, low=low, high=high, **bounds)
     if array.ndim:
-        raise ParameterError(name, described(value), "a single number")
+        raise ParameterError(name, describe_value(value), "a single number")
     return float(array)
 
 
 def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
-    """Common shape of the named arrays.
+    """Return the common shape of arrays by name.
 
     Raises
     ------
     ParameterError
-        Naming the shapes, where they do not broadcast.
+        If they do not broadcast; the message lists the shapes.
     """
-    known = {array.shape for array in arrays.values()} - {()}
+    shapes = {array.shape for array in arrays.values()} - {()}
     try:
-        return np.broadcast_shapes(*known) if len(known) > 1 else known.pop() if known else ()
+        return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
-        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
-        raise ParameterError("shapes", shapes, "broadcastable against each other") from None
+        found = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        raise ParameterError("shapes", found, "broadcastable against each other") from None
 
 
-def frozen(array: Floats) -> float | Floats:
-    """A number, or a copy that nobody can write to."""
+def read_only(array: Floats) -> float | Floats:
+    """Return a float for an array without axes, else a read-only copy of the array."""
     if array.ndim == 0:
         return float(array)
     array = array.copy()
@@ -146,37 +163,48 @@ def frozen(array: Floats) -> float | Floats:
     return array
 
 
-def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
-    """``value`` as a whole number from ``least`` to ``most``.
+def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> int:
+    """Return a whole number.
+
+    Parameters
+    ----------
+    name : of the argument.
+    value : what a caller gave.
+    low, high : smallest and largest allowed value.
 
     Raises
     ------
     ParameterError
-        Otherwise.
+        If it is not a whole number, or out of range.
     """
-    if type(value) is int and least <= value <= most:
+    if type(value) is int and low <= value <= high:
         return value
-    if isinstance(value, bool) or not (isinstance(value, int | np.integer) and least <= value <= most):
-        allowed = f"a whole number >= {least}" if most == math.inf else f"a whole number in [{least}, {most}]"
-        raise ParameterError(name, described(value), allowed)
+    if isinstance(value, bool) or not (isinstance(value, int | np.integer) and low <= value <= high):
+        allowed = f"a whole number >= {low}" if high == math.inf else f"a whole number in [{low}, {high}]"
+        raise ParameterError(name, describe_value(value), allowed)
     return int(value)
 
 
-def one_name(name: str, value: Any, *allowed: str) -> None:
-    """Raise ParameterError where ``value`` is none of the ``allowed`` texts, the last of which stands behind "or"."""
+def check_choice(name: str, value: Any, *allowed: str) -> None:
+    """Raise ParameterError if the argument ``name`` has a ``value`` that is none of the ``allowed`` texts."""
     if not (isinstance(value, str) and value in allowed):
-        *most, last = map(repr, allowed)
-        raise ParameterError(name, described(value), f"{', '.join(most)} or {last}")
+        *others, last = map(repr, allowed)
+        raise ParameterError(name, describe_value(value), f"{', '.join(others)} or {last}")
 
 
-def yes_or_no(name: str, value: Any) -> bool:
-    """``value`` as True or False.
+def check_bool(name: str, value: Any) -> bool:
+    """Return a truth value of Python or numpy as a bool.
+
+    Parameters
+    ----------
+    name : of the argument.
+    value : what a caller gave.
 
     Raises
     ------
     ParameterError
-        For what is no truth value of Python or numpy: texts and numbers have a truth that nobody meant.
+        For anything else: the truth of a text or a number is seldom what the caller means.
     """
     if isinstance(value, bool | np.bool_):
         return bool(value)
-    raise ParameterError(name, described(value), "True or False")
+    raise ParameterError(name, describe_value(value), "True or False")

@@ -1,4 +1,4 @@
-"""What pushes and turns the cylinder: :class:`Schedule`, :class:`Feedback`, and the slope that it stands on."""
+"""Forces and torques on the cylinder: :class:`Schedule`, :class:`Feedback`, their units, and the slope."""
 
 from __future__ import annotations
 
@@ -10,147 +10,169 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .checks import checked, frozen
+from .checks import check_array, read_only
 from .errors import ParameterError
-from .quantities import converted, in_unit, without_unit
+from .quantities import convert, split_unit, to_unit
 from .scale import HasUnits, Scale
 
-#: of what acts, the quantities whose units its gains on V and omega have
+#: Load -> the quantities whose units its gains on V and omega have.
 _GAINS = {"force": ("dQ_dV", "dQ_domega"), "torque": ("dM_dV", "drag")}
 
 
 @dataclass(frozen=True, eq=False)
 class Schedule:
-    """A function of time by its corners: linear between, constant outside; a time given twice is a jump.
+    """A piecewise linear function of time, constant before its first and behind its last corner.
 
     Parameters
     ----------
-    times : (k,), ascending, >= 0; of an ensemble also (n, k), of each motion its own.
-    values : (k,), or (n, k).  Where times or values carry units, what they drive converts them.
+    times : of the corners, (k,), ascending, >= 0; a time that occurs twice is a jump.  For an ensemble also (n, k), a
+        row for each motion.
+    values : at the corners, (k,) or (n, k).  Units of times and values are converted by the function that takes the
+        schedule.
 
     Raises
     ------
     ParameterError
-        What is not numeric or not finite, times that fall or that come more than twice, shapes that do not go together.
+        Values that are not numeric or not finite, times that decrease or occur three times, shapes that do not agree.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> push = vr.Schedule([0.0, 1.0, 1.0], [5.0, 5.0, 0.0])  # 5 N/m for one second, then 0
+    >>> push.values
+    array([5., 5., 0.])
     """
 
     times: Any
     values: Any
-    #: that times and values carried
+    #: Name of a field -> unit that it was given in.
     units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Check the fields, and make them read-only arrays."""
         for name, low in (("times", 0.0), ("values", -np.inf)):
-            _keep(self, name, low)
+            _check_field(self, name, low)
         times, values = self.times, self.values
         fits = {np.ndim(times), np.ndim(values)} <= {1, 2}
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
             raise ParameterError("Schedule", shapes, "times (k,) and values (k,), or (n, k) for n motions")
-        falls = times[..., 1:] < times[..., :-1]
-        if falls.any():
-            raise ParameterError("times", times[..., :-1][falls][0], "in ascending order")
-        thrice = times[..., 2:] == times[..., :-2]
-        if thrice.any():
-            raise ParameterError("times", times[..., :-2][thrice][0], "there once, or twice for a jump")
+        for wrong, allowed in (
+            (times[..., 1:] < times[..., :-1], "in ascending order"),
+            (times[..., 2:] == times[..., :-2], "there once, or twice for a jump"),
+        ):
+            if wrong.any():
+                raise ParameterError("times", times[..., : wrong.shape[-1]][wrong][0], allowed)
 
 
 @dataclass(frozen=True, eq=False)
 class Feedback:
-    """A force or torque that follows the speeds: value + V * speed of the axis + omega * angular velocity.
+    """A force or torque that depends on the speeds: value + V * speed of the axis + omega * angular velocity.
 
     Parameters
     ----------
-    value : what acts at rest, over P for a force, over P R for a torque: a number or an array; for motions also
-        a :class:`Schedule` or a callable of t, see :func:`roll`.
-    V, omega : gains, numbers, for motions of an ensemble also (n,); < 0 brakes what is too fast, as an engine's torque
-        falls with its speed.
+    value : force or torque at rest: a number or an array; for motions also a :class:`Schedule` or a function of t, see
+        :func:`roll`.
+    V, omega : gains on the speed of the axis and on the angular velocity: numbers, for motions of an ensemble also
+        (n,).  A gain < 0 brakes, as the torque of an engine falls with its speed.
 
     Raises
     ------
     ParameterError
-        What is not numeric or not finite, gains that are neither numbers nor vectors.
+        Values that are not numeric or not finite, gains that are neither numbers nor vectors.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> engine = vr.Feedback(2.0, omega=-0.5)  # 2 N m/m at rest, 0 at 4 rad/s
+    >>> equilibria = vr.presets.RUBBER_CYLINDER.steady(torque=engine)
     """
 
     value: Any
     V: Any = 0.0
     omega: Any = 0.0
-    #: that value and gains carried
+    #: Name of a field -> unit that it was given in.
     units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not (callable(self.value) or isinstance(self.value, Schedule)):  # those are checked with their motion
-            _keep(self, "value", -np.inf)
+        """Check the fields; a schedule or a function is checked with its motion."""
+        if not (callable(self.value) or isinstance(self.value, Schedule)):
+            _check_field(self, "value", -np.inf)
         for name in ("V", "omega"):
-            _keep(self, name, -np.inf)
+            _check_field(self, name, -np.inf)
             if np.ndim(gain := getattr(self, name)) > 1:
                 raise ParameterError(name, f"of shape {np.shape(gain)}", "a number, or one a motion, (n,)")
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of its gains."""
+        """Common shape of the gains."""
         return np.broadcast_shapes(np.shape(self.V), np.shape(self.omega))
 
 
-def _keep(given: Schedule | Feedback, name: str, low: float) -> None:
-    """Check the numbers of a part of what drives, and keep them and their unit; raises ParameterError."""
-    plain, unit = without_unit(name, getattr(given, name))
-    object.__setattr__(given, name, frozen(checked(name, plain, low=low)))
+def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
+    """Replace a field by its checked numbers, and note its unit.
+
+    load: the schedule or feedback.  name: of the field.  low: smallest allowed number.
+    """
+    numbers, unit = split_unit(name, getattr(load, name))
+    object.__setattr__(load, name, read_only(check_array(name, numbers, low=low)))
     if unit is not None:
-        given.units[name] = unit
+        load.units[name] = unit
 
 
-def in_units_of(name: str, given: Any, units: HasUnits) -> Any:
-    """What a caller gave for an argument, in the unit of that: numbers, and what drives over time or with the speeds.
+def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
+    """Return an argument in its unit: numbers, a schedule or a feedback.
+
+    name: of the argument.  value: what a caller gave.  units: unit of each argument by name.
 
     Raises
     ------
     ParameterError
-        A unit of another dimension; a feedback where nothing follows the speeds.
+        A unit of another dimension; a feedback for an argument that is neither force nor torque.
     """
-    if isinstance(given, Schedule):
-        return _converted(name, given, {"times": units.unit("t"), "values": units.unit(name)})
-    if not isinstance(given, Feedback):
-        return in_unit(name, given, units.unit(name))
+    if isinstance(value, Schedule):
+        return _convert_fields(name, value, {"times": units.unit("t"), "values": units.unit(name)})
+    if not isinstance(value, Feedback):
+        return to_unit(name, value, units.unit(name))
     if name not in _GAINS:
         sentence = f"{name} is a Feedback, which acts as force= or torque= alone: give its gains there"
         raise ParameterError(name, "a Feedback", "no Feedback", sentence)
     wanted = dict(zip(("value", "V", "omega"), map(units.unit, (name, *_GAINS[name])), strict=True))
-    given = _converted(name, given, wanted)
-    value = in_units_of(name, given.value, units) if isinstance(given.value, Schedule) else given.value
-    return given if value is given.value else replace(given, value=value)
+    value = _convert_fields(name, value, wanted)
+    schedule = convert_argument(name, value.value, units) if isinstance(value.value, Schedule) else value.value
+    return value if schedule is value.value else replace(value, value=schedule)
 
 
-def _converted(name: str, given: Any, wanted: dict[str, str]) -> Any:
-    """A schedule or a feedback whose parts are in the ``wanted`` units, by their names."""
-    if not given.units:
-        return given
-    parts = {
-        part: converted(f"{part} of {name}", getattr(given, part), unit, wanted[part])
-        for part, unit in given.units.items()
+def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
+    """Return a schedule or a feedback with its fields in given units.
+
+    name: of the argument.  load: the schedule or feedback.  wanted: name of a field -> unit.
+    """
+    converted = {
+        part: convert(f"{part} of {name}", getattr(load, part), unit, wanted[part]) for part, unit in load.units.items()
     }
-    return replace(given, **parts)
+    return replace(load, **converted) if converted else load
 
 
-def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:
-    """Raise ParameterError for a function that cannot be called with a time alone."""
+def require_time_argument(name: str, function: Callable[..., Any]) -> None:
+    """Raise ParameterError for a function of the argument ``name`` that cannot be called with a time alone."""
     try:
-        takes = signature(function)
-    except ValueError:  # compiled code may not tell
+        parameters = signature(function)
+    except ValueError:  # compiled code may have no signature
         return
     try:
-        takes.bind(0.0)
+        parameters.bind(0.0)
     except TypeError:
         sentence = (
-            f"{name} is called with t alone, this function takes {takes}: for gains on the speeds give Feedback, "
+            f"{name} is called with t alone, this function takes {parameters}: for gains on the speeds give Feedback, "
+            "any other controller goes with vr.law into an integrator of your own"
         )
-        sentence += "any other controller goes with vr.law into an integrator of your own"
         raise ParameterError(name, function, "a function of t", sentence) from None
 
 
-def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
-    """(tan(theta), cos(theta)) of a slope in rad; (0, 1) without.
+def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
+    """Return (tan(theta), cos(theta)) of a slope in rad; (0, 1) for None.
 
     Raises
     ------
@@ -159,7 +181,7 @@ def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
     """
     if slope is None:
         return 0.0, 1.0
-    theta = checked("slope", slope, unit="rad")
+    theta = check_array("slope", slope, unit="rad")
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
         allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2), as np.radians(degrees) gives"
@@ -167,29 +189,31 @@ def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
     return np.tan(theta), np.cos(theta)
 
 
-def over(name: str, given: Any, scale: Scale) -> Any:
-    """A number, an array, a schedule, a function of time or a feedback, over its unit and that of time.
+def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
+    """Return a load divided by its unit: a number, an array, a schedule, a function of time or a feedback.
+
+    name: of the argument.  value: what a caller gave.  scale: of the roller; the values of a scene stay as they are.
 
     Raises
     ------
     ParameterError
-        What is not numeric or not finite, a brake below 0, arrays where numbers belong.
+        A value that is not numeric or not finite, a brake < 0, a function for an array of cylinders.
     """
-    if given is None or not scale.si:
-        return given
+    if value is None or not scale.si:
+        return value
     unit, low = scale[name], 0.0 if name in ("brake", "drag") else -np.inf
-    if type(given) is type(unit) is float and low < given < np.inf:
-        return given / unit
-    if isinstance(given, Feedback):
-        gains = given.V * scale["V"] / unit, given.omega * scale["omega"] / unit
-        return Feedback(over(name, given.value, scale), *gains)
-    if callable(given):
+    if type(value) is type(unit) is float and low < value < np.inf:
+        return value / unit
+    if isinstance(value, Feedback):
+        gains = value.V * scale["V"] / unit, value.omega * scale["omega"] / unit
+        return Feedback(make_dimensionless(name, value.value, scale), *gains)
+    if callable(value):
         if np.ndim(unit):
             raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
-        refuse_more_than_t(name, given)
-        return lambda t: checked(f"{name}(t)", given(t * scale["t"]), unit=scale.unit(name), low=low) / unit
-    if isinstance(given, Schedule):
-        values = checked(f"values of {name}", given.values, low=low)
-        return Schedule(given.times / scale["t"], values / (unit[:, np.newaxis] if np.ndim(unit) else unit))
-    value = checked(name, given, unit=scale, low=low) / unit
-    return value if value.ndim else float(value)
+        require_time_argument(name, value)
+        return lambda t: check_array(f"{name}(t)", value(t * scale["t"]), unit=scale.unit(name), low=low) / unit
+    if isinstance(value, Schedule):
+        values = check_array(f"values of {name}", value.values, low=low)
+        return Schedule(value.times / scale["t"], values / (unit[:, np.newaxis] if np.ndim(unit) else unit))
+    quotient = check_array(name, value, unit=scale, low=low) / unit
+    return quotient if quotient.ndim else float(quotient)

@@ -1,22 +1,21 @@
-"""The exception tree, and what a kernel's status code means.
+"""The exceptions of this package, and the meaning of a kernel's status code.
 
-Which error when:
+- :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be, an unknown name, inputs that
+  do not fit together.  It is also a ``ValueError``.
+- :class:`OutOfTableError`: a point outside the grid of a table.
+- :class:`FileError`: a file that is missing, damaged or of another kind, that has an unknown key or a value of the
+  wrong type, or that cannot be written.
+- :class:`MissingDependencyError`: an optional package, or a program, is not installed.
+- :class:`ConvergenceError`: an iteration reached its limit.
 
-- :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be,
-  an unknown name, inputs that do not fit together.  Also a ``ValueError``.
-- :class:`OutOfTableError`: a point outside a table's grid.
-- :class:`FileError`: a file that is missing, damaged, not what was asked for, or has a misspelt key or a value of the
-  wrong type; one that cannot be written.
-- :class:`MissingDependencyError`: a package of an extra, or a program, is not installed.
-- :class:`ConvergenceError`: an iteration that hit its cap.
-
-Kernels never raise; they return a status.  Motions carry one each, with a sentence
-(:class:`MotionStatus`); only a failed contact solve is turned into an exception.
+Kernels do not raise exceptions, they return a status.  Each motion has a status with a sentence
+(:class:`MotionStatus`); a contact that cannot be solved becomes a ConvergenceError.
 """
 
 from __future__ import annotations
 
 import copyreg
+import sys
 from collections.abc import Collection, Iterable
 from datetime import date, timedelta
 from enum import IntEnum
@@ -24,17 +23,22 @@ from typing import Any
 
 
 class ViscorollError(Exception):
-    """Base of every exception that this package raises on purpose."""
+    """Base class of all exceptions of this package."""
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Travels between processes, though its arguments are not those of Exception."""
+        """Pickle the attributes, because the arguments of the subclasses are not those of Exception."""
         return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
 class ParameterError(ViscorollError, ValueError):
-    """``name`` has a ``value`` outside what is ``allowed``; ``sentence`` says it where "must be" does not.
+    """A parameter has a value that is not allowed.  The message is one line: the name, the value, what is allowed.
 
-    The message is one line, whatever the text of the value is.
+    Parameters
+    ----------
+    name : of the parameter.
+    value : that was found.
+    allowed : words that follow "must be".
+    sentence : the whole message, where name, value and allowed values do not make one.
     """
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
@@ -42,60 +46,77 @@ class ParameterError(ViscorollError, ValueError):
         super().__init__(" ".join((sentence or f"{name} = {value!s}: must be {allowed}").split("\n")))
 
 
-#: kinds of what callers give in place of numbers, the first that fits
-_KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
-    ((str,), "a text"),
-    ((bytes,), "bytes"),
-    ((bool,), "a truth value"),
-    ((complex,), "a complex number"),
-    ((date,), "a date"),
-    ((timedelta,), "a duration"),
-    ((dict,), "a dictionary"),
+#: Types that callers give in place of numbers, and their names in messages; the first that fits is taken.
+_TYPE_NAMES: tuple[tuple[Any, str], ...] = (
+    (str, "a text"),
+    (bytes, "bytes"),
+    (bool, "a truth value"),
+    (complex, "a complex number"),
+    (date, "a date"),
+    (timedelta, "a duration"),
+    (dict, "a dictionary"),
     ((list, tuple), "a list"),
 )
 
 
-def described(value: Any) -> str:
-    """What a caller gave, for a message: its text in one line, cut at 60 characters, and its kind but of numbers."""
+def describe_value(value: Any) -> str:
+    """Return a value for a message: its text in one line of at most 60 characters, and its type unless it is a number.
+
+    value: what a caller gave.
+    """
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
         return text
-    kind = next((words for types, words in _KINDS if isinstance(value, types)), "")
-    if not kind and type(value).__module__.partition(".")[0] == "numpy":
-        shape = getattr(value, "shape", ())
-        kind = f"of type {value.dtype}" if hasattr(value, "dtype") else "of numpy"
-        kind += f", shape {shape}" if shape else ""
-    if not kind:
-        kind = "a function" if callable(value) else f"of type {type(value).__name__}"
-    return f"{text} ({kind})"
+    kind = next((words for types, words in _TYPE_NAMES if isinstance(value, types)), "")
+    if not kind and hasattr(value, "dtype"):
+        kind = f"of type {value.dtype}" + (f", shape {value.shape}" if value.shape else "")
+    return f"{text} ({kind or ('a function' if callable(value) else f'of type {type(value).__name__}')})"
 
 
-def one_of(first: str, second: str, both: bool) -> ParameterError:
-    """The error where both or neither of two names were given."""
+def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
+    """Return the error of a call that must give one of two parameters.
+
+    first, second: the parameters.  both: whether both were given; else neither was.
+    """
     sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
     return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
 
 
-def unknown(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
-    """The error where ``value`` is none of the ``known`` names; ``kind``: what they are names of, with its article."""
+def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
+    """Return the error of a parameter whose value is not a known name.
+
+    name: the parameter.  value: what was found.  known: the names that are allowed.  kind: noun for these names, with
+    its article, as "a field".
+    """
     names = ", ".join(known)
     return ParameterError(name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}")
 
 
-def refuse_unknown(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
-    """The names in ``values``, one or several; raises :func:`unknown` for the first that is none of the ``known``."""
+def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
+    """Return one name, or several, as a tuple.
+
+    values: a name or an iterable of names.  name, known, kind: as of :func:`unknown_name_error`, which is raised for
+    the first value that is not known.
+    """
     try:
         names = (values,) if isinstance(values, str) else tuple(values)
-    except TypeError:  # not several
+    except TypeError:  # not iterable
         names = (values,)
     for value in names:
         if not (isinstance(value, str) and value in known):
-            raise unknown(name, value, known, kind)
+            raise unknown_name_error(name, value, known, kind)
     return names
 
 
 class OutOfTableError(ParameterError):
-    """A point lies outside the grid of a table: nothing is extrapolated."""
+    """A point lies outside the grid of a table; tables do not extrapolate.
+
+    Parameters
+    ----------
+    name : of the coordinate.
+    value : that was found.
+    low, high : ends of the axis.
+    """
 
     def __init__(self, name: str, value: float, low: float, high: float) -> None:
         self.low, self.high = low, high
@@ -103,7 +124,13 @@ class OutOfTableError(ParameterError):
 
 
 class FileError(ViscorollError):
-    """The file at ``path`` cannot be read as what was asked for, or cannot be written: ``problem`` says why."""
+    """A file cannot be read or written.
+
+    Parameters
+    ----------
+    path : of the file.
+    problem : the reason, in words that follow the path.
+    """
 
     def __init__(self, path: Any, problem: str) -> None:
         self.path, self.problem = path, problem
@@ -111,11 +138,17 @@ class FileError(ViscorollError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """The user ended a run of blocks; what is done is kept, and the message says how to go on."""
+    """The user stopped a run of blocks.  Finished blocks are kept; the message names the command that resumes."""
 
 
 class MissingDependencyError(ViscorollError):
-    """A ``package`` that belongs to an ``extra`` of the installation is not there, or a program of no extra."""
+    """A package or a program is not installed.
+
+    Parameters
+    ----------
+    package : its name.
+    extra : of viscoroll, which installs it; None where no extra does.
+    """
 
     def __init__(self, package: str, extra: str | None) -> None:
         self.package, self.extra = package, extra
@@ -123,13 +156,15 @@ class MissingDependencyError(ViscorollError):
 
 
 class ConvergenceError(ViscorollError):
-    """An iteration reached its cap; a defect of this package, please report the input."""
+    """An iteration reached its limit.  This is a defect of the package: please report the input."""
 
 
 class ModelWarning(UserWarning):
-    """The model is grossly at fault for a motion or a contact, a material was not measured at what a contact asks of
-    it, or a file of measurements gives no units.  Every call is looked at; Python says the same words once for each
-    line of a program, those on a material or a file are said once for each.
+    """An assumption of the model is grossly violated, or data do not cover the input.
+
+    It is raised for a motion or a contact outside the validity of the model, for a contact whose transit frequency lies
+    outside the band in which the material was measured, and for a file of measurements without units.  Every call is
+    checked; Python shows a text once per line of the program.  Texts on a material or a file appear once for each.
     """
 
 
@@ -146,7 +181,7 @@ class MotionStatus(IntEnum):
 
     @property
     def message(self) -> str:
-        """In words."""
+        """The status in words."""
         return _MESSAGES[self]
 
 
@@ -155,19 +190,18 @@ _MESSAGES = (
     "|V| and R |omega| fell below the rest threshold",
     "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed grows without bound,"
     " loosen rtol",
-    "the step size fell to rounding level: the motion changes faster than time can be told there, by a gain, drag,"
-    " speed or friction of extreme size, or for a tight rtol",
-    "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
-    "too slow for the added mass, which came to 1 + j or to half of that below 0",
-    "caught in the imprint of its rest, which takes seven tenths of its energy",
+    "the step size fell to rounding level: the motion changes faster than doubles resolve time there, because a gain,"
+    " drag, speed or friction is extreme, or rtol too tight",
+    "V and omega were both 0, from where the motion is not unique: with mu > 2 kappa the cylinder can depart in two"
+    " ways",
+    "too slow for the added mass N, which reached 1 + j, or -(1 + j)/2",
+    "too slow to leave the indentation of its rest, which takes seven tenths of the energy",
 )
 
 
-def outside() -> int:
-    """Frames up to the first one that is not of this package: the ``stacklevel`` of a warning."""
-    import sys
-
-    depth, frame = 1, sys._getframe(1)
+def caller_level() -> int:
+    """Return the number of frames up to the first one outside this package: the ``stacklevel`` of a warning."""
+    level, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "viscoroll":
-        depth, frame = depth + 1, frame.f_back
-    return depth
+        level, frame = level + 1, frame.f_back
+    return level

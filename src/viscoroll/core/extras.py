@@ -1,4 +1,4 @@
-"""Packages that only a part of the work needs: an extra of the installation names them."""
+"""Imports of packages that only some functions need, and that an extra of the installation brings."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from typing import Any
 from .errors import MissingDependencyError
 
 
-def imported(module: str, package: str, extra: str) -> Any:
-    """A module of ``package``, which ``pip install 'viscoroll[EXTRA]'`` brings along.
+def import_extra(module: str, package: str, extra: str) -> Any:
+    """Return a module of an optional package.
+
+    module: name of the module, as "fmpy.fmi2".  package: distribution that has it.  extra: extra of viscoroll that
+    installs it, as in ``pip install 'viscoroll[EXTRA]'``.
 
     Raises
     ------
     MissingDependencyError
-        If it is not installed.
+        If the package is not installed.
     """
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
         if str(error.name).partition(".")[0] != module.partition(".")[0]:
-            raise  # it is there, and misses something itself
+            raise  # the package is installed, and one of its own dependencies is not
         raise MissingDependencyError(package, extra) from None

@@ -1,8 +1,8 @@
-"""Files that are whole or not there: temporary file, fsync, rename, fsync of the folder.
+"""Files that are written whole or not at all: temporary file, fsync, rename, fsync of the folder.
 
-Files that are read again end with a seal, the SHA-256 of all before it.  It lies behind the end
-that HDF5 and zip files state of themselves: other programs read them as ever, and this package
-finds damage before a library parses a single byte of it.
+Files that this package reads again end with a seal, the SHA-256 of all bytes before it.  The seal lies behind the end
+that HDF5 and zip files state, so that other programs do not see it, and this package detects damage before a library
+parses the file.
 """
 
 from __future__ import annotations
@@ -21,30 +21,38 @@ from .errors import FileError
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Text of a seal before its hash.
 _SEAL = b"\nSHA-256 of all before, by viscoroll: "
+#: Bytes of a seal: its text, the hash in hexadecimal digits, a line feed.
 _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
 @contextmanager
-def replacing(path: str | PathLike[str]) -> Iterator[Path]:
-    """A temporary path beside ``path``, put in its place when the body ends well.
+def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
+    """Give a temporary path beside ``path``, and rename it to ``path`` when the body of the ``with`` ends.
 
-    The file and its folder are synced to disk; after any failure ``path`` is as it was and
-    the temporary file is gone.  A process that is killed may leave a temporary file, named
-    .PID-XXXXXXXX.tmp-NAME, which may be deleted.  A symbolic link is followed: what it points to
-    is replaced, and the link stays.  The temporary name keeps the suffix of ``path``, by which
-    writers choose a format.
+    The file and its folder are synced to disk.  After an exception ``path`` is as it was, and the temporary file is
+    deleted.  A process that is killed may leave a temporary file, named .PID-XXXXXXXX.tmp-NAME, which may be deleted.
+    The target of a symbolic link is replaced, and the link stays.  The temporary name has the suffix of ``path``, from
+    which writers infer a format.
 
     Raises
     ------
     FileError
-        If it cannot be written there: no such folder, a full disk, a folder or file that is
-        read-only, a directory, a device, a loop of links.
+        If it cannot be written there: no such folder, a full disk, a read-only folder or file, a directory, a device,
+        a loop of links.
     """
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
     try:
-        _require_replaceable(target, path)
+        for wrong, problem in (
+            (target.is_symlink(), "a loop of symbolic links"),
+            (target.is_dir(), "a directory"),
+            (target.exists() and not target.is_file(), "not a regular file"),
+            (target.exists() and not os.access(target, os.W_OK), "read-only"),
+        ):
+            if wrong:
+                raise FileError(path, f"cannot be written: it is {problem}")
         yield temporary
         _sync(temporary)
         os.replace(temporary, target)
@@ -56,22 +64,11 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
             temporary.unlink()
 
 
-def _require_replaceable(target: Path, path: str | PathLike[str]) -> None:
-    """Refuse what a rename would replace without asking; ``target`` is where ``path`` leads."""
-    if target.is_symlink():
-        raise FileError(path, "cannot be written: it is a loop of symbolic links")
-    if target.is_dir():
-        raise FileError(path, "cannot be written: it is a directory")
-    if target.exists() and not target.is_file():
-        raise FileError(path, "cannot be written: it is not a regular file")
-    if target.exists() and not os.access(target, os.W_OK):
-        raise FileError(path, "cannot be written: it is read-only")
-
-
 def _sync(path: Path) -> None:
+    """Write the file or folder at ``path`` from the buffers of the system to the disk."""
     folder = path.is_dir()
     if folder and os.name == "nt":
-        return  # Windows opens no folders
+        return  # Windows cannot open folders
     descriptor = os.open(path, os.O_RDONLY if folder else os.O_RDWR)
     try:
         os.fsync(descriptor)
@@ -80,61 +77,77 @@ def _sync(path: Path) -> None:
 
 
 def seal(content: bytes) -> bytes:
-    """The bytes of a file with their seal behind them."""
+    """Return the ``content`` of a file with its seal."""
     return content + _seal_of(content)
 
 
-def seal_holds(content: bytes) -> bool | None:
-    """Whether the bytes of a file are those that were sealed; None where there is no seal."""
+def seal_matches(content: bytes) -> bool | None:
+    """Whether the seal at the end of ``content`` is that of the bytes before it; None if there is no seal."""
     end = content[-_SEAL_SIZE:]
     return end == _seal_of(memoryview(content)[:-_SEAL_SIZE]) if end.startswith(_SEAL) else None
 
 
-def sealed_content(path: str | PathLike[str], most: int, what: str, remedy: str) -> bytes:
-    """The bytes of a file, at ``most`` so many, compared with the seal at their end where there is one.
+def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: str) -> bytes:
+    """Return the bytes of a file, compared with the seal at their end if there is one.
 
-    ``what`` the file should be, and the ``remedy`` where it is not, in words.  Raises FileError.
+    Parameters
+    ----------
+    path : of the file.
+    max_bytes : a larger file is refused.
+    kind : noun for the file that is expected.
+    remedy : advice for a damaged file.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read, is too large, or differs from its seal.
     """
-    place = Path(path)
+    file = Path(path)
     try:
-        if place.is_file() and place.stat().st_size > most:
-            raise FileError(path, f"is no {what}: it is larger than {most} bytes")
-        content = place.read_bytes()
+        if file.is_file() and file.stat().st_size > max_bytes:
+            raise FileError(path, f"is no {kind}: it is larger than {max_bytes} bytes")
+        content = file.read_bytes()
     except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error}): it must be a {what}") from error
-    if seal_holds(content) is False:
+        raise FileError(path, f"cannot be read ({error.strerror or error}): it must be a {kind}") from error
+    if seal_matches(content) is False:
         raise FileError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
     return content
 
 
 def _seal_of(content: bytes | memoryview) -> bytes:
+    """Return the seal of ``content``."""
     return _SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
 def write_bytes(path: str | PathLike[str], content: bytes) -> None:
-    """Write a file, whole or not at all; raises FileError."""
-    with replacing(path) as temporary:
+    """Write ``content`` to a file by :func:`replace_file`."""
+    with replace_file(path) as temporary:
         temporary.write_bytes(content)
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write a text file in UTF-8, whole or not at all; raises FileError."""
+    """Write ``text`` to a file in UTF-8, by :func:`replace_file`."""
     write_bytes(path, text.encode())
 
 
 def write_dataset(
     dataset: xr.Dataset, path: str | PathLike[str], encoding: dict[str, Any] | None = None, *, sealed: bool = False
 ) -> None:
-    """Write a dataset as netCDF-4/HDF5, whole or not at all; raises FileError.
+    """Write a dataset as netCDF-4/HDF5 by :func:`replace_file`.
 
-    Coordinates get no fill value (CF forbids it); arrays are compressed and carry
-    Fletcher-32 checksums unless ``encoding`` says otherwise (HDF5 has none for scalars and texts).
+    Parameters
+    ----------
+    dataset : to write.
+    path : of the file.
+    encoding : of variables, as xarray takes it.  Default: no fill values (CF forbids them for coordinates), arrays of
+        numbers compressed and with Fletcher-32 checksums.
+    sealed : whether the file ends with a seal.
     """
     filters = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
-    chosen = {
+    default = {
         str(name): {"_FillValue": None} | (filters if v.ndim and v.size and v.dtype.kind not in "OU" else {})
         for name, v in dataset.variables.items()
     }
-    # composed in memory: on a full disk HDF5 2.0 crashes the process, see tests/test_files.py
-    content = bytes(dataset.to_netcdf(engine="h5netcdf", format="NETCDF4", encoding=encoding or chosen))
+    # The file is composed in memory, because HDF5 2.0 crashes the process on a full disk (tests/test_files.py).
+    content = bytes(dataset.to_netcdf(engine="h5netcdf", format="NETCDF4", encoding=encoding or default))
     write_bytes(path, seal(content) if sealed else content)

@@ -1,4 +1,4 @@
-"""Labels of xarray and pandas: taken off what comes in, with its units, and put back on what goes out."""
+"""Labels of xarray and pandas: removed from the arguments of a call, with their units, and put on its results."""
 
 from __future__ import annotations
 
@@ -8,20 +8,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .drive import Schedule, in_units_of
+from .drive import Schedule, convert_argument
 from .errors import ParameterError
-from .quantities import is_plain
+from .quantities import has_no_unit
 from .scale import HasUnits
 
 
 class Labels(NamedTuple):
-    """What the labelled arguments of a call have in common.
+    """Labels that the arguments of a call have in common.
 
-    Attributes
-    ----------
     shape : of the arguments, broadcast.
-    wrap : (name, values, names of axes behind those of ``shape``) -> the values with their labels.
-    dims, coords : as xarray takes them, of pandas too; a coordinate as its dims and its values.
+    wrap : function (name, values, names of further axes behind those of ``shape``) -> the values with labels.
+    dims, coords : axes and coordinates as xarray has them, for pandas too; each coordinate is (its axes, its values).
     """
 
     shape: tuple[int, ...]
@@ -29,65 +27,84 @@ class Labels(NamedTuple):
     dims: tuple[str, ...]
     coords: dict[str, Any]
 
-    def of(self, name: str, values: Any, *behind: str) -> Any:
-        """``values`` with labels; as they are where their shape is another than that of the arguments."""
-        found = np.shape(values)
-        fits = found[: len(self.shape)] == self.shape and len(found) == len(self.shape) + len(behind)
-        return self.wrap(name, values, behind) if fits else values
+    def apply(self, name: str, values: Any, *further: str) -> Any:
+        """Return values with labels, or as they are if their shape is not that of the arguments.
 
-    def beside(self, names: tuple[str, ...], what: str) -> tuple[tuple[str, ...], dict[str, Any]]:
-        """Axes and coordinates beside variables of these names: one that is called so is ``what`` before its name."""
-        new = {name: f"{what}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
+        name: of the result.  values: array.  further: names of its axes behind those of the arguments.
+        """
+        shape = np.shape(values)
+        fits = shape[: len(self.shape)] == self.shape and len(shape) == len(self.shape) + len(further)
+        return self.wrap(name, values, further) if fits else values
+
+    def renamed_coords(self, names: tuple[str, ...], prefix: str) -> tuple[tuple[str, ...], dict[str, Any]]:
+        """Return (axes, coordinates) for a dataset whose variables have some of their names.
+
+        names: of the variables.  prefix: word put before an axis or a coordinate of the same name.
+        """
+        new = {name: f"{prefix}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
         coords = {new[name]: (tuple(new[dim] for dim in dims), values) for name, (dims, values) in self.coords.items()}
         return tuple(new[dim] for dim in self.dims), coords
 
-    def along(self, dim: str) -> dict[str, Any]:
-        """The coordinates of a single axis for an axis that has the name ``dim``; those of its own name come first."""
-        own, *_ = self.dims
+    def axis_coords(self, dim: str) -> dict[str, Any]:
+        """Return the coordinates of arguments with one axis, for an axis named ``dim``; their own name is long_name."""
+        (own,) = self.dims[:1]
         return {
             dim if name == own else name: (dim, values, {"long_name": name})
             for name, (_, values) in self.coords.items()
         }
 
 
-#: types that bear neither labels nor units
-BARE = frozenset((float, int, np.float64, type(None)))
+#: Types that have neither labels nor units.
+UNLABELLED_TYPES = frozenset((float, int, np.float64, type(None)))
 
 
-def unlabelled(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
-    """Plain arrays in place of labelled ones, and what gives a result their labels; None where nothing has any.
-
-    What carries a unit is converted to that of the argument.
+def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
+    """Return the arguments of a call as plain numbers in their units, and their labels.
 
     Parameters
     ----------
-    given : arguments by name; functions of time, schedules and feedbacks stay as they are.
-    units : what the arguments are counted in, a :class:`.scale.Scale`.
+    given : name -> what a caller gave; functions of time, schedules and feedbacks stay.
+    units : unit of each argument by name, as a :class:`.scale.Scale`.
+
+    Returns
+    -------
+    plain : name -> value without labels and unit.
+    labels : None where no argument has any.
 
     Raises
     ------
     ParameterError
-        A unit of another dimension, arrays of xarray beside plain ones, series of pandas with unlike indices, both
-        kinds at once.
+        A unit of another dimension, labelled arrays beside plain ones, arrays of xarray with different coordinates,
+        series of pandas with different indices, or both kinds together.
     """
-    if BARE.issuperset(map(type, given.values())) or all(map(is_plain, given.values())):
+    if UNLABELLED_TYPES.issuperset(map(type, given.values())) or all(map(has_no_unit, given.values())):
         return given, None
-    given = {name: in_units_of(name, value, units) for name, value in given.items()}
-    xarray, pandas = sys.modules.get("xarray"), sys.modules.get("pandas")
-    arrays = {name: value for name, value in given.items() if xarray and isinstance(value, xarray.DataArray)}
-    series = {name: value for name, value in given.items() if pandas and isinstance(value, pandas.Series)}
-    if not arrays and not series:
+    given = {name: convert_argument(name, value, units) for name, value in given.items()}
+    arrays, series = (
+        {name: value for name, value in given.items() if kind and isinstance(value, kind)}
+        for kind in (_loaded_type("xarray", "DataArray"), _loaded_type("pandas", "Series"))
+    )
+    labelled = arrays | series
+    if not labelled:
         return given, None
-    others = {name: value for name, value in given.items() if name not in arrays | series}
-    plain = [name for name, value in others.items() if not isinstance(value, Schedule) and np.ndim(value)]
+    plain = [
+        name for name, value in given.items()
+        if name not in labelled and not isinstance(value, Schedule) and np.ndim(value)
+    ]  # fmt: skip
     if plain or (arrays and series):
-        names = ", ".join((*arrays, *series, *plain))
+        names = ", ".join((*labelled, *plain))
         raise ParameterError(names, "some labelled", "alike", f"{names}: give labels to all of them, or to none")
-    plain_values, labels = _of_xarray(arrays) if arrays else _of_pandas(series)
-    return given | plain_values, labels
+    values, labels = _from_xarray(arrays) if arrays else _from_pandas(series)
+    return given | values, labels
 
 
-def _of_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
+def _loaded_type(module: str, name: str) -> Any:
+    """Return a type of a module if the program has imported that, else None."""
+    return getattr(sys.modules.get(module), name, None)
+
+
+def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
+    """Return (name -> values, labels) of arrays of xarray, broadcast; raise ParameterError if coordinates differ."""
     import xarray as xr
 
     try:
@@ -97,16 +114,17 @@ def _of_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
         sentence = f"{names} have unlike coordinates: align them first ({str(error).splitlines()[0]:.120})"
         raise ParameterError(names, "unlike coordinates", "aligned", sentence) from error
     like = next(iter(whole.values())).drop_attrs()
-    dims = tuple(map(str, like.dims))
 
-    def wrap(name: str, values: Any, behind: tuple[str, ...]) -> Any:
-        return xr.DataArray(values, dims=(*like.dims, *behind), coords=like.coords, name=name)
+    def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
+        return xr.DataArray(values, dims=(*like.dims, *further), coords=like.coords, name=name)
 
-    coords = {str(name): (tuple(map(str, one.dims)), one.values) for name, one in like.coords.items() if one.dims}
-    return {name: array.values for name, array in whole.items()}, Labels(like.shape, wrap, dims, coords)
+    coords = {str(name): (tuple(map(str, each.dims)), each.values) for name, each in like.coords.items() if each.dims}
+    labels = Labels(like.shape, wrap, tuple(map(str, like.dims)), coords)
+    return {name: array.values for name, array in whole.items()}, labels
 
 
-def _of_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
+def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
+    """Return (name -> values, labels) of series of pandas; raise ParameterError if their indices differ."""
     import pandas as pd
 
     first, *others = series.values()
@@ -115,12 +133,12 @@ def _of_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
         names = " and ".join(series)
         raise ParameterError(names, "unlike indices", "of one index", f"{names} are of unlike index: align them first")
 
-    def wrap(name: str, values: Any, behind: tuple[str, ...]) -> Any:
-        if not behind:
-            return pd.Series(values, index=index, name=name)
-        if len(behind) > 1:
+    def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
+        if len(further) > 1:  # no type of pandas has more axes
             return values
-        return pd.DataFrame(values, index=index, columns=pd.RangeIndex(np.shape(values)[1], name=behind[0]))
+        if further:
+            return pd.DataFrame(values, index=index, columns=pd.RangeIndex(np.shape(values)[1], name=further[0]))
+        return pd.Series(values, index=index, name=name)
 
     levels = first.rename("").reset_index().iloc[:, :-1]
     dim = str(levels.columns[0]) if index.nlevels == 1 else "state"

@@ -1,7 +1,7 @@
-"""Units that inputs carry: quantities of pint, ``units`` attributes of xarray, durations of pandas and numpy.
+"""Inputs with units: quantities of pint, ``units`` attributes of xarray, durations of Python, pandas and numpy.
 
-:func:`in_unit` converts what carries a unit to the unit of the argument, or refuses it.  What carries none, and labels
-of xarray and pandas, pass as they are.
+:func:`to_unit` converts a value with a unit to the unit of the argument, or raises ParameterError.  Values without a
+unit, and the labels of xarray and pandas, stay as they are.
 """
 
 from __future__ import annotations
@@ -14,202 +14,218 @@ from typing import Any
 
 import numpy as np
 
-from .errors import ParameterError, described
-from .units import factor, spelled
+from .errors import ParameterError, describe_value
+from .units import conversion_factor, pint_spelling
 
-#: types that carry no unit
-_BARE = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
-#: kinds of arrays that carry no unit, as numpy calls them: truth values, integers, floats, complex, texts, dates
-_PLAIN = frozenset("biufcUSM")
-#: elements of lists that need no look
-_NUMBERS = frozenset((float, int))
-#: how a number without dimension is marked
-_NO_UNIT = ("", "1", "-", "dimensionless")
-#: hertz in a unit: a cycle is 2 pi rad of an angular velocity, and none of it anywhere else
+#: Types without a unit.
+_UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
+#: Kinds of arrays without a unit, as numpy names them: truth values, integers, floats, complex, texts, dates.
+_UNITLESS_KINDS = frozenset("biufcUSM")
+#: Types of the elements of lists without a unit.
+_NUMBER_TYPES = frozenset((float, int))
+#: Texts for the unit of a dimensionless number.
+_DIMENSIONLESS = ("", "1", "-", "dimensionless")
+#: Hertz in a unit.  A cycle is 2 pi rad for an angular velocity; for other arguments its meaning is unclear.
 _HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE)
-#: a share, which is no angle: a slope of 5 % is one of atan(0.05)
-_SHARE = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
-#: the unit at the end of a title
-_COLUMN = re.compile(r"\[([^\[\]]+)\]\s*$")
-#: absolute temperatures, whose zero may be moved
+#: A fraction in a unit, which is not an angle: a slope of 5 % is one of atan(0.05).
+_FRACTION = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
+#: A unit in brackets at the end of the title of a column.
+_TITLE_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
+#: The only unit of arguments whose zero differs from that of other units of its dimension.
 _TEMPERATURE = "degC"
 
 
-def is_plain(value: Any) -> bool:
-    """Whether it carries no unit, to be seen from its type: a number, an array or a list of numbers."""
+def has_no_unit(value: Any) -> bool:
+    """Whether the type of a value shows that it has no unit: a number, an array or a list of numbers."""
     kind = type(value)
     if kind is np.ndarray:
-        return value.dtype.kind in _PLAIN
-    return kind in _BARE or ((kind is list or kind is tuple) and _NUMBERS.issuperset(map(type, value)))
+        return value.dtype.kind in _UNITLESS_KINDS
+    return kind in _UNITLESS_TYPES or (kind in (list, tuple) and _NUMBER_TYPES.issuperset(map(type, value)))
 
 
-def in_unit(name: str, value: Any, wanted: str) -> Any:
-    """``value`` without its unit, in the unit that the argument has.
+def to_unit(name: str, value: Any, target: str) -> Any:
+    """Return a value in the unit of its argument, without that unit.
 
     Parameters
     ----------
     name : of the argument.
     value : what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.
-    wanted : SI unit of the argument as "m s-1"; "1" of a number without dimension.
+    target : SI unit of the argument as "m s-1"; "1" of a dimensionless number.
 
     Returns
     -------
-    value : as it was where it carries no unit; else numbers in ``wanted``, with the labels of xarray and pandas.
+    value : unchanged if it has no unit; else numbers in ``target``, with the labels of xarray and pandas.
 
     Raises
     ------
     ParameterError
-        A unit of another dimension, or one that is not known.
+        A unit of another dimension, or an unknown one.
     """
-    if is_plain(value):
+    if has_no_unit(value):
         return value
     if _is_quantity(value) and not hasattr(value, "units"):
         try:
-            return value.to(spelled(wanted)).magnitude
-        except Exception as error:  # whatever its library raises
-            raise refuse_unit(name, f"another unit ({value!s:.40})", wanted) from error
-    plain, unit = without_unit(name, value)
-    return plain if unit is None else converted(name, plain, unit, wanted)
+            return value.to(pint_spelling(target)).magnitude
+        except Exception as error:  # libraries raise errors of their own
+            raise unit_error(name, f"another unit ({value!s:.40})", target) from error
+    numbers, unit = split_unit(name, value)
+    return numbers if unit is None else convert(name, numbers, unit, target)
 
 
-def without_unit(name: str, value: Any) -> tuple[Any, str | None]:
-    """(``value`` without its unit, that unit; None where it carries none).
+def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
+    """Return (numbers of a value, its unit); the unit is None if it has none.
 
-    Labels of xarray and pandas stay.  Of lists and arrays of objects all elements have the unit of the first.
+    name: of the argument.  value: as of :func:`to_unit`.  Labels of xarray and pandas stay.  All elements of a list, or
+    of an array of objects, are converted to the unit of the first.
 
     Raises
     ------
     ParameterError
         A list of numbers with and without units, or with truth values; a duration in months or years.
     """
-    if is_plain(value):
+    if has_no_unit(value):
         return value, None
-    if type(value) is list or type(value) is tuple:
-        return _of_elements(name, value)
+    if type(value) in (list, tuple):
+        return _split_elements(name, value)
     if type(value) is np.ndarray and value.dtype.kind == "O" and value.ndim:
-        elements, unit = _of_elements(name, list(value.flat))
-        found = np.empty(value.size, object)
-        found[:] = elements
-        return found.reshape(value.shape), unit
+        elements, unit = _split_elements(name, list(value.flat))
+        numbers = np.empty(value.size, object)
+        numbers[:] = elements
+        return numbers.reshape(value.shape), unit
     if _is_quantity(value):
         unit = value.units
-        # in full words, whatever the default format of its registry
+        # The full name of the unit does not depend on the default format of its registry.
         return value.magnitude, format(unit, "D") if hasattr(unit, "dimensionality") else str(unit)
     if hasattr(value, "dtype") and (hasattr(value, "attrs") or hasattr(value, "to_numpy")):
-        return _of_labelled(name, value)
-    if (duration := _seconds(name, value)) is not None:
+        return _split_labelled(name, value)
+    if (duration := _to_seconds(name, value)) is not None:
         return duration, "s"
-    if isinstance(value, np.ndarray | np.generic):  # astropy's and unyt's
-        unit = getattr(value, "unit", getattr(value, "units", None))
-        return (value, None) if unit is None else (np.array(value, subok=False), str(unit))
+    unit = getattr(value, "unit", getattr(value, "units", None))  # of astropy and unyt
+    if unit is not None and isinstance(value, np.ndarray | np.generic):
+        return np.array(value, subok=False), str(unit)
     return value, None
 
 
-def converted(name: str, value: Any, unit: str, wanted: str) -> Any:
-    """Numbers in ``unit`` as numbers in ``wanted``; arguments and errors of :func:`in_unit`."""
-    if unit == wanted or (wanted == "1" and unit.strip() in _NO_UNIT):
+def convert(name: str, value: Any, unit: str, target: str) -> Any:
+    """Return numbers in one unit as numbers in another.
+
+    name: of the argument.  value: number, array, or list of these.  unit: their unit.  target: wanted unit.  Errors are
+    those of :func:`to_unit`.
+    """
+    if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
-    if unit.strip() in _NO_UNIT and wanted != "rad":
-        raise refuse_unit(name, "units of 1, without dimension", wanted)
-    cycles = wanted != "rad s-1" and _HERTZ.search(unit)
-    if cycles or (wanted == "rad" and _SHARE.search(unit)) or (wanted == _TEMPERATURE and "delta" in unit):
-        raise refuse_unit(name, unit, wanted)
+    if unit.strip() in _DIMENSIONLESS and target != "rad":
+        raise unit_error(name, "units of 1, without dimension", target)
+    cycles = target != "rad s-1" and _HERTZ.search(unit)
+    if cycles or (target == "rad" and _FRACTION.search(unit)) or (target == _TEMPERATURE and "delta" in unit):
+        raise unit_error(name, unit, target)
     try:
-        times, zero = factor(unit, wanted)
+        factor, offset = conversion_factor(unit, target)
     except ParameterError as error:
-        raise refuse_unit(name, unit, wanted, known="pint knows" not in error.allowed) from None
-    if zero and wanted != _TEMPERATURE:
-        raise refuse_unit(name, unit, wanted)
+        raise unit_error(name, unit, target, known="pint knows" not in error.allowed) from None
+    if offset and target != _TEMPERATURE:
+        raise unit_error(name, unit, target)
     if isinstance(value, list):
-        return [converted(name, each, unit, wanted) for each in value]
+        return [convert(name, element, unit, target) for element in value]
     number = _as_floats(name, value)
-    return number * times + zero if zero else number * times
+    return number * factor + offset if offset else number * factor
 
 
 def _as_floats(name: str, value: Any) -> Any:
-    """The numbers of a quantity as doubles, with their labels; raises ParameterError for what are no numbers."""
+    """Return the numbers of a quantity as doubles, with labels; raise ParameterError if they are not numeric.
+
+    name: of the argument.  value: a number or an array.
+    """
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     try:
         if kind in ("i", "u", "f") or (kind == "O" and all(map(is_real, np.asarray(value).flat))):
             return value.astype(np.float64)
         if not kind and is_real(value):
             return float(value)
-    except OverflowError:  # an integer beyond the doubles
+    except OverflowError:  # an integer that no double holds
         pass
-    raise ParameterError(name, described(value), "a finite number")
+    raise ParameterError(name, describe_value(value), "a finite number")
 
 
 def is_real(value: Any) -> bool:
-    """Whether an object is a real number, of Python or another library; no truth value."""
+    """Whether an object is a real number of Python or another library, and not a truth value."""
     return isinstance(value, Real | Decimal) and not isinstance(value, bool)
 
 
-def refuse_unit(name: str, unit: str, wanted: str, known: bool = True) -> ParameterError:
-    """The error where an argument that is counted in ``wanted`` is given in a ``unit`` that does not become it."""
-    must = "a number without dimension" if wanted == "1" else f"in {wanted}, or in a unit of that dimension"
-    which = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
-    return ParameterError(name, which, must, f"{name} is {which}: must be {must}")
+def unit_error(name: str, unit: str, target: str, known: bool = True) -> ParameterError:
+    """Return the error of an argument in a unit that cannot be converted.
+
+    name: of the argument.  unit: that was found.  target: unit of the argument.  known: whether pint knows the unit.
+    """
+    allowed = "a number without dimension" if target == "1" else f"in {target}, or in a unit of that dimension"
+    found = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
+    return ParameterError(name, found, allowed, f"{name} is {found}: must be {allowed}")
 
 
 def _is_quantity(value: Any) -> bool:
-    """Whether it is a quantity of pint, or like one."""
+    """Whether a value has the interface of a quantity of pint."""
     return hasattr(value, "magnitude") and hasattr(value, "to")
 
 
-def _of_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
-    """The elements of a list without their units, all in that of the first."""
-    parts = [without_unit(name, each) for each in values]
+def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
+    """Return (numbers of a list, unit of the first); elements in other units are converted.
+
+    name: of the argument.  values: the list.
+    """
+    parts = [split_unit(name, value) for value in values]
     units = list(dict.fromkeys(unit for _, unit in parts))
-    if any(isinstance(plain, bool | np.bool_) for plain, _ in parts):
+    if any(isinstance(number, bool | np.bool_) for number, _ in parts):
         raise ParameterError(name, f"{values!r:.60}", "numbers, no truth values")
     if len(units) > 1 and None in units:
         raise ParameterError(name, "numbers, some with units and some without", "alike")
-    if len(units) <= 1:
-        return [plain for plain, _ in parts], units[0] if units else None
-    first: Any = units[0]
-    return [converted(name, plain, str(unit), first) for plain, unit in parts], first
+    unit = units[0] if units else None
+    return [number if own == unit else convert(name, number, str(own), str(unit)) for number, own in parts], unit
 
 
-def _of_labelled(name: str, value: Any) -> tuple[Any, str | None]:
-    """An array of xarray, a series or an index of pandas, with its labels, and the unit that it carries.
+def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
+    """Return (labelled numbers, their unit) of an array of xarray, a series or an index of pandas.
 
-    That is the one of its elements, of its attributes, or in its title, as results write their columns.
+    name: of the argument.  value: the array.  The unit is that of the elements, of the attribute ``units``, or in the
+    title of a column, as results write it.
     """
-    of_xarray = hasattr(value, "dims")
-    data = value.data if of_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
-    plain, own = without_unit(name, data)
-    said = getattr(value, "attrs", {}).get("units", _of_column(getattr(value, "name", None)))
-    if said is None and plain is data:
+    is_xarray = hasattr(value, "dims")
+    data = value.data if is_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
+    numbers, own = split_unit(name, data)
+    stated = getattr(value, "attrs", {}).get("units", _title_unit(getattr(value, "name", None)))
+    if stated is None and numbers is data:
         return value, None
-    if said is not None and own is not None:
-        plain = converted(name, plain, own, str(said))
-    unit = own if said is None else str(said)
-    if not of_xarray:
-        return type(value)(plain, index=value.index, name=value.name) if hasattr(value, "index") else plain, unit
-    found = value.copy(deep=False, data=plain)
-    found.attrs = {}  # it is of no unit any more
-    return found, unit
+    if stated is not None and own is not None:
+        numbers = convert(name, numbers, own, str(stated))
+    unit = own if stated is None else str(stated)
+    if not is_xarray:
+        return type(value)(numbers, index=value.index, name=value.name) if hasattr(value, "index") else numbers, unit
+    labelled = value.copy(deep=False, data=numbers)
+    labelled.attrs = {}
+    return labelled, unit
 
 
-def _of_column(title: Any) -> str | None:
-    """The unit in the title of a column, as of "V [km/h]" of a table of pandas; None without, or of what is no unit."""
-    found = _COLUMN.search(title) if isinstance(title, str) else None
-    if found is None or found[1].strip() in _NO_UNIT:
+def _title_unit(title: Any) -> str | None:
+    """Return the unit in a title of a column, as of "V [km/h]"; None if there is none that pint knows."""
+    found = _TITLE_UNIT.search(title) if isinstance(title, str) else None
+    if found is None or found[1].strip() in _DIMENSIONLESS:
         return None
     try:
-        factor(found[1], found[1])
+        conversion_factor(found[1], found[1])
     except ParameterError:
         return None
     return found[1]
 
 
-def _seconds(name: str, value: Any) -> Any:
-    """Durations of Python, numpy and pandas in seconds; None of what is none."""
+def _to_seconds(name: str, value: Any) -> Any:
+    """Return durations of Python, numpy and pandas in seconds; None if the value is no duration.
+
+    name: of the argument.  value: what a caller gave.
+    """
     if isinstance(value, timedelta):
         value = value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)
     if getattr(getattr(value, "dtype", None), "kind", "") != "m" or isinstance(value, np.ma.MaskedArray):
         return None
-    found = np.asarray(value)
-    if np.datetime_data(found.dtype)[0] in ("generic", "Y", "M"):
+    durations = np.asarray(value)
+    if np.datetime_data(durations.dtype)[0] in ("generic", "Y", "M"):
         raise ParameterError(name, f"{value!r:.60}", "a duration in weeks, days, hours, seconds or parts of them")
-    return found / np.timedelta64(1, "s")
+    return durations / np.timedelta64(1, "s")

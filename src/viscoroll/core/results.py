@@ -1,4 +1,4 @@
-"""What every result can do: say itself in few lines, as HTML, as xarray and pandas, and draw itself."""
+"""Base classes of results: summaries as text and HTML, datasets of xarray, tables of pandas, figures."""
 
 from __future__ import annotations
 
@@ -19,53 +19,56 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: rows of a short table
-_MOST_ROWS = 40
+#: Rows of a summary in a notebook: more do not fit a screen.
+_MAX_ROWS = 40
 
 
-class Row(NamedTuple):
-    """A line of a result: a name, what it holds, its unit ("" without)."""
+class SummaryRow(NamedTuple):
+    """A line of a summary.
+
+    name : of the quantity.  value : as text.  unit : "" of a dimensionless quantity.
+    """
 
     name: str
     value: str
     unit: str = ""
 
 
-class Shown:
-    """A result that shows itself; a subclass says its :meth:`_card`, and gives :meth:`to_xarray`."""
+class Result:
+    """Base class of results.  A subclass implements :meth:`_summary` and :meth:`to_xarray`."""
 
-    def _card(self) -> tuple[str, list[Row]]:
-        """A title and a line for each thing worth a look."""
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return (title, rows) of the summary."""
         raise NotImplementedError
 
     def to_xarray(self) -> xr.Dataset:
-        """All of it as a dataset, with names and units."""
+        """All fields as a dataset, with long names and units."""
         raise NotImplementedError
 
     def to_pandas(self) -> pd.DataFrame:
         """The dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
 
-        What has a unit bears it in its name, as "V [m s-1]": pandas writes names alone into files.  What lies over
-        other axes, as the corners of a drive, is left out.
+        A column of a quantity with a unit is called as "V [m s-1]", because pandas writes no attributes into files.
+        Variables over other axes, as the corners of a drive, are left out.
         """
         data = self.to_xarray()
-        over = max((each.dims for each in data.values()), key=len)
-        data = data[[name for name, each in data.items() if set(each.dims) <= set(over)]]
-        data = data if over else data.expand_dims("state")
-        names = {name: column(str(name), unit_of(data[name].attrs)) for name in data.variables}
+        dims = max((variable.dims for variable in data.values()), key=len)
+        data = data[[name for name, variable in data.items() if set(variable.dims) <= set(dims)]]
+        data = data if dims else data.expand_dims("state")
+        names = {name: column_name(str(name), unit_of(data[name].attrs)) for name in data.variables}
         return data.to_dataframe().rename(columns=names).rename_axis(index=names)
 
     def plot(self: Any, path: str | PathLike[str] | None = None) -> Figure:
-        """Draw it; a figure of matplotlib.
+        """Draw the result; returns a figure of matplotlib.
 
         Parameters
         ----------
-        path : a file to save it in, of a suffix that matplotlib knows; default: none is written.
+        path : file to save it in, with a suffix that matplotlib knows; default: none.
 
         Raises
         ------
         ParameterError
-            Where there is nothing to draw over, as of a single state.
+            If the result has no axis, as that of a single state.
         FileError
             If the file cannot be written, or its suffix names no format.
         """
@@ -77,13 +80,13 @@ class Shown:
         return figure
 
     def _figure(self) -> Figure:
-        """Its figure, of most that of their dataset."""
+        """Return the figure of the dataset."""
         from .plots import draw
 
         return draw(self.to_xarray())
 
     def keys(self) -> Iterable[str]:
-        """Names of what it holds."""
+        """Names of the fields."""
         return [field.name for field in fields(self) if not field.name.startswith("_")]  # type: ignore[arg-type]
 
     def __getitem__(self, name: str) -> Any:
@@ -92,40 +95,43 @@ class Shown:
         return getattr(self, name)
 
     def __repr__(self) -> str:
-        return as_text(*self._card())
+        return as_text(*self._summary())
 
     def _repr_html_(self) -> str:
-        return as_html(*self._card())
+        return as_html(*self._summary())
 
 
-def as_text(title: str, rows: list[Row]) -> str:
-    """A card for a terminal."""
+def as_text(title: str, rows: list[SummaryRow]) -> str:
+    """Return a summary with a ``title`` and ``rows`` for a terminal."""
     width = max((len(row.name) for row in rows), default=0)
     return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
 
 
-def as_html(title: str, rows: list[Row]) -> str:
-    """A card for a notebook."""
+def as_html(title: str, rows: list[SummaryRow]) -> str:
+    """Return a summary with a ``title`` and its first ``rows`` for a notebook."""
     cells = "".join(
         "<tr>" + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) + "</tr>"
-        for row in rows[:_MOST_ROWS]
+        for row in rows[:_MAX_ROWS]
     )
     return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
 
 
-def unit_of(described: Mapping[Any, Any]) -> str:
-    """The unit among the attributes of a quantity, "" of a number."""
-    unit = str(described.get("units", "1"))
+def unit_of(attributes: Mapping[Any, Any]) -> str:
+    """Return the unit in the ``attributes`` of a variable, "" of a dimensionless one."""
+    unit = str(attributes.get("units", "1"))
     return "" if unit == "1" else unit
 
 
-def column(name: str, unit: str) -> str:
-    """The name of a column: what stands in it, and its unit if it has one."""
+def column_name(name: str, unit: str) -> str:
+    """Return the title of a column: the ``name`` of a quantity, and its ``unit`` unless that is ""."""
     return f"{name} [{unit}]" if unit else name
 
 
-def short(value: Any) -> str:
-    """A number, or what an array holds, in few words."""
+def format_value(value: Any) -> str:
+    """Return a number, a short array, or shape and range of a long one as text.
+
+    value: number, text or array.
+    """
     if not isinstance(value, np.ndarray):
         return f"{value:.12g}" if isinstance(value, float) else str(value)
     if value.ndim == 0 or 0 < value.size <= 4:
@@ -137,16 +143,26 @@ def short(value: Any) -> str:
     return text + (f", {value.size - finite.size} not finite" if finite.size < value.size else "")
 
 
-class Values(Shown):
-    """Named results of one call; a name that was not asked for is an AttributeError.
+class Values(Result):
+    """Named results of one call, as attributes and by ``[name]``; other names raise AttributeError.
 
-    given : the arguments over which they were computed, by name.
-    units : unit of each that has one; si : whether all that have a dimension are in SI units; title : what they are;
-    labels : those of the arguments; about : attributes of the dataset.  What could not be computed was refused:
-    ``success`` is True, as of motions and equilibria that were found.
+    Parameters
+    ----------
+    values : name -> result.
+    given : name -> argument, broadcast with the results.
+    units : name -> unit, where the table of dimensions does not have it.
+    title : of summary, dataset and figure.
+    si : whether quantities with a dimension are in SI units.
+    labels : of the arguments.
+    about : further attributes of the dataset.
+
+    Attributes
+    ----------
+    success, status, message : True, 0 and a sentence, as motions and equilibria have them: a call that cannot compute
+        its results raises an exception.
     """
 
-    success, status, message = True, 0, "all of it was computed"
+    success, status, message = True, 0, "all fields were computed"
 
     def __init__(
         self,
@@ -160,7 +176,7 @@ class Values(Shown):
         about: dict[str, Any] | None = None,
     ) -> None:
         self._about = about or {}
-        self._values = values if labels is None else {name: labels.of(name, value) for name, value in values.items()}
+        self._values = values if labels is None else {name: labels.apply(name, each) for name, each in values.items()}
         self._given, self._units, self._labels = given or {}, units or {}, labels
         self._title, self._si = title + ", in SI units" * si, si
 
@@ -170,8 +186,8 @@ class Values(Shown):
         try:
             return self._values[name]
         except KeyError:
-            held = ", ".join(self._values)
-            raise AttributeError(f"{name!r} was not computed; this result holds {held}") from None
+            names = ", ".join(self._values)
+            raise AttributeError(f"{name!r} was not computed; this result holds {names}") from None
 
     def __dir__(self) -> Iterable[str]:
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]
@@ -183,52 +199,53 @@ class Values(Shown):
     def keys(self) -> Iterable[str]:
         return self._values.keys()
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
         title = self._title + (f", {shape}" if shape else "")
-        return title, [Row(name, short(value), unit_of(self._attributes(name))) for name, value in self._values.items()]
+        units = {name: unit_of(self._attributes(name)) for name in self._values}
+        return title, [SummaryRow(name, format_value(value), units[name]) for name, value in self._values.items()]
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over the arguments that vary, with names and units.
+        """All results, and the arguments that vary, as a dataset with long names and units.
 
-        An axis along which one argument alone varies has its name and its values; others are called ``state``.
-        Arguments with labels of xarray or pandas give theirs.
+        An axis along which one argument alone varies has the name and the values of that argument; other axes are
+        called ``state``.  Arguments with labels of xarray or pandas determine axes and coordinates.
         """
         import xarray as xr
 
-        plain = {name: np.asarray(value) for name, value in self._values.items()}
         given = {name: np.asarray(value) for name, value in self._given.items()}
-        shape = np.broadcast_shapes(*(array.shape for array in (*plain.values(), *given.values())))
-        labels = self._labels if self._labels and self._labels.shape == shape else None
-        dims, coordinates = (labels.dims, labels.coords) if labels else _axes(given, shape)
+        arrays = given | {name: np.asarray(value) for name, value in self._values.items()}
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        if self._labels and self._labels.shape == shape:
+            dims, coords = self._labels.dims, self._labels.coords
+        else:
+            dims, axes = _name_axes(given, shape)
+            coords = {name: ((name,), values, self._attributes(name)) for name, values in axes.items()}
         data = {}
-        for name, array in (given | plain).items():
-            if name in coordinates:
-                continue
-            whole = np.broadcast_to(array, shape) if array.ndim else array
-            kept = whole.astype(np.int8) if whole.dtype == bool else whole
-            data[name] = xr.Variable(dims if array.ndim else (), kept, self._attributes(name))
-        if not labels:
-            coordinates = {name: ((name,), values, self._attributes(name)) for name, values in coordinates.items()}
-        return xr.Dataset(data, coordinates, attrs={"title": self._title} | self._about)
+        for name, array in arrays.items():
+            if name not in coords:
+                numbers = array.astype(np.int8) if array.dtype == bool else array
+                whole = np.broadcast_to(numbers, shape) if array.ndim else numbers
+                data[name] = xr.Variable(dims if array.ndim else (), whole, self._attributes(name))
+        return xr.Dataset(data, coords, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:
+        """Return the attributes of the result or argument ``name``."""
         found: dict[str, Any] = dict(attributes(name, self._si))
         return found | {"units": self._units[name]} if name in self._units else found
 
 
-def _axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """Names of the axes, and the coordinates of those that one argument alone varies along."""
-    dims, coordinates = [], {}
-    for axis in range(len(shape)):
-        along = [name for name, array in given.items() if _varies(array, axis - len(shape))]
-        if len(along) == 1 and given[along[0]].size == shape[axis]:
-            dims.append(along[0])
-            coordinates[along[0]] = given[along[0]].ravel()
+def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
+    """Return (names of all axes, values of the axes along which one argument alone varies).
+
+    given: name -> argument.  shape: of arguments and results, broadcast.
+    """
+    dims, values = [], {}
+    for axis, size in enumerate(shape, -len(shape)):
+        varying = [name for name, array in given.items() if -axis <= array.ndim and array.shape[axis] > 1]
+        if len(varying) == 1 and given[varying[0]].size == size:
+            dims.append(varying[0])
+            values[varying[0]] = given[varying[0]].ravel()
         else:
-            dims.append("state" if len(shape) == 1 else f"state_{axis}")
-    return tuple(dims), coordinates
-
-
-def _varies(array: NDArray, axis: int) -> bool:
-    return -axis <= array.ndim and array.shape[axis] > 1
+            dims.append("state" if len(shape) == 1 else f"state_{axis + len(shape)}")
+    return tuple(dims), values

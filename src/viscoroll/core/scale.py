@@ -1,75 +1,71 @@
-"""What each quantity is counted in: the one table of dimensions, and the units of what rolls (:class:`Scale`).
+"""Units of each quantity: the one table of dimensions, and the units in which a roller counts (:class:`Scale`).
 
-A scene's numbers are over its units, a cylinder's are in SI units, and a material may count time in its own.
+Quantities of a scene are dimensionless: each is divided by a unit that is made of the radius R, the time T_epsilon, the
+load P, the mass m, the contact length at rest l0 and the modulus E'.  Quantities of a cylinder are in SI units, and a
+material may have a unit of time of its own (T_ref).
 """
 
 from __future__ import annotations
 
 import re
-from typing import Any, Protocol, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
-import numpy as np
 
-#: quantity -> its dimension in radius R, time T, load P (N/m), mass m (kg/m), contact length at rest l0, modulus E';
-#: what is not here is a ratio; temperatures and what belongs to them have no part in a scale
-DIMENSIONS = {
-    **dict.fromkeys(
-        ("t", "t0", "onset_time", "rest_time", "rested", "zeta", "resolve", "T_epsilon", "T_sigma", "T_ref"), "T"
+class Dimension(NamedTuple):
+    """A dimension, and the quantities that have it.
+
+    formula : product of R, T, P, m, l0, E_prime and rad, as "P T/R"; of temperatures and energies another name.
+    si_unit : as "N s m-2".
+    divisor : words that follow the name of a quantity of a scene: the unit by which it is divided.
+    names : quantities, separated by spaces.
+    """
+
+    formula: str
+    si_unit: str
+    divisor: str
+    names: str
+
+
+_TABLE = (
+    Dimension(
+        "T", "s", ", divided by T_epsilon",
+        "t t0 onset_time rest_time rested zeta resolve T_epsilon T_sigma T_ref",
     ),
-    **dict.fromkeys(("R", "thickness"), "R"),
-    **dict.fromkeys(("E", "E0", "G", "G0", "G_inf", "bulk"), "E_prime"),
-    "load": "P",
-    **dict.fromkeys(("temperature", "T0"), "theta"),
-    "C2": "delta theta",
-    "energy": "molar energy",
-    "m": "m",
-    "g": "R/T2",
-    "density": "m/R2",
-    **dict.fromkeys(("V", "V0", "rest", "speed"), "R/T"),
-    **dict.fromkeys(("omega", "omega0"), "rad/T"),
-    **dict.fromkeys(("angle", "slope"), "rad"),
-    "x": "R",
-    "length": "l0",
-    **dict.fromkeys(("p", "tau"), "E_prime"),
-    **dict.fromkeys(("force", "Q", "dQ_ddelta"), "P"),
-    **dict.fromkeys(("torque", "brake", "M", "M_half_space", "M_cylinder"), "P R"),
-    **dict.fromkeys(("dM_dV", "dM_half_space_dV", "dM_cylinder_dV", "dQ_domega"), "P T"),
-    "dQ_dV": "P T/R",
-    "N": "P T2",
-    "drag": "P R T",
-    **dict.fromkeys(("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss"), "m R2/T2"),
-    **dict.fromkeys(("loss_slip", "loss_half_space", "loss_cylinder"), "P R/T"),
-    **dict.fromkeys(("rate_fast", "rate_slow"), "P T/m R"),
-}
-#: dimension -> its SI unit, and the words for a number without dimension
-KINDS = {
-    "T": ("s", " over T_epsilon"),
-    "R/T": ("m s-1", " times T_epsilon/R"),
-    "rad/T": ("rad s-1", " times T_epsilon"),
-    "rad": ("rad", ", radians"),
-    "R": ("m", " over R"),
-    "R/T2": ("m s-2", " times T_epsilon^2/R"),
-    "m": ("kg m-1", " over m"),
-    "m/R2": ("kg m-3", " over m/R^2"),
-    "l0": ("m", " over l0"),
-    "E_prime": ("Pa", " over E'"),
-    "P": ("N m-1", " over load"),
-    "P R": ("N m m-1", " over load times radius"),
-    "P T": ("N s m-1", " over P T_epsilon"),
-    "P R T": ("N m s m-1", " over P R T_epsilon"),
-    "P T/R": ("N s m-2", " over P T_epsilon/R"),
-    "P T2": ("N s2 m-1", " over P T_epsilon^2"),
-    "m R2/T2": ("J m-1", " over m (R/T_epsilon)^2"),
-    "P R/T": ("W m-1", " over P R/T_epsilon"),
-    "P T/m R": ("s-1", " over gamma"),
-    "theta": ("degC", ""),
-    "delta theta": ("K", ""),
-    "molar energy": ("J mol-1", ""),
-}
+    Dimension("R", "m", ", divided by R", "R thickness x"),
+    Dimension("l0", "m", ", divided by l0", "length"),
+    Dimension("m", "kg m-1", ", divided by m", "m"),
+    Dimension("m/R2", "kg m-3", ", divided by m/R^2", "density"),
+    Dimension("R/T", "m s-1", ", divided by R/T_epsilon", "V V0 rest speed"),
+    Dimension("R/T2", "m s-2", ", divided by R/T_epsilon^2", "g"),
+    Dimension("rad", "rad", ", radians", "angle slope"),
+    Dimension("rad/T", "rad s-1", ", multiplied by T_epsilon", "omega omega0"),
+    Dimension("E_prime", "Pa", ", divided by E'", "E E0 G G0 G_inf bulk p tau"),
+    Dimension("P", "N m-1", ", divided by the load P", "load force Q dQ_ddelta"),
+    Dimension("P R", "N m m-1", ", divided by P R", "torque brake M M_half_space M_cylinder"),
+    Dimension("P T", "N s m-1", ", divided by P T_epsilon", "dM_dV dM_half_space_dV dM_cylinder_dV dQ_domega"),
+    Dimension("P T/R", "N s m-2", ", divided by P T_epsilon/R", "dQ_dV"),
+    Dimension("P T2", "N s2 m-1", ", divided by P T_epsilon^2", "N"),
+    Dimension("P R T", "N m s m-1", ", divided by P R T_epsilon", "drag"),
+    Dimension("P R/T", "W m-1", ", divided by P R/T_epsilon", "loss_slip loss_half_space loss_cylinder"),
+    Dimension("P T/m R", "s-1", ", divided by gamma/T_epsilon", "rate_fast rate_slow"),
+    Dimension(
+        "m R2/T2", "J m-1", ", divided by m (R/T_epsilon)^2",
+        "work_force work_torque brake_loss slip_loss rolling_loss",
+    ),
+    Dimension("theta", "degC", "", "temperature T0"),
+    Dimension("delta theta", "K", "", "C2"),
+    Dimension("molar energy", "J mol-1", "", "energy"),
+)  # fmt: skip
+#: Quantity -> its dimension.  A quantity that is not here is a ratio.
+DIMENSIONS = {name: dimension for dimension in _TABLE for name in dimension.names.split()}
 
 
-def powers(dimension: str) -> dict[str, int]:
-    """Powers of what a dimension, or a unit as "N m/m" or "N m m-1", is made of."""
+def dimension_powers(dimension: str) -> dict[str, int]:
+    """Return the powers of the factors of a dimension or a unit.
+
+    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1".
+    Returns symbol -> power, without the symbols whose powers cancel.
+    """
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
         for symbol, power in re.findall(r"([^\W\d]+0?|%)\^?(-?\d+)?", part):
@@ -77,14 +73,14 @@ def powers(dimension: str) -> dict[str, int]:
     return {symbol: power for symbol, power in found.items() if power}
 
 
-#: what each dimension is made of
-_PARTS = {dimension: powers(dimension) for dimension in KINDS}
-#: quantity -> the power of time in it
-OF_TIME = {name: power for name, dimension in DIMENSIONS.items() if (power := _PARTS[dimension].get("T", 0))}
+#: Quantity -> powers of the factors of its dimension.
+_POWERS = {name: dimension_powers(dimension.formula) for name, dimension in DIMENSIONS.items()}
+#: Quantity -> power of time in its dimension, where that is not 0.
+TIME_POWERS = {name: powers["T"] for name, powers in _POWERS.items() if "T" in powers}
 
 
 class Scale(dict[str, Any]):
-    """What 1 of each quantity is to who asked, by name: ``scale["V"]`` in m/s of a cylinder, 1 of a scene.
+    """Unit of each quantity by its name: ``scale["V"]`` is the m/s of one unit of speed, 1 for a scene.
 
     Parameters
     ----------
@@ -102,47 +98,41 @@ class Scale(dict[str, Any]):
         super().__init__(R=R, T=T, P=P, m=m, l0=l0, E_prime=E_prime, rad=1.0)
         self.si = si
 
-    # its numbers may be arrays
+    # The units may be arrays, whose comparison gives no truth value.
     __eq__, __hash__ = object.__eq__, object.__hash__  # type: ignore[assignment]
 
     def __missing__(self, name: str) -> Any:
-        above, below = 1.0, 1.0
-        for part, power in _PARTS.get(DIMENSIONS.get(name, ""), {}).items():
+        """Compute the unit of the quantity ``name`` at its first use; 1 for a ratio."""
+        numerator, denominator = 1.0, 1.0
+        for factor, power in _POWERS.get(name, {}).items():
             if power > 0:
-                above = above * self[part] ** power
+                numerator = numerator * self[factor] ** power
             else:
-                below = below * self[part] ** -power
-        self[name] = found = above / below
-        return found
-
-    def of(self, name: str, value: Any) -> Any:
-        """A number without dimension, in these units; a ratio as it is."""
-        if not self.si or name not in DIMENSIONS:
-            return value
-        found = np.asarray(value) * self[name]
-        return found if found.ndim else float(found)
+                denominator = denominator * self[factor] ** -power
+        self[name] = unit = numerator / denominator
+        return unit
 
     def unit(self, name: str) -> str:
-        """The unit of a quantity, as "m s-1"; "1" of a ratio, and of all of a scene but its angles."""
-        return si_unit(name) if self.si or DIMENSIONS.get(name) == "rad" else "1"
+        """Name of the unit of a quantity, as "m s-1"; "1" for a ratio, and for all quantities of a scene but angles."""
+        return si_unit(name) if self.si or name in ("angle", "slope") else "1"
 
 
 class HasUnits(Protocol):
-    """What has a unit for each quantity by name: a :class:`Scale`, a record of measurements."""
+    """An object with a unit for each quantity by name: a :class:`Scale`, a record of measurements."""
 
     def unit(self, name: str) -> str:
-        """The unit of a quantity."""
+        """Name of the unit of a quantity."""
 
 
-#: the unit of an argument, or what has one by the argument's name
+#: Unit of an argument, or an object that gives it by the name of the argument.
 Units: TypeAlias = str | HasUnits
 
-#: of a scene
+#: Scale of a scene: every unit is 1.
 DIMENSIONLESS = Scale(si=False)
-#: of SI units themselves: what takes and gives them without a cylinder
+#: Scale of functions that take and return SI units and have no cylinder.
 SI = Scale()
 
 
 def si_unit(name: str) -> str:
-    """The SI unit of a quantity, as "m s-1"; "1" of a ratio."""
-    return KINDS[DIMENSIONS[name]][0] if name in DIMENSIONS else "1"
+    """SI unit of a quantity, as "m s-1"; "1" for a ratio."""
+    return DIMENSIONS[name].si_unit if name in DIMENSIONS else "1"

@@ -1,4 +1,4 @@
-"""Sections of TOML files, checked: misspelt keys, wrong types, and the line at fault."""
+"""Checks of the sections of TOML files: unknown keys and wrong types, with the number of the line."""
 
 from __future__ import annotations
 
@@ -17,114 +17,141 @@ import msgspec
 from .errors import FileError
 
 T = TypeVar("T")
+#: Line with the header of a section.
 _HEADER = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]")
+#: Keys and indices in the path of a msgspec error, as ".prony.E[2]".
 _KEYS = re.compile(r"\w+")
-_EXPECTED = re.compile(r"Expected `([^`]*)`, got `[^`]*`")
-_BOUNDS = re.compile(r"Expected `[^`]*` (.*)")
+#: Message of msgspec for a wrong type.
+_WRONG_TYPE = re.compile(r"Expected `([^`]*)`, got `[^`]*`")
+#: Message of msgspec for a number out of range.
+_OUT_OF_RANGE = re.compile(r"Expected `[^`]*` (.*)")
+#: Message of msgspec for a missing key.
 _MISSING = re.compile(r"Object missing required field `(.*)`")
-#: what msgspec calls a type -> words
-_WORDS = {
-    "float": "a number without a unit", "int": "a whole number", "str": "a text", "bool": "true or false",
-    "array": "a list", "object": "a table",
-}  # fmt: skip
+#: Type as msgspec names it -> words.
+_TYPE_NAMES = {
+    "float": "a number without a unit",
+    "int": "a whole number",
+    "str": "a text",
+    "bool": "true or false",
+    "array": "a list",
+    "object": "a table",
+}
 
 
-def read(path: str | PathLike[str]) -> dict[str, Any]:
-    """The content of a TOML file; raises FileError."""
+def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
+    """Return the content of the TOML file at ``path``; raise FileError if it cannot be read or is not TOML."""
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error})") from error
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
-    except (ValueError, RecursionError) as error:  # tomllib's own error is a ValueError; so is a number of 5000 digits
+    except (ValueError, RecursionError) as error:  # a ValueError of tomllib, or of Python for a number of 5000 digits
         raise FileError(path, f"is not TOML ({error})") from error
 
 
 def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
-    """``content`` of section ``name`` as a ``kind``, its keys and types checked to any depth; raises FileError."""
-    _refuse_unknown_within(path, name, content, kind)
+    """Return a section as an instance of a class, its keys and types checked at any depth.
+
+    path: of the file.  name: of the section.  content: of the section, as tomllib reads it.  kind: the class, of
+    msgspec or a dataclass.  Raises FileError with the line of the first key that is wrong.
+    """
+    _check_all_keys(path, name, content, kind)
     try:
         return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
-        problem, _, place = str(error).partition(" - at `$")
-        keys, value = _KEYS.findall(place), content
+        problem, _, location = str(error).partition(" - at `$")
+        keys, value = _KEYS.findall(location), content
         for key in keys:
             value = value[int(key)] if isinstance(value, list) else value[key]
         words = [key for key in keys if not key.isdecimal()]
         if missing := _MISSING.fullmatch(problem):
-            raise fault(path, ".".join((name, *words)), "", f"needs {missing[1]}") from error
-        if expected := _EXPECTED.fullmatch(problem):
-            kinds = " or ".join(_WORDS[kind] for kind in expected[1].split(" | ") if kind != "null")
-            problem = f"{'.'.join(words)} = {value!r:.40}: must be {kinds}"
-        elif bounds := _BOUNDS.fullmatch(problem):
-            problem = f"{words[-1]} = {value!r:.40}: must be {bounds[1]}"
-        elif words and (choices := _choices(kind, words)):
-            problem = f"{words[-1]} = {value!r:.40}: must be one of {choices}"
+            raise section_error(path, ".".join((name, *words)), "", f"needs {missing[1]}") from error
+        found = f"{words[-1]} = {value!r:.40}" if words else ""
+        if expected := _WRONG_TYPE.fullmatch(problem):
+            types = " or ".join(_TYPE_NAMES[name] for name in expected[1].split(" | ") if name != "null")
+            problem = f"{'.'.join(words)} = {value!r:.40}: must be {types}"
+        elif bounds := _OUT_OF_RANGE.fullmatch(problem):
+            problem = f"{found}: must be {bounds[1]}"
+        elif words and (choices := _list_choices(kind, words)):
+            problem = f"{found}: must be one of {choices}"
         elif words and not isinstance(value, dict):
-            problem = f"{words[-1]} = {value!r:.40}: {problem}"
-        raise fault(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error
+            problem = f"{found}: {problem}"
+        raise section_error(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error
 
 
-def _choices(kind: Any, words: list[str]) -> str:
-    """The texts that a key of a section may have, as ``'linear', 'log'``; "" where it is no choice of texts."""
-    for word in words:
+def _list_choices(kind: Any, keys: list[str]) -> str:
+    """Return the texts that a key may have, as ``'linear', 'log'``; "" if it is not a choice of texts.
+
+    kind: class of the section.  keys: path of the key in it.
+    """
+    for key in keys:
         sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
-        kind = next((get_type_hints(each)[word] for each in sections if word in get_type_hints(each)), None)
+        kind = next((get_type_hints(each)[key] for each in sections if key in get_type_hints(each)), None)
     return ", ".join(repr(each) for each in get_args(kind) if isinstance(each, str))
 
 
-def _refuse_unknown_within(path: Any, name: str, content: Any, kind: Any) -> None:
-    """Refuse keys that are unknown in a section, or in any section within it."""
+def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
+    """Raise FileError for an unknown key in a section or its subsections; arguments as of :func:`as_struct`."""
     hints = get_type_hints(kind)
-    refuse_unknown(path, name, content, hints)
+    check_keys(path, name, content, hints)
     for key, value in content.items():
         kinds = hints[key], *get_args(hints[key])
-        parts = [each for each in kinds if is_dataclass(each) or hasattr(each, "__struct_fields__")]
-        if parts and isinstance(value, dict):
-            _refuse_unknown_within(path, f"{name}.{key}", value, parts[0])
+        subsections = [each for each in kinds if is_dataclass(each) or hasattr(each, "__struct_fields__")]
+        if subsections and isinstance(value, dict):
+            _check_all_keys(path, f"{name}.{key}", value, subsections[0])
 
 
-def refuse_unknown(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
-    """Raise FileError, with the nearest allowed key, where a section has a key that is none."""
+def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
+    """Raise FileError for an unknown key of a section, with the most similar allowed key.
+
+    path: of the file.  name: of the section, "" for the top level.  content: of the section.  allowed: its keys.
+    """
     if not isinstance(content, dict):
-        raise fault(path, "", name, f"{name} = {content!r:.40}: must be a section [{name}]")
+        raise section_error(path, "", name, f"{name} = {content!r:.40}: must be a section [{name}]")
     known = list(allowed)
     for key in content:
         if key not in known:
-            raise fault(path, name, key, f"unknown key {key!r}: must be one of {', '.join(known)}{hint(key, known)}")
+            problem = f"unknown key {key!r}: must be one of {', '.join(known)}{suggestion(key, known)}"
+            raise section_error(path, name, key, problem)
 
 
-def fault(path: Any, name: str, key: str, problem: str) -> FileError:
-    """The error to raise for ``key`` of section ``name`` ("": the top), with its line if that is found."""
+def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
+    """Return the error of a key of a section, with the number of its line if that is found.
+
+    path: of the file.  name: of the section, "" for the top level.  key: "" for the section itself.  problem: words.
+    """
     line = None
     with suppress(OSError, UnicodeDecodeError):
-        line = line_of(Path(path).read_text(encoding="utf-8-sig"), name, key)
-    at = "" if line is None else f"line {line}: "
-    return FileError(path, f"{at}[{name}] {problem}" if name else f"{at}{problem}")
+        line = find_line(Path(path).read_text(encoding="utf-8-sig"), name, key)
+    prefix = "" if line is None else f"line {line}: "
+    return FileError(path, f"{prefix}[{name}] {problem}" if name else f"{prefix}{problem}")
 
 
-def line_of(text: str, name: str, key: str) -> int | None:
-    """Number of the line that sets ``key`` in section ``name``, else of the section's header, else None."""
+def find_line(text: str, name: str, key: str) -> int | None:
+    """Return the number of the line that sets a key, else of the header of its section, else None.
+
+    text: content of the file.  name: of the section.  key: in it.
+    """
     full = f"{name}.{key}" if name else key
     plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")
     dotted = re.compile(rf"\s*{re.escape(full)}\s*[=.]")
-    header, of_section = "", None
+    header, header_line = "", None
     for number, line in enumerate(text.splitlines(), 1):
         if found := _HEADER.match(line):
             header = found.group(1)
             if header == full:
                 return number
             if header == name:
-                of_section = number
+                header_line = number
         elif (header == name and plain.match(line)) or (header == "" and dotted.match(line)):
             return number
-    if of_section is None and "." in name:  # an inline table: the line of its name
-        return line_of(text, *name.rsplit(".", 1))
-    return of_section
+    if header_line is None and "." in name:  # an inline table stands on the line of its name
+        return find_line(text, *name.rsplit(".", 1))
+    return header_line
 
 
-def hint(name: str, candidates: Iterable[str]) -> str:
-    """A question for the nearest of ``candidates``, or nothing."""
-    near = difflib.get_close_matches(name, list(candidates), n=1, cutoff=0.5)
-    return f"; did you mean {near[0]!r}?" if near else ""
+def suggestion(name: str, candidates: Iterable[str]) -> str:
+    """Return a question for the one of ``candidates`` that is most similar to ``name``, "" if none is."""
+    similar = difflib.get_close_matches(name, list(candidates), n=1, cutoff=0.5)
+    return f"; did you mean {similar[0]!r}?" if similar else ""

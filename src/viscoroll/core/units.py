@@ -1,4 +1,4 @@
-"""Conversion between units by pint, which is loaded at the first conversion."""
+"""Factors of conversion between units, by pint, which is imported at the first conversion."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 from .errors import ParameterError
 
-#: signs of units that pint does not know, with the words that it does
-_SIGNS = {
+#: Character of a unit that pint does not read -> spelling that it reads.
+_SPELLINGS = {
     "²": "2",
     "³": "3",
     "⁻": "-",
@@ -22,65 +22,64 @@ _SIGNS = {
     "µ": "u",
     "μ": "u",
 }
-#: a symbol of a unit and its power, with or without a sign for the power: "m-1", "mm^2", "s**-2"
+#: Symbol of a unit and its power, with or without an operator between: "m-1", "mm^2", "s**-2".
 _POWER = re.compile(r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
 
 
 @lru_cache(maxsize=1)
 def registry() -> Any:
-    """The pint registry of this package, in which 1 Hz is 2 pi rad/s and 1 rpm is 2 pi/60 rad/s."""
+    """Return the pint registry of this package, in which 1 Hz is 2 pi rad/s and 1 rpm is 2 pi/60 rad/s."""
     import pint
 
-    found: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, on_redefinition="ignore")
-    found.define("hertz = 2 * pi * radian / second = Hz")
-    return found
+    units: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, on_redefinition="ignore")
+    units.define("hertz = 2 * pi * radian / second = Hz")
+    return units
 
 
 @lru_cache(maxsize=256)
-def factor(unit: str, wanted: str) -> tuple[float, float]:
-    """Factor and offset that convert a number in ``unit`` to ``wanted``: wanted = factor * number + offset.
+def conversion_factor(unit: str, target: str) -> tuple[float, float]:
+    """Return factor and offset of a conversion: number in ``target`` = factor * number in ``unit`` + offset.
 
     Parameters
     ----------
-    unit, wanted : units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C".
+    unit, target : units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C".
 
     Returns
     -------
-    factor, offset : the offset is 0 but for temperatures.
+    factor, offset : the offset is 0 unless the units are temperatures.
 
     Raises
     ------
     ParameterError
-        A unit that is not known, or of another dimension than ``wanted``.
+        A unit that pint does not know, or of another dimension than ``target``.
     """
     import pint
 
-    units = registry()
+    quantity = registry().Quantity
     try:
-        zero, one = (units.Quantity(value, spelled(unit)).to(spelled(wanted)).magnitude for value in (0.0, 1.0))
+        at_0, at_1 = (
+            quantity(number, pint_spelling(unit)).to(pint_spelling(target)).magnitude for number in (0.0, 1.0)
+        )
     except pint.DimensionalityError:
-        raise ParameterError("unit", unit, f"a unit of the dimension of {wanted}") from None
-    except Exception as error:  # pint raises errors of its parser and of Python's
-        raise ParameterError("unit", unit, f"a unit that pint knows, of the dimension of {wanted}") from error
-    offset = zero if zero else 0.0
-    if offset:
-        return one - zero, offset
-    # one division for exact factors: 1e6, not 1/1e-6
-    return one, 0.0
+        raise ParameterError("unit", unit, f"a unit of the dimension of {target}") from None
+    except Exception as error:  # pint raises errors of its own parser and of Python's
+        raise ParameterError("unit", unit, f"a unit that pint knows, of the dimension of {target}") from error
+    # Without an offset the factor is the converted 1 itself, so that exact factors stay exact: 1e6, not 1/1e-6.
+    return (at_1 - at_0, at_0) if at_0 else (at_1, 0.0)
 
 
 def is_unit(text: str) -> bool:
-    """Whether pint reads a text as a unit of whatever dimension; degrees Celsius as "C" are coulombs to it."""
+    """Whether pint reads a text as a unit, of any dimension.  It reads "C" as coulomb, not as degree Celsius."""
     try:
-        registry().parse_units(spelled(text))
-    except Exception:  # pint raises errors of its parser and of Python's
+        registry().parse_units(pint_spelling(text))
+    except Exception:  # pint raises errors of its own parser and of Python's
         return False
     return True
 
 
-def spelled(unit: str) -> str:
-    """A unit in pint's spelling: signs as words, and powers with ``**``."""
+def pint_spelling(unit: str) -> str:
+    """Return a unit in the spelling of pint: superscripts and signs as ASCII, powers with ``**``."""
     text = unit.strip()
-    for sign, word in _SIGNS.items():
-        text = text.replace(sign, word)
+    for character, spelling in _SPELLINGS.items():
+        text = text.replace(character, spelling)
     return _POWER.sub(r"\1**\2", text) or "1"

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from ..core.errors import ParameterError
 
+__all__ = ["path"]
+
 _FOLDER = Path(__file__).parent
 
 

@@ -1,7 +1,7 @@
-"""TOML files: what rolls, or what has the law of a material.
+"""TOML files of a roller, or of a material or pair that has a contact law.
 
-One schema for all of them: a run file is a scene file in which any number may be uncertain, with a start and [run].
-Types and misspelt keys are refused by :mod:`sections`, ranges by what a section describes.
+All files have one schema: a run file is a scene file in which any number may be uncertain, with a start and [run].
+:mod:`.sections` refuses unknown keys and wrong types; the objects that a section describes refuse values out of range.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import Any, Literal
 
 import msgspec
 
-from ..core.errors import FileError, ParameterError, unknown
-from ..core.sections import as_struct, fault, read, refuse_unknown
+from ..core.errors import FileError, ParameterError, unknown_name_error
+from ..core.sections import as_struct, check_keys, read_toml, section_error
 from ..cylinder import Cylinder
 from ..materials.file import SECTIONS, SUFFIX, CreepSection, PronySection, materials_of, read_materials, series_of
 from ..materials.pair import Pair
@@ -23,10 +23,10 @@ from ..scene import Scene
 
 
 class SceneSection(msgspec.Struct):
-    """[scene]: the parameters of :class:`Scene`; a preset has them all.
+    """[scene]: the parameters of :class:`Scene`; with a preset all are optional.
 
-    prony : in place of alpha: strengths over the long-time modulus, and times.
-    creep : in place of alpha: compliances over that at once, and times; perhaps alpha.
+    prony : in place of alpha: moduli divided by the long-time modulus, and relaxation times.
+    creep : in place of alpha: compliances divided by the instantaneous one, and retardation times; perhaps alpha.
     """
 
     alpha: float | None = None
@@ -39,7 +39,7 @@ class SceneSection(msgspec.Struct):
 
 
 class CylinderSection(msgspec.Struct, kw_only=True):
-    """[cylinder]: the parameters of :class:`Cylinder`, but for the materials."""
+    """[cylinder]: the parameters of :class:`Cylinder` without its materials."""
 
     R: float
     m: float
@@ -54,68 +54,72 @@ class CylinderSection(msgspec.Struct, kw_only=True):
     load: float | None = None
 
 
+#: Section of a roller -> its class.
 SCHEMA: dict[str, type] = {"scene": SceneSection, "cylinder": CylinderSection}
+#: Keys and sections one of which a scene file needs.
 SCENES = ("preset", *SCHEMA)
 
 
 def preset(name: str) -> Scene:
-    """The scene of that name: the paper's, or the rubber roller.
-
-    Raises
-    ------
-    ParameterError
-        An unknown name.
-    """
+    """Return the scene of the preset ``name``; raise ParameterError if there is none."""
     if not isinstance(name, str) or name not in PRESETS:
-        raise unknown("preset", name, PRESETS, "a preset")
+        raise unknown_name_error("preset", name, PRESETS, "a preset")
     return PRESETS[name]
 
 
-def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene | Cylinder:
-    """Scene or cylinder of a TOML file: of its ``preset``, its [scene], which may change a preset, or its [cylinder].
+def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene | Cylinder:
+    """Read the roller of a TOML file.
 
-    ``preset`` names a scene of :mod:`presets`, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
-    ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane, load) in SI units; E to T_sigma stand in a
-    section [material] instead where there is one, and [base] is the half-space where it differs.
-    ``beside`` : other sections that the file may have.
+    Parameters
+    ----------
+    path : of the file.  Its ``preset`` names a scene of :mod:`presets`; its [scene] gives alpha (or prony, or creep),
+        kappa, mu (gamma, j), or changes those of the preset; its [cylinder] gives R, m, E, nu, T_epsilon, T_sigma, mu
+        (j, g, plane, load) in SI units.  E to T_sigma may stand in a section [material], and [base] is the half-space
+        if it is another material.
+    more : further sections that the file may have.
 
     Raises
     ------
     FileError
-        A file that cannot be read, is not TOML, holds none of the three or a cylinder beside a scene, a
-        misspelt or missing key, a value of the wrong type or out of its range.
+        A file that cannot be read, is not TOML, has none of the three or a cylinder beside a scene, an
+        unknown or missing key, a value of the wrong type or out of its range.
     """
-    content = read(path)
-    check_sections(path, content, dict.fromkeys(beside))
+    content = read_toml(path)
+    check_sections(path, content, dict.fromkeys(more))
     try:
-        body = body_of(path, content, materials_of(path, content))
-        body.scene()  # refuses what leaves the range of doubles
+        roller = make_roller(path, content, materials_of(path, content))
+        roller.scene()  # refuses parameters that leave the range of doubles
     except ParameterError as error:
-        raise located(path, content, error) from error
-    return body
+        raise locate_error(path, content, error) from error
+    return roller
 
 
 def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type | None]) -> None:
-    """Raise FileError where sections do not go together, or hold keys and types that they do not have.
+    """Raise FileError if sections exclude each other, or have unknown keys or values of the wrong type.
 
-    ``more`` : other sections that the file may have, by their schema, or None where they are checked elsewhere.
+    path: of the file.  content: of the file.  more: further section -> its class, None if it is checked elsewhere.
     """
-    refuse_unknown(path, "", content, (*SCENES, *SECTIONS, *more))
+    check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
-        raise fault(path, "", "", "one of preset, [scene] and [cylinder] is needed")
+        raise section_error(path, "", "", "one of preset, [scene] and [cylinder] is needed")
     scenes = [name for name in ("preset", "scene") if name in content]
     if "cylinder" in content and scenes:
-        raise fault(path, "", "cylinder", f"[cylinder] stands alone: without {' and '.join(scenes)}")
+        raise section_error(path, "", "cylinder", f"[cylinder] stands alone: without {' and '.join(scenes)}")
     for name in SECTIONS:
         if name in content and "cylinder" not in content:
-            raise fault(path, "", name, f"[{name}] goes with [cylinder]")
+            raise section_error(path, "", name, f"[{name}] goes with [cylinder]")
     for name, kind in {**SCHEMA, **more}.items():
         if name in content and kind is not None:
             as_struct(path, name, content[name], kind)
 
 
-def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
-    """What rolls by checked sections, whose numbers may be arrays; raises ParameterError, of a series FileError."""
+def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
+    """Return the roller of checked sections, whose numbers may be arrays.
+
+    path: of the file.  content: of the file.  materials: name of an argument of Cylinder -> material.
+
+    Raises ParameterError for a value out of range, FileError for a wrong series.
+    """
     if "cylinder" in content:
         return Cylinder(**content["cylinder"], **materials)
     given = dict(content.get("scene", {}))
@@ -130,34 +134,39 @@ def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any])
     return Scene(**given)
 
 
-def located(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
-    """A refusal with the section and the line of what it names."""
-    own = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
-    section = "" if error.name in content else next(own, next((name for name in SCHEMA if name in content), ""))
-    return fault(path, section, error.name, str(error))
+def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
+    """Return an error of a parameter with the section and the line that gives it.
+
+    path: of the file.  content: of the file.  error: of the parameter.
+    """
+    sections = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
+    default = next((name for name in SCHEMA if name in content), "")
+    return section_error(path, "" if error.name in content else next(sections, default), error.name, str(error))
 
 
-def read_bodies(path: str | PathLike[str]) -> Any:
-    """The pair, the series or bodies, or the alpha of a file: what has a contact law; of a layer the cylinder.
+def read_law_source(path: str | PathLike[str]) -> Any:
+    """Read a material that has a contact law: a pair, a series or bodies, or an alpha; of a layer its cylinder.
 
-    ``path`` : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
+    Parameters
+    ----------
+    path : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
 
     Raises
     ------
     FileError
-        As :func:`read_materials` and :func:`read_body`.
+        As :func:`read_materials` and :func:`read_roller`.
     """
-    content = {} if Path(path).suffix == SUFFIX else read(path)
+    content = {} if Path(path).suffix == SUFFIX else read_toml(path)
     if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):
-        body = read_body(path)
-        if isinstance(body, Cylinder):
-            return body.pair if body.pair.covered is None else body
-        return body.alpha if body.material is None else body.material
+        roller = read_roller(path)
+        if isinstance(roller, Cylinder):
+            return roller.pair if roller.pair.covered is None else roller
+        return roller.alpha if roller.material is None else roller.material
     found = read_materials(path)
     if "material" not in found:
         raise FileError(path, "section [material] is missing")
     try:
         pair = Pair(found["material"], found.get("base"))
     except ParameterError as error:
-        raise fault(path, "base", error.name, str(error)) from error
-    return read_body(path) if pair.covered is not None and "cylinder" in content else pair
+        raise section_error(path, "base", error.name, str(error)) from error
+    return read_roller(path) if pair.covered is not None and "cylinder" in content else pair

@@ -1,15 +1,15 @@
-"""Random inputs, from scipy.stats distributions and a recorded seed: :func:`sample`, and blocks of points for runs.
+"""Random inputs from scipy.stats distributions and a recorded seed: :func:`sample`, and blocks of points for runs.
 
-Each block of points is a function of (seed, block) alone.  Whichever process draws a block, in whatever order, gets
-the same bits, and nothing outside the block is held in memory.
+Each block of points is a function of (seed, block) alone.  Any process that draws a block, in any order, gets the same
+bits, and holds no other block in memory.
 
 - random: numpy's Philox, a counter-based generator (J. Salmon et al., SC11, 2011), keyed by
   (seed, block).
-- latin: stratum i of n holds motion p(i), p a permutation that is computed point by point: a
-  Feistel network over the next power of 4, walked until it falls inside n (J. Black and
-  P. Rogaway, CT-RSA 2002), a key a dimension.  Within the stratum as random.
-- sobol: one scrambled sequence of scipy.stats.qmc by the seed; a block starts at the point that
-  the Gray code of its index gives (I. A. Antonov and V. M. Saleev, 1979), without drawing those before.
+- latin: stratum i of n holds motion p(i), where p is a permutation that is computed point by point: a
+  Feistel network over the next power of 4, iterated until the result is below n (J. Black and
+  P. Rogaway, CT-RSA 2002), with a key for each dimension.  Within the stratum as random.
+- sobol: one scrambled sequence of scipy.stats.qmc for the seed; a block starts at the point that
+  the Gray code of its index gives (I. A. Antonov and V. M. Saleev, 1979), so that earlier points are not drawn.
 """
 
 from __future__ import annotations
@@ -21,23 +21,27 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import checked, number, whole
-from ..core.errors import ParameterError, one_of, unknown
-from ..core.typed import Floats
+from ..core.array_types import Floats
+from ..core.checks import check_array, check_integer, check_number
+from ..core.errors import ParameterError, exactly_one_error, unknown_name_error
 
 __all__ = ["Sample", "sample"]
 
 Words: TypeAlias = NDArray[np.uint64]
 Design = Literal["random", "latin", "sobol"]
-#: no design draws a point closer to 0 or 1 than this
-SMALLEST, LARGEST = 2.0**-54, 1.0 - 2.0**-53
+#: Smallest coordinate of a point: 0 would make the inverse of a distribution infinite.
+SMALLEST = 2.0**-54
+#: Largest coordinate of a point, the double below 1.
+LARGEST = 1.0 - 2.0**-53
+#: Rounds of the Feistel network.  Four with ideal round functions make a strong pseudorandom permutation (M. Luby and
+#: C. Rackoff, SIAM J. Comput. 17, 1988); two more are a margin for the function used here.
 _ROUNDS = 6
-#: bits of a Sobol coordinate: as many as a double holds
+#: Bits of a coordinate of the Sobol sequence: as many as a double holds.
 _BITS = 52
 
 
 class Sample(dict[str, Floats]):
-    """Named columns of n draws, with what is needed to draw them again."""
+    """Draws of each quantity by name, (n,), with the seed and the design that give them again."""
 
     seed: int
     design: str
@@ -50,7 +54,7 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     ----------
     n : number of draws, >= 1; powers of two suit "sobol".
     seed : whole number >= 0, below 2^63, kept in the result.
-    rng : in place of a seed, which is drawn from it: a numpy.random.Generator, or what makes one.
+    rng : in place of a seed, which is drawn from it: a numpy.random.Generator, or an argument of default_rng.
     design : "random", "latin" (hypercube) or "sobol" (scrambled); the draws are those of a run file of one block.
     **quantities : a number, or a frozen scipy.stats distribution, e.g.
         ``V0=scipy.stats.uniform(-1, 2)``; drawn through its inverse CDF.
@@ -66,35 +70,45 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
         Bad n, seed or design, both or neither of seed and rng, a quantity that is neither a number nor a distribution,
         a distribution without a median, a draw that overflows.
 
+    Examples
+    --------
+    >>> import scipy.stats
+    >>> import viscoroll as vr
+    >>> draws = vr.sampling.sample(100, seed=1, design="latin", V0=scipy.stats.uniform(0.1, 0.2), mu=0.3)
+    >>> draws["V0"].shape, draws["mu"][0]
+    ((100,), np.float64(0.3))
+
     Notes
     -----
     The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
-    strata of every quantity, for "sobol" where n is a power of two (``tests/test_sampling.py``).
+    strata of every quantity, "sobol" if n is a power of two (``tests/test_sampling.py``).
     """
     if (seed is None) == (rng is None):
-        raise one_of("seed", "rng", both=rng is not None)
+        raise exactly_one_error("seed", "rng", both=rng is not None)
     if seed is None:
         seed = int(np.random.default_rng(rng).integers(2**63))
-    n, seed = whole("n", n, 1, 10**12), whole("seed", seed, 0, 2**63 - 1)
+    n, seed = check_integer("n", n, 1, 10**12), check_integer("seed", seed, 0, 2**63 - 1)
     if design not in get_args(Design):
-        raise unknown("design", design, get_args(Design), "a design")
+        raise unknown_name_error("design", design, get_args(Design), "a design")
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]
     rows = points(design, seed, n, len(random), 0, n, 0)
-    with np.errstate(all="ignore"):  # what overflows is infinite, and refused
-        drawn = {name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)}
-    found = Sample()
+    with np.errstate(all="ignore"):  # a draw that overflows is infinite, which is refused
+        drawn = {
+            name: check_array(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)
+        }
+    draws = Sample()
     for name, value in quantities.items():
-        found[name] = drawn[name] if name in drawn else np.full(n, number(name, value))
-    found.seed, found.design = seed, design
-    return found
+        draws[name] = drawn[name] if name in drawn else np.full(n, check_number(name, value))
+    draws.seed, draws.design = seed, design
+    return draws
 
 
-@np.errstate(all="ignore")  # scipy may overflow on what is refused here
+@np.errstate(all="ignore")  # scipy may overflow for a distribution that is refused
 def _is_distribution(name: str, value: Any) -> bool:
-    """Whether it is a distribution, else a number; raises ParameterError where it is neither."""
+    """Whether the ``value`` of a quantity ``name`` is a distribution, else a number; raise ParameterError otherwise."""
     random = hasattr(value, "ppf")
     try:
-        number(name, value.ppf(0.5) if random else value)
+        check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
         allowed = "a finite number or a frozen scipy.stats distribution"
         raise ParameterError(name, f"{value!s:.60}", allowed) from None
@@ -102,7 +116,11 @@ def _is_distribution(name: str, value: Any) -> bool:
 
 
 def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int) -> Floats:
-    """Points start..stop of n, which are block number ``block``: (dimensions, stop - start), inside (0, 1)."""
+    """Return a block of points inside (0, 1), (dimensions, stop - start).
+
+    design: "random", "latin" or "sobol".  seed: of all points.  n: number of all points.  dimensions: coordinates of a
+    point.  start, stop: indices of the block.  block: its number.
+    """
     if dimensions == 0:
         return np.empty((0, stop - start))
     if design == "sobol":
@@ -117,16 +135,20 @@ def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop:
 
 
 def _stream(seed: int, number: int) -> np.random.Generator:
+    """Return the generator of the stream ``number`` of a ``seed``."""
     return np.random.Generator(np.random.Philox(key=np.array([seed, number], np.uint64)))
 
 
 def _keys(seed: int, dimensions: int) -> Words:
-    """A key for each round of each dimension; of a stream that no block has."""
+    """Return the keys of the permutations, (dimensions, rounds), from a stream of the ``seed`` that no block has."""
     return _stream(seed, 2**64 - 1).integers(0, 2**64, (dimensions, _ROUNDS), dtype=np.uint64)
 
 
 def permuted(index: Words, n: int, key: Words) -> Words:
-    """Where a permutation of 0 ... n - 1 takes each of ``index``."""
+    """Return the images of numbers under a permutation of 0 ... n - 1.
+
+    index: the numbers, (k,).  n: size of the permutation.  key: keys of its rounds.
+    """
     half = max((int(n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)
     outside = np.flatnonzero(result >= n)
@@ -137,16 +159,19 @@ def permuted(index: Words, n: int, key: Words) -> Words:
 
 
 def _feistel(index: Words, half: int, key: Words) -> Words:
-    """A permutation of the numbers of 2 half bits."""
+    """Return the images of numbers under a permutation of all numbers of 2 * half bits.
+
+    index: the numbers, (k,).  half: bits of half a number.  key: keys of the rounds.
+    """
     width, mask = np.uint64(half), np.uint64(2**half - 1)
     left, right = index >> width, index & mask
     for round_key in key:
-        left, right = right, left ^ (_scrambled(right + round_key) & mask)
+        left, right = right, left ^ (_mix_bits(right + round_key) & mask)
     return (left << width) | right
 
 
-def _scrambled(x: Words) -> Words:
-    """The finaliser of splitmix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014)."""
+def _mix_bits(x: Words) -> Words:
+    """Return the finaliser of splitmix64 for the words ``x`` (G. Steele, D. Lea, C. Flood, OOPSLA 2014)."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return x ^ (x >> np.uint64(31))
@@ -154,16 +179,19 @@ def _scrambled(x: Words) -> Words:
 
 @lru_cache(maxsize=2)
 def _sequence(seed: int, dimensions: int) -> Any:
+    """Return the scrambled Sobol sequence of a ``seed`` in ``dimensions``."""
     from scipy.stats import qmc
 
     return qmc.Sobol(dimensions, bits=_BITS, rng=np.random.default_rng(seed))
 
 
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
-    """Points start..stop of the sequence.
+    """Return points of the Sobol sequence, (dimensions, stop - start).
 
-    ``fast_forward`` of scipy passes over all points before, which at 10^11 would take minutes a
-    block (and refuses more than 32 bits); its state is set instead, and tested against all points.
+    seed: of the sequence.  dimensions: of a point.  start, stop: indices of the points.
+
+    ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block
+    (and refuses more than 32 bits).  Its state is set instead; a test compares with a sequence from its start.
     """
     sequence = copy.copy(_sequence(seed, dimensions))
     drawn = np.empty((stop - start, dimensions))

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import broadcast_shape, checked, frozen
+from ..core.array_types import Floats, Integers
+from ..core.checks import broadcast_shape, check_array, read_only
 from ..core.errors import ParameterError
-from ..core.typed import Floats, Integers
 from .prony import Block, OneOrMany, Prony, descending, series_of_alpha
 from .prony_forms import MOST_MODES
 
@@ -58,7 +58,7 @@ class Bodies(OneOrMany):
         for name, body in bodies.items():
             if not isinstance(body, Prony):
                 raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
-        share = checked("share", self.share, low=0.0, high=1.0)
+        share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
             raise ParameterError("share", f"of shape {share.shape}", "a number, or one for each pair, (n,)")
         many = {name: np.empty(body.shape) for name, body in bodies.items()}
@@ -66,7 +66,7 @@ class Bodies(OneOrMany):
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
         if modes > MOST_MODES:
             raise ParameterError("cylinder, base", f"of {modes} modes together", f"at most {MOST_MODES}")
-        object.__setattr__(self, "share", frozen(share))
+        object.__setattr__(self, "share", read_only(share))
 
     @property
     def _same(self) -> bool:

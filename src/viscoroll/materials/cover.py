@@ -10,9 +10,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import checked, frozen, number
+from ..core.checks import check_array, check_number, read_only
 from ..core.errors import ParameterError
-from ..core.results import short
+from ..core.results import format_value
 from .bodies import Bodies
 from .cover_rows import CoverRows, cover_rows
 from .cover_solve import CoverModes
@@ -83,22 +83,22 @@ class Cover(Bodies):
         other_nu: float = 0.5,
     ) -> None:
         if isinstance(series, Real) and not isinstance(series, bool):
-            series = series_of_alpha(float(checked("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
+            series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
         if not isinstance(series, Prony) or series.shape:
             raise ParameterError("series", f"{series!r:.60}", "a Prony series of one material, or an alpha")
         if on not in ("cylinder", "base"):
             raise ParameterError("on", repr(on), "'cylinder' or 'base'")
         for name, value in (("nu", nu), ("other_nu", other_nu)):
-            object.__setattr__(self, name, number(name, value, low=0.0, high=0.5))
-        part = number("part", part, low=0.0, strict=True, high=1.0)
+            object.__setattr__(self, name, check_number(name, value, low=0.0, high=0.5))
+        part = check_number("part", part, low=0.0, strict=True, high=1.0)
         other, cylinder = Prony.elastic(), on == "cylinder"
         object.__setattr__(self, "cylinder", series if cylinder else other)
         object.__setattr__(self, "base", other if cylinder else series)
         object.__setattr__(self, "share", part if cylinder else 1.0 - part)
-        given = checked("thickness", thickness, low=0.0, strict=True, high=_THICKEST)
+        given = check_array("thickness", thickness, low=0.0, strict=True, high=_THICKEST)
         if given.ndim > 1:
             raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
-        object.__setattr__(self, "thickness", frozen(given))
+        object.__setattr__(self, "thickness", read_only(given))
         object.__setattr__(self, "on", on)
         super().__post_init__()
         object.__setattr__(self, "shape", given.shape)
@@ -142,4 +142,4 @@ class Cover(Bodies):
 
     def __repr__(self) -> str:
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
-        return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={short(self.thickness)}, on={self.on!r}{other})"
+        return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={format_value(self.thickness)}, on={self.on!r}{other})"

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.array_types import Floats
 from ..core.errors import ParameterError
-from ..core.typed import Floats
 from ..kernels.numerics.interpolation import chebyshev, to_doubles
 from .cover_solve import MOST_THETA, CoverModes, CoverState, local_strain, solve
 from .law_build import FUNCTIONS, TERMS, Rows, octaves

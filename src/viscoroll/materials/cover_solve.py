@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from .law_modes import series_of
 from .prony import Prony
 

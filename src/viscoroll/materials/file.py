@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 
 from ..core.errors import FileError, ParameterError
-from ..core.sections import as_struct, fault, read
+from ..core.sections import as_struct, read_toml, section_error
 from .law_store import is_law, read_law
 from .material import Material
 from .measured import Measured
@@ -92,9 +92,9 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
     """
     if Path(path).suffix == SUFFIX:
         return {"material": Material.from_netcdf(path)}
-    found = materials_of(path, read(path))
+    found = materials_of(path, read_toml(path))
     if not found:
-        raise fault(path, "", "material", "section [material] is missing: it needs E and nu")
+        raise section_error(path, "", "material", "section [material] is missing: it needs E and nu")
     return found
 
 
@@ -148,10 +148,10 @@ def _material(path: Any, name: str, content: Any) -> Material:
         if own is None:
             return found
         if shift is None:
-            raise fault(path, name, "temperature", f"temperature = {own:g}: needs wlf or arrhenius beside it")
+            raise section_error(path, name, "temperature", f"temperature = {own:g}: needs wlf or arrhenius beside it")
         return found.at(own, shift)
     except ParameterError as error:
-        raise fault(path, name, error.name, str(error)) from error
+        raise section_error(path, name, error.name, str(error)) from error
 
 
 def _stored(path: Any, name: str, given: FileSection) -> Material:
@@ -164,15 +164,15 @@ def _beside(path: Any, name: str, beside: Path) -> Material:
     try:
         if beside.suffix == SUFFIX:
             return _of_law(beside) if is_law(beside) else Material.from_netcdf(beside)
-        content = read(beside)
+        content = read_toml(beside)
         section = name if name in content else "material"
         if section not in content:
-            raise fault(beside, "", "material", "section [material] is missing: it needs E and nu")
+            raise section_error(beside, "", "material", "section [material] is missing: it needs E and nu")
         if isinstance(content[section], dict) and "file" in content[section]:
-            raise fault(beside, section, "file", "file: must not name a file again")
+            raise section_error(beside, section, "file", "file: must not name a file again")
         return _material(beside, section, content[section])
     except FileError as error:
-        raise fault(path, name, "file", str(error)) from error
+        raise section_error(path, name, "file", str(error)) from error
 
 
 def _of_law(path: Path) -> Material:
@@ -191,7 +191,9 @@ def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
     series = series_of(path, name, msgspec.to_builtins({"prony": given.prony, "creep": given.creep}))
     if given.T_epsilon is not None or given.T_sigma is not None:
         if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:
-            raise fault(path, name, "", "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep")
+            raise section_error(
+                path, name, "", "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep"
+            )
         return Material.sls(given.E, given.nu, given.T_epsilon, given.T_sigma, **more)
     return Material(given.E, given.nu, series or Prony.elastic(), 1.0 if given.T_ref is None else given.T_ref, **more)
 
@@ -200,7 +202,7 @@ def series_of(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     """The series of a section by its keys prony and creep, of arrays one each; None without.  Raises FileError."""
     found = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
     if len(found) > 1:
-        raise fault(path, name, "creep", "prony and creep: must be one of the two")
+        raise section_error(path, name, "creep", "prony and creep: must be one of the two")
     for key, lists in found.items():
         columns = {
             each: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
@@ -209,13 +211,13 @@ def series_of(path: Any, name: str, given: Mapping[str, Any]) -> Any:
         try:
             return Prony(**columns) if key == "prony" else Prony.creep(**columns)
         except ParameterError as error:  # at its own line: E is a key of the material too
-            raise fault(path, f"{name}.{key}", error.name, str(error)) from error
+            raise section_error(path, f"{name}.{key}", error.name, str(error)) from error
     return None
 
 
 def _shift(path: Any, name: str, given: FileSection) -> tuple[WLF | Arrhenius, float | None] | None:
     """(a_T over temperature, the temperature that is asked for), where a section has one."""
     if given.wlf is not None and given.arrhenius is not None:
-        raise fault(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
+        raise section_error(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
     shift = given.wlf or given.arrhenius
     return None if shift is None else (shift, given.temperature)

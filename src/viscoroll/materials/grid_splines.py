@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 
 
 def spline(values: Floats, axes: list[Floats], degree: int) -> Any:

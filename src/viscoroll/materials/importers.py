@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.checks import checked, number, yes_or_no
-from ..core.errors import ParameterError, one_of, refuse_unknown
+from ..core.array_types import Floats
+from ..core.checks import check_array, check_bool, check_number
+from ..core.errors import ParameterError, check_names, exactly_one_error
 from ..core.scale import SI
-from ..core.typed import Floats
 from .bodies import Bodies
 from .prony import Prony
 
@@ -69,12 +69,12 @@ class FromPrograms:
         5000000.0
         """
         if tau is None:
-            table = checked("g", g, low=0.0)
+            table = check_array("g", g, low=0.0)
             if table.ndim != 2 or table.shape[1] != 3 or k is not None:
                 sentence = f"tau is not given: give tau, or rows (g_i, k_i, tau_i) for g, here of shape {table.shape}"
                 raise ParameterError("tau", None, "one time for each g", sentence)
             g, k, tau = table.T
-        return cls._relative(E0, nu, "g", g, tau, k, yes_or_no("long_term", long_term), more)
+        return cls._relative(E0, nu, "g", g, tau, k, check_bool("long_term", long_term), more)
 
     @classmethod
     def ansys(
@@ -126,7 +126,7 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths, an unknown keyword.
         """
-        E, nu = number("E", E, unit=SI, low=0.0, strict=True), poisson(nu)
+        E, nu = check_number("E", E, unit=SI, low=0.0, strict=True), poisson(nu)
         strengths, times = pairs("G", G, "tau", tau)
         bulk = None if K is None else pairs("K", K, "tau", times)[0]
         return cls._of_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
@@ -177,13 +177,13 @@ class FromPrograms:
         if terms is not None:
             if terms[resting].any():
                 if nu is not None or bulk is not None:
-                    raise one_of("nu or bulk", "K of beta = 0", both=True)
+                    raise exactly_one_error("nu or bulk", "K of beta = 0", both=True)
                 bulk = math.fsum(terms[resting])
             terms = terms[~resting]
         if (nu is None) == (bulk is None):
-            raise one_of("nu", "bulk", both=nu is not None)
+            raise exactly_one_error("nu", "bulk", both=nu is not None)
         if bulk is not None:
-            bulk = number("bulk", bulk, unit=SI, low=0.0, strict=True)
+            bulk = check_number("bulk", bulk, unit=SI, low=0.0, strict=True)
             nu = (3.0 * bulk - 2.0 * rest) / (6.0 * bulk + 2.0 * rest)
             terms = np.zeros_like(strengths) if terms is None else terms
         return cls._of_moduli(rest, poisson(nu), strengths, times, terms, more, bulk)
@@ -201,7 +201,7 @@ class FromPrograms:
         more: dict[str, Any],
     ) -> Any:
         """From shares of the instantaneous moduli; ``long``: E is the long-time modulus."""
-        E, nu = number("E0", E, unit=SI, low=0.0, strict=True), poisson(nu)
+        E, nu = check_number("E0", E, unit=SI, low=0.0, strict=True), poisson(nu)
         values, times = pairs(name, shares, "tau", tau)
         left = _left(name, values)
         if bulk is None:
@@ -235,13 +235,13 @@ class FromPrograms:
     @classmethod
     def _made(cls, more: dict[str, Any], **own: Any) -> Any:
         """The material of these fields; raises ParameterError for a keyword that no material has."""
-        refuse_unknown("keyword", more, _MORE, "one of this constructor")
+        check_names("keyword", more, _MORE, "one of this constructor")
         return cls(**own, **more)
 
 
 def poisson(nu: Any) -> float:
     """Poisson's ratio in (-1, 0.5]; raises ParameterError."""
-    nu = number("nu", nu)
+    nu = check_number("nu", nu)
     if not -1.0 < nu <= 0.5:
         raise ParameterError("nu", nu, "in (-1, 0.5]")
     return nu
@@ -249,8 +249,8 @@ def poisson(nu: Any) -> float:
 
 def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True) -> tuple[Floats, Floats]:
     """Two lists of one length, the first >= 0, the second > 0 (>= 0 unless ``strict``); raises ParameterError."""
-    first = checked(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
-    second = checked(other, at, unit="s" if other == "tau" else "s-1", low=0.0, strict=strict)
+    first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
+    second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, strict=strict)
     if first.ndim != 1 or first.shape != second.shape:
         raise ParameterError(other, f"of shape {second.shape}", f"one for each {name}, of shape {first.shape}")
     return first, second
@@ -259,7 +259,7 @@ def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bo
 def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
     """The long-time shear modulus of LS-DYNA's three ways to give it."""
     ways = {
-        "G0": None if G0 is None else number("G0", G0, unit=SI) - math.fsum(strengths),
+        "G0": None if G0 is None else check_number("G0", G0, unit=SI) - math.fsum(strengths),
         "G_inf": G_inf,
         "beta = 0": math.fsum(resting) if resting.size else None,
     }
@@ -268,7 +268,7 @@ def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, restin
         found = " and ".join(given) or "nothing"
         raise ParameterError("long-time modulus by", found, "one of G_inf, G0 and a pair with beta = 0")
     (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G of beta = 0"}
-    return number(named.get(name, name), value, unit="Pa", low=0.0, strict=True)
+    return check_number(named.get(name, name), value, unit="Pa", low=0.0, strict=True)
 
 
 def _left(name: str, shares: Floats) -> float:

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..core.checks import number
+from ..core.checks import check_number
 from ..core.errors import ParameterError
 from .law_table import Floats, LawTable, law_table, made
 from .prony import read_only
@@ -54,7 +54,7 @@ class LawAxis:
             An alpha beyond those of the axis.
         """
         low, high = self.alpha
-        alpha = number("alpha", alpha, low=low, high=high)
+        alpha = check_number("alpha", alpha, low=low, high=high)
         if alpha == 1.0:
             return law_table(1.0)
         n = min(math.frexp(alpha)[1] - 1 - self.first, len(self.rows) - 1)
@@ -78,7 +78,7 @@ def law_axis(low: float, high: float) -> LawAxis:
     ParameterError
         Others.
     """
-    low, high = (number("alpha", one, low=1.0, high=HIGHEST_ALPHA) for one in (low, high))
+    low, high = (check_number("alpha", one, low=1.0, high=HIGHEST_ALPHA) for one in (low, high))
     if not low < high:
         raise ParameterError("alpha", f"{low:g} to {high:g}", "a lower and a higher one")
     octaves = range(math.frexp(low)[1] - 1, math.ceil(math.log2(high)))

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.numerics.interpolation import chebyshev, powers_of_chebyshev, to_chebyshev, to_doubles
 from .law_modes import AtPlaces
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.typed import Floats, Integers
+from ..core.array_types import Floats, Integers
 from .bodies import Bodies
 from .cover import Cover
 from .law_axis import OCTAVES, tables_of, to_chebyshev

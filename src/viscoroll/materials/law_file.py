@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.checks import checked, number
+from ..core.checks import check_array, check_number
 from ..core.errors import FileError, ParameterError
 from .bodies import Bodies
 from .cover import Cover
@@ -51,7 +51,7 @@ def table_of(material: Any, base: Any = None) -> LawTable:
     if not isinstance(material, Real):
         allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
         raise ParameterError("material", f"of type {type(material).__name__}", allowed)
-    return law_table(float(checked("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
+    return law_table(float(check_array("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
 
 
 def as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
@@ -82,7 +82,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     Parameters
     ----------
     path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
-        delta, of ``viscoroll tables build`` or of another program (:func:`viscoroll.materials.law_grid.load_grid`).
+        delta, of ``viscoroll tables build`` or of another program (``materials/law_grid.py``).
     alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
         T_epsilon for the unit of time.
 
@@ -112,7 +112,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
         return law_of(content, path)
     axis = axis_of(content, path)
     low, high = axis.alpha
-    if alpha is None or not low <= number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
+    if alpha is None or not low <= check_number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
         wider = "`viscoroll tables law --alpha LOW:HIGH` writes others"
         raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds ({wider})")
     return axis.at(alpha)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.checks import checked, number
+from ..core.array_types import Floats
+from ..core.checks import check_array, check_number
 from ..core.errors import FileError, OutOfTableError, ParameterError
-from ..core.files import sealed_content
-from ..core.typed import Floats
-from ..core.units import factor
+from ..core.files import read_sealed
+from ..core.units import conversion_factor
 from .grid_splines import compiled, spline
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     """
     import xarray as xr
 
-    content = io.BytesIO(sealed_content(path, _MOST_BYTES, "grid", "build it again"))
+    content = io.BytesIO(read_sealed(path, _MOST_BYTES, "grid", "build it again"))
     try:
         table = xr.load_dataset(content, decode_times=False)
     except Exception:  # libraries raise many kinds
@@ -114,7 +114,7 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
     if "alpha" not in table.dims:
         return table
     low, high = table["alpha"].values[[0, -1]]
-    if alpha is None or not low <= number("alpha", alpha) <= high:
+    if alpha is None or not low <= check_number("alpha", alpha) <= high:
         raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds")
     if low == high:
         return table.squeeze("alpha")
@@ -129,7 +129,7 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
     for name, unit in given.items():
         wanted = "1" if given["V"] == "1" else UNITS[name]
         try:
-            by = factor(unit, wanted)[0]
+            by = conversion_factor(unit, wanted)[0]
         except ParameterError as error:
             raise ParameterError(f"units of {name}", unit, f"of {wanted}, as those of V") from error
         table = table.assign({name: table[name].astype(np.float64) * by})
@@ -138,7 +138,7 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
 
 def _law_of(table: xr.Dataset) -> LawGrid:
     """The law of a grid in SI units; raises KeyError and ValueError, among these ParameterError."""
-    V, delta = checked("V", table["V"].values, low=0.0, strict=True), table["delta"].values
+    V, delta = check_array("V", table["V"].values, low=0.0, strict=True), table["delta"].values
     axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}
     for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
         field = table[name] if name in table else 0.5 * table["M"]
@@ -147,6 +147,6 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     return LawGrid(
         splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
         slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= _FULL_SLIP * most).all()),
-        R=number("R", table.attrs.get("R", "missing, the radius in m"), low=0.0, strict=True),
+        R=check_number("R", table.attrs.get("R", "missing, the radius in m"), low=0.0, strict=True),
         title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.array_types import Floats
 from ..core.errors import ParameterError
-from ..core.typed import Floats
 from .bodies import Bodies
 from .prony import Prony
 from .prony_forms import Modes
@@ -63,7 +63,7 @@ def by_modes(given: Any, z: Floats) -> AtPlaces:
 
     series, alpha = kernel_series(given)
     found, z = np.zeros((2 * FUNCTIONS + 1, z.size)), z.view()
-    z.flags.writeable = False  # as all that a kernel reads, see ``blocks.elements``
+    z.flags.writeable = False  # as all that a kernel reads, see ``blocks.block_reader``
     if series.a.size:
         modes_loop(series, alpha, new_workspace(series.a.size), z, found)
     return AtPlaces(found[:FUNCTIONS], found[FUNCTIONS:-1], found[-1])

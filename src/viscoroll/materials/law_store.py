@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import __version__
 from ..core.errors import FileError
-from ..core.files import sealed_content
+from ..core.files import read_sealed
 from ..core.symbols import PAPER
 
 if TYPE_CHECKING:
@@ -219,7 +219,7 @@ def content_at(path: str | PathLike[str], what: str, remedy: str) -> Content:
     """
     import h5py
 
-    with h5py.File(io.BytesIO(sealed_content(path, _MOST_BYTES, what, remedy)), "r") as file:
+    with h5py.File(io.BytesIO(read_sealed(path, _MOST_BYTES, what, remedy)), "r") as file:
         numbers = {name: each[()] for name, each in file.items() if isinstance(each, h5py.Dataset)}
         return Content(numbers, {key: _single(value) for key, value in file.attrs.items()})
 

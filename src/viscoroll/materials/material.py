@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import checked, number
+from ..core.array_types import Floats
+from ..core.checks import check_array, check_number
 from ..core.errors import ParameterError
-from ..core.results import Row, Shown
+from ..core.results import Result, SummaryRow
 from ..core.scale import SI
-from ..core.typed import Floats
 from .importers import FromPrograms, poisson
 from .measured import Measured
 from .prony import Prony
@@ -101,8 +101,8 @@ class Material(FromPrograms):
         ParameterError
             A value out of range.
         """
-        T_epsilon = number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
-        T_sigma = number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
+        T_epsilon = check_number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
+        T_sigma = check_number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
         refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
         prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
@@ -169,7 +169,7 @@ class Material(FromPrograms):
         """
         if not callable(shift):
             raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
-        given = checked("temperature", temperature, unit="degC")
+        given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
                 f"temperature is an array of shape {given.shape}, and a material is at one temperature: make "
@@ -223,31 +223,33 @@ class Material(FromPrograms):
 
         return as_dataset(self)
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         rows = [
-            Row("E", f"{self.E:.6g}", "Pa, of long times"), Row("instantaneous", f"{self.instant:.6g}", "Pa"),
-            Row("nu", f"{self.nu:g}"), Row("modes", str(self.prony.E.size)), Row("T_ref", f"{self.T_ref:.6g}", "s"),
+            SummaryRow("E", f"{self.E:.6g}", "Pa, of long times"),
+            SummaryRow("instantaneous", f"{self.instant:.6g}", "Pa"),
+            SummaryRow("nu", f"{self.nu:g}"), SummaryRow("modes", str(self.prony.E.size)),
+            SummaryRow("T_ref", f"{self.T_ref:.6g}", "s"),
         ]  # fmt: skip
         if self.prony.E.size:
             slowest, fastest = (f"{time * self.T_ref:.3g}" for time in (self.prony.tau[0], self.prony.tau[-1]))
-            rows.append(Row("relaxation times", f"{slowest} to {fastest}", "s"))
+            rows.append(SummaryRow("relaxation times", f"{slowest} to {fastest}", "s"))
         if self.density is not None:
-            rows.append(Row("density", f"{self.density:g}", "kg/m^3"))
+            rows.append(SummaryRow("density", f"{self.density:g}", "kg/m^3"))
         if self.thickness is not None:
-            rows.append(Row("thickness", f"{self.thickness:g}", "m"))
+            rows.append(SummaryRow("thickness", f"{self.thickness:g}", "m"))
         if self.temperature is not None:
-            rows.append(Row("temperature", f"{self.temperature:g}", "degrees Celsius"))
+            rows.append(SummaryRow("temperature", f"{self.temperature:g}", "degrees Celsius"))
         if self.measured is not None:
-            rows.append(Row("measured", str(self.measured)))
+            rows.append(SummaryRow("measured", str(self.measured)))
         return self.name or "Material", rows
 
-    _repr_html_ = Shown._repr_html_
+    _repr_html_ = Result._repr_html_
 
-    plot = Shown.plot
+    plot = Result.plot
 
     def _figure(self) -> Figure:
         """E', E'' and tan delta over frequency, and E(t)."""
-        from ..core.plots.measured import master_curve
+        from ..core.plots.measurements import master_curve
 
         return master_curve(self)
 
@@ -287,7 +289,7 @@ class Material(FromPrograms):
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Storage and loss modulus over E; omega times a relaxation time beyond the doubles is as good as infinite."""
         with np.errstate(over="ignore"):
-            product = checked("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+            product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
         fast = product > 1.0
         ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
         whole, E = 1.0 + ratio * ratio, self.prony.E
@@ -297,7 +299,7 @@ class Material(FromPrograms):
     def _over(self, t: ArrayLike, name: str, times: Floats) -> Floats:
         """t over each of the times."""
         with np.errstate(over="ignore"):
-            return checked(name, t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
+            return check_array(name, t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..core.checks import number
+from ..core.checks import check_number
 from ..core.errors import ParameterError
 from .shift import keep
 
@@ -32,7 +32,7 @@ class Measured:
 
     def __post_init__(self) -> None:
         keep(self, "rad s-1", low=0.0, high=0.0)
-        object.__setattr__(self, "misfit", number("misfit", self.misfit, low=0.0))
+        object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")
         if not isinstance(self.source, str):

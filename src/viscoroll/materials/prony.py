@@ -18,9 +18,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.checks import broadcast_shape, checked
+from ..core.array_types import Floats, Integers
+from ..core.checks import broadcast_shape, check_array
 from ..core.errors import ParameterError
-from ..core.typed import Floats, Integers
 from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
 
 
@@ -115,7 +115,7 @@ class Prony(OneOrMany):
         if not (rest > 0.0).all():
             found = f"of a sum of {1.0 - rest.min()!s}"
             raise ParameterError("J", found, "of a sum below 1: the instantaneous modulus would be infinite")
-        given = 1.0 / rest if alpha is None else checked("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
+        given = 1.0 / rest if alpha is None else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
         if given.shape not in ((), rest.shape):
             raise ParameterError("alpha", f"of shape {given.shape}", f"a number, or one a material, {rest.shape}")
         given = np.broadcast_to(given, rest.shape)
@@ -218,7 +218,7 @@ class Prony(OneOrMany):
 
     def slower(self, factor: ArrayLike) -> Prony:
         """All times longer by a factor, or by one each, as a colder rubber has them."""
-        times = self._times * checked("factor", factor, low=0.0, strict=True)[..., np.newaxis]
+        times = self._times * check_array("factor", factor, low=0.0, strict=True)[..., np.newaxis]
         if self.by_creep:
             return Prony.creep(self._strengths, times, alpha=self.alpha)
         return Prony(self._strengths, times)
@@ -255,7 +255,7 @@ class Prony(OneOrMany):
 
 def _given(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
     """Strengths and times as they are kept, refused by these names."""
-    values, each = checked(names[0], strengths, low=0.0), checked(names[1], times, low=0.0, strict=True)
+    values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, low=0.0, strict=True)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
         allowed = f"one time for each {names[0]}, of shape {values.shape}"
         raise ParameterError(names[1], f"of shape {each.shape}", allowed)

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ..core.checks import number
-from ..core.errors import ModelWarning, ParameterError, outside
+from ..core.checks import check_number
+from ..core.errors import ModelWarning, ParameterError, caller_level
 from ..core.scale import SI, Units
 
 #: J/(mol K), exact since 2019
@@ -116,11 +116,11 @@ def celsius(name: str, temperature: Any) -> float:
     ModelWarning
         Outside :data:`USUAL_RANGE`.  The words hold no value, so that Python says them once for each line of a program.
     """
-    found = number(name, temperature, unit="degC", low=ABSOLUTE_ZERO, strict=True)
+    found = check_number(name, temperature, unit="degC", low=ABSOLUTE_ZERO, strict=True)
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
         low, high = USUAL_RANGE
         text = f"{name} is outside {low:g} to {high:g}: temperatures are in degrees Celsius, and this looks like kelvin"
-        warnings.warn(text, ModelWarning, stacklevel=outside())
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
     return found
 
 
@@ -141,10 +141,12 @@ def relative(shift: Callable[[float], float], temperature: float, reference: flo
     ParameterError
         A temperature that the shift does not allow; a shift that gives no positive number.
     """
-    factor = number("a_T", shift(temperature), low=0.0, strict=True)
+    factor = check_number("a_T", shift(temperature), low=0.0, strict=True)
     if reference is None:
         return factor
-    return number("a_T", factor / number("a_T", shift(reference), low=0.0, strict=True), low=0.0, strict=True)
+    return check_number(
+        "a_T", factor / check_number("a_T", shift(reference), low=0.0, strict=True), low=0.0, strict=True
+    )
 
 
 def keep(given: Any, unit: Units = SI, **lows: float) -> None:
@@ -153,7 +155,9 @@ def keep(given: Any, unit: Units = SI, **lows: float) -> None:
     ``unit`` : of all of them, or what has units by name.
     """
     for name, low in lows.items():
-        object.__setattr__(given, name, number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf))
+        object.__setattr__(
+            given, name, check_number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf)
+        )
 
 
 def _shift(temperature: float, exponent: float) -> float:

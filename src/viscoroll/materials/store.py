@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import __version__
 from ..core.errors import FileError, ParameterError
-from ..core.files import seal_holds, write_dataset
+from ..core.files import seal_matches, write_dataset
 from .law_store import content_at
 from .measured import Measured
 from .prony import Prony
@@ -79,7 +79,7 @@ def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
         numbers, about = content_at(path, "material of this package", "write it again")
         if about.get("schema") != _SCHEMA:
             raise FileError(path, f"is no material: its schema is {about.get('schema')!r}, not {_SCHEMA!r}")
-        if seal_holds(Path(path).read_bytes()) is None:
+        if seal_matches(Path(path).read_bytes()) is None:
             raise FileError(path, "is damaged, or no material of this package: there is no SHA-256 at its end")
         form = tuple(numbers[name] for name in _FORMS[about["given"]])
         series = Prony(*form) if about["given"] == "relaxation" else Prony.creep(*form, alpha=numbers["alpha"])

@@ -1,4 +1,4 @@
-"""Input checks that one motion and an ensemble share."""
+"""Checks of arguments that one motion and an ensemble share."""
 
 from __future__ import annotations
 
@@ -9,105 +9,110 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import broadcast_shape, checked, extent, number, whole
+from ..core.array_types import Floats
+from ..core.checks import broadcast_shape, check_array, check_integer, check_number, extent
 from ..core.errors import ParameterError
 from ..core.scale import Scale, Units
-from ..core.typed import Floats
 
+#: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no longer proportional.
 RTOL_RANGE = (1e-12, 1e-2)
+#: Smallest and largest start speed, dimensionless: beyond them intermediate results leave the range of doubles.
 SPEED_RANGE = (1e-300, 1e100)
-#: a motion takes some hundreds
+#: Largest step limit: a motion takes some hundreds of steps.
 MOST_STEPS = 10_000_000
 
 
 def output_times(t: ArrayLike, units: Units = "1") -> Floats:
-    """Output times as a vector: finite, >= 0, ascending, at least one; ``units`` that they are counted in.
+    """Return output times as a vector of its own.
 
-    Raises
-    ------
-    ParameterError
-        Otherwise.
+    t: one time or a vector, in ``units``.
+    units: unit of time, or those of a roller.
+    Raises ParameterError unless they are finite, >= 0, ascending, and at least one.
     """
-    times = np.array(checked("t", t, unit=units, low=0.0), ndmin=1)  # contiguous, and the result's own
+    times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
     if times.ndim != 1 or times.size == 0:
         raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
-    backward = times[1:] < times[:-1]
-    if backward.any():
-        at = int(np.argmax(backward))
-        place = f"{times[at]:.6g}, {times[at + 1]:.6g} at rows {at}, {at + 1}"
-        raise ParameterError("t", place, "in ascending order")
+    falls = times[1:] < times[:-1]
+    if falls.any():
+        n = int(np.argmax(falls))
+        found = f"{times[n]:.6g}, {times[n + 1]:.6g} at rows {n}, {n + 1}"
+        raise ParameterError("t", found, "in ascending order")
     return times
 
 
 def refuse_end(end: float, T: float) -> None:
-    """Raise ParameterError for a last output time that is infinite over T_ref."""
+    """Raise ParameterError for a last output time that is infinite in T_ref.
+
+    end: last output time, s.
+    T: T_ref, s.
+    """
     if end / T == math.inf:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
 
 
-def refuse_many(**given: Any) -> None:
-    """Raise ParameterError for an array where roll wants one number."""
-    for name, each in given.items():
-        if type(each) is not float and (shape := _shape(each)):
+def refuse_many(**arguments: Any) -> None:
+    """Raise ParameterError for an array where ``roll`` takes one number; arguments by name."""
+    for name, value in arguments.items():
+        if type(value) is not float and (shape := _shape(value)):
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
             raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
 
 
-def _shape(given: Any) -> tuple[int, ...]:
-    """Shape of what a caller gave, of a ragged list as one of objects; () of what is no array."""
+def _shape(value: Any) -> tuple[int, ...]:
+    """Return the shape of an argument, of a ragged list as one of objects; () of what is no array."""
     try:
-        return tuple(np.shape(given if hasattr(given, "shape") else np.asarray(given, object)))
+        return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
     except (TypeError, ValueError):
         return ()
 
 
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:
-    """(rtol, rest threshold or 0, max_steps), checked.
+    """Check the limits of an integration.
 
-    Raises
-    ------
-    ParameterError
-        rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
+    rtol, max_steps: as of :func:`viscoroll.roll`.
+    rest: threshold, dimensionless.
+    Returns (rtol, threshold of rest or 0, step limit).
+    Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
     low, high = RTOL_RANGE
-    if not low <= number("rtol", rtol) <= high:
+    if not low <= check_number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = 0.0 if rest is None else number("rest", rest, low=0.0, strict=True)
-    return float(rtol), threshold, whole("max_steps", max_steps, 1, MOST_STEPS)
+    threshold = 0.0 if rest is None else check_number("rest", rest, low=0.0, strict=True)
+    return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
-    """Start velocities: finite, no more than 1e100, and the larger of the two 0 or no less than 1e-300.
+    """Return start speeds, checked: floats as they are, else arrays.
 
-    Beyond, intermediate results leave the range of doubles.
-
-    Raises
-    ------
-    ParameterError
-        Otherwise.
+    V0, omega0: dimensionless, numbers or arrays.
+    Raises ParameterError unless both are finite and at most 1e100 in size, and the larger is 0 or at least 1e-300.
     """
     low, high = SPEED_RANGE
     # each by itself: max() of a NaN and another may be the other
     if type(V0) is float and type(omega0) is float and -high <= V0 <= high and -high <= omega0 <= high:
         if abs(V0) >= low or abs(omega0) >= low:
             return V0, omega0
-    V, omega = checked("V0", V0), checked("omega0", omega0)
+    V, omega = check_array("V0", V0), check_array("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0
-        if abs(fastest) > SPEED_RANGE[1]:
-            raise ParameterError(name, fastest, f"at most {SPEED_RANGE[1]:g} in size")
-    # by parts, whose size does not depend on that of the arrays
+        if abs(fastest) > high:
+            raise ParameterError(name, fastest, f"at most {high:g} in size")
+    # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer((V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16):
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
-        tiny = larger[(larger > 0.0) & (larger < SPEED_RANGE[0])]
+        tiny = larger[(larger > 0.0) & (larger < low)]
         if tiny.size:
-            raise ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {SPEED_RANGE[0]:g}")
+            raise ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {low:g}")
     return V, omega
 
 
 def in_words(error: ParameterError, scale: Scale) -> ParameterError:
-    """A refusal of what has no dimension any more, with what its values are over."""
+    """Return the refusal of a dimensionless value with the units that it was divided by.
+
+    error: the refusal.
+    scale: of the roller; for a scene the error itself is returned.
+    """
     if not scale.si:
         return error
     about = "dimensionless"

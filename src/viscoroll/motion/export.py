@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,129 +11,159 @@ from .. import __version__
 from ..contact_law.parameters import PARAMETERS
 from ..core.drive import Feedback, Schedule
 from ..core.errors import MotionStatus
-from ..core.results import short
+from ..core.results import format_value
 from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.prony import Prony
-from .driven import ROWS, STATES
-from .result import Rolled
+from .drive import ROWS, STATES
+from .result import RollResult
 
+#: Comment of a schedule in a dataset.
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
-#: what it is, the first flag, meanings
+
+
+class _Flags(NamedTuple):
+    """Attributes of a column of codes: its long_name, the first code, and the meanings of all codes."""
+
+    long_name: str
+    first: int
+    meanings: str
+
+
+#: Columns of codes.
 _FLAGS = {
-    "regime": ("regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
-    "status": ("how the motion ended", 0, " ".join(status.name.lower() for status in MotionStatus)),
-    "flow": ("source of the motion", 0, "integrated flow_map"),
+    "regime": _Flags("regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
+    "status": _Flags("how the motion ended", 0, " ".join(status.name.lower() for status in MotionStatus)),
+    "flow": _Flags("source of the motion", 0, "integrated flow_map"),
 }
 
 
 def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
-    """Attributes of a field, a start or another column of an ensemble."""
+    """Return the attributes of a field, a start or another column of an ensemble; ``si``: of a cylinder."""
     if name not in _FLAGS:
         return dict(attributes(name, si))
-    about, first, meanings = _FLAGS[name]
+    long_name, first, meanings = _FLAGS[name]
     values = np.arange(first, first + len(meanings.split()), dtype=np.int8)
-    return {"long_name": about, "flag_values": values, "flag_meanings": meanings}
+    return {"long_name": long_name, "flag_values": values, "flag_meanings": meanings}
 
 
 def provenance(title: str) -> dict[str, str]:
-    """What every dataset says of itself."""
+    """Return the attributes that every dataset has."""
     return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
 
 
 def _dataset(
-    result: Rolled, title: str, dims: tuple[str, ...], more: dict[str, Any], about: dict[str, Any]
+    result: RollResult, title: str, dims: tuple[str, ...], variables: dict[str, Any], about: dict[str, Any]
 ) -> xr.Dataset:
-    """Its rows over ``dims``, what drove it and what rolled, beside ``more`` variables and attributes."""
-    whole, described = result.drive.acts or "motion" in dims, partial(column_attributes, si=result.scale.si)
+    """Return the dataset of a result.
+
+    result: its rows, drive and roller are put into the dataset.
+    title: of the dataset.
+    dims: of the rows.
+    variables, about: further variables and attributes.
+    """
+    si = result.scale.si
+    acts = result.drive.acts or "motion" in dims
     data: dict[str, Any] = {}
-    for name in ROWS if whole else STATES:
+    for name in ROWS if acts else STATES:
         if (values := result[name]) is not None:
             if name == "regime":
                 values = np.where(np.isnan(values), -1, values).astype(np.int8)
-            data[name] = dims, values, described(name)
-    drives, texts = _drive(result)
-    roller, series = result.roller, result.scene.series
+            data[name] = dims, values, column_attributes(name, si)
+    drives, texts = _describe_drive(result)
     attrs = provenance(title) | about | texts
-    if whole:
+    if acts:
         attrs["drive_error"] = result.drive_error
-    if series is not None:  # by which it counts time
+    if (series := result.scene.series) is not None:  # the unit of time is its own
         attrs |= {"relaxation_strengths": series.E, "relaxation_times": series.tau}
     if (cover := result.scene.cover) is not None:
         attrs |= {} if cover.shape else {"cover_thickness_over_l0": cover.thickness}
         attrs |= {"cover_on": cover.on, "cover_nu": cover.nu}
-    if result.scale.si:
-        attrs |= {name: getattr(roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
-    return xr.Dataset(data | more | drives, {"t": ("t", result.t, described("t"))}, attrs)
+    if si:
+        attrs |= {name: getattr(result.roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
+    return xr.Dataset(data | variables | drives, {"t": ("t", result.t, column_attributes("t", si))}, attrs)
 
 
-def _drive(result: Rolled) -> tuple[dict[str, Any], dict[str, Any]]:
-    """(Variables ``drive_force`` and the like, with their times where they have some; attributes for callables).
+def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return (variables ``drive_force`` and the like, with the times of schedules; attributes for callables) of a
+    result.
 
-    Numbers stand over () or (motion), schedules over (drive_force_time) or (motion, drive_force_time), or where
-    motions have times of their own over (motion, drive_force_corner); gains of a feedback are attributes.
+    Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
+    motions have times of their own (motion, drive_force_corner); gains of a feedback are attributes.
     """
     variables: dict[str, Any] = {}
     texts: dict[str, Any] = {}
-    for name, whole in result.drive.given.items():
-        key, feeds_back = f"drive_{name}", isinstance(whole, Feedback)
-        given = whole.value if feeds_back else whole
-        gains = {"gain_V": whole.V, "gain_omega": whole.omega} if feeds_back else {}
-        if callable(given):
-            told = (f", {what} = {short(gain) if np.ndim(gain) else f'{gain:.15g}'}" for what, gain in gains.items())
-            texts[key] = "a function of t" + "".join(told)
+    for name, given in result.drive.given.items():
+        key, value, gains = f"drive_{name}", given, {}
+        if isinstance(given, Feedback):
+            value, gains = given.value, {"gain_V": given.V, "gain_omega": given.omega}
+        if callable(value):
+            parts = (f", {gain} = {format_value(x) if np.ndim(x) else f'{x:.15g}'}" for gain, x in gains.items())
+            texts[key] = "a function of t" + "".join(parts)
             continue
         about = attributes(name, result.scale.si)
         about = about | {"long_name": f"given: {about['long_name']}"} | gains
         dims: tuple[str, ...] = ("motion",)
-        if isinstance(given, Schedule):
-            along = {"long_name": f"times of the given {name}", "units": result.scale.unit("t")}
-            dims = "motion", f"{key}_time" if given.times.ndim == 1 else f"{key}_corner"
-            variables[f"{key}_time"] = dims[-given.times.ndim :], given.times, along
-            given, about = given.values, about | {"comment": _LINEAR}
-        number = np.asarray(given, np.float64)
-        variables[key] = dims[len(dims) - number.ndim :], number, about
+        if isinstance(value, Schedule):
+            about_times = {"long_name": f"times of the given {name}", "units": result.scale.unit("t")}
+            dims = "motion", f"{key}_time" if value.times.ndim == 1 else f"{key}_corner"
+            variables[f"{key}_time"] = dims[-value.times.ndim :], value.times, about_times
+            value, about = value.values, about | {"comment": _LINEAR}
+        array = np.asarray(value, np.float64)
+        variables[key] = dims[len(dims) - array.ndim :], array, about
     return variables, texts
 
 
-def _series(materials: Any, count: int) -> dict[str, Any]:
-    """Strengths and times of a material each as they were given, or of both bodies and the cylinder's share."""
+def _material_variables(materials: Any, count: int) -> dict[str, Any]:
+    """Return the strengths and times of several materials as they were given, and the share or the thickness.
+
+    materials: series, bodies or covers of several motions; others give nothing.
+    count: number of motions.
+    """
     if materials is None or not materials.shape:
         return {}
     if not isinstance(materials, Bodies):
-        return _modes(materials, count, "", "")
+        return _mode_variables(materials, count, "", "")
+
+    def along(name: str, values: Any, long_name: str, **more: Any) -> dict[str, Any]:
+        about = {"long_name": long_name, "units": "1"} | more
+        return {name: ("motion", np.broadcast_to(values, (count,)), about)}
+
     if isinstance(materials, Cover):
-        about = {"long_name": "thickness of the cover over l0", "units": "1"}
         layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
-        return {"cover_thickness": ("motion", np.broadcast_to(materials.thickness, (count,)), about | layer)}
-    share = {"long_name": "the cylinder's part of the long-time compliance", "units": "1"}
+        return along("cover_thickness", materials.thickness, "thickness of the cover over l0", **layer)
     return (
-        _modes(materials.cylinder, count, "cylinder_", "cylinder: ")
-        | _modes(materials.base, count, "base_", "base: ")
-        | {"share": ("motion", np.broadcast_to(materials.share, (count,)), share)}
+        _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
+        | _mode_variables(materials.base, count, "base_", "base: ")
+        | along("share", materials.share, "the cylinder's part of the long-time compliance")
     )
 
 
-def _modes(given: Prony, count: int, body: str, of: str) -> dict[str, Any]:
-    """Strengths and times of one body, over (motion, mode)."""
-    form, over = ("creep", "compliance") if given.by_creep else ("relaxation", "modulus")
+def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
+    """Return the strengths and times of the modes of one body, over (motion, mode).
+
+    series: of each motion, or one.
+    count: number of motions.
+    prefix, title: of the names and of the long_names.
+    """
+    form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
     parts = {
-        "strengths": (given.J if given.by_creep else given.E, f"strengths of {form} over the long-time {over}"),
-        "times": (given.T if given.by_creep else given.tau, f"times of {form} over T_ref"),
+        "strengths": (series.J if series.by_creep else series.E, f"strengths of {form} over the long-time {total}"),
+        "times": (series.T if series.by_creep else series.tau, f"times of {form} over T_ref"),
     }
     return {
-        f"{body}{form}_{name}": (
-            ("motion", f"{body}mode"), np.broadcast_to(values, (count, np.shape(values)[-1])),
-            {"long_name": of + about, "units": "1"},
+        f"{prefix}{form}_{name}": (
+            ("motion", f"{prefix}mode"), np.broadcast_to(values, (count, np.shape(values)[-1])),
+            {"long_name": title + about, "units": "1"},
         )
         for name, (values, about) in parts.items()
     }  # fmt: skip
 
 
 def motion_dataset(motion: Any) -> xr.Dataset:
-    """One motion over t; under a drive with what acted, works and losses."""
-    turns = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
+    """Return the dataset over t of a ``motion``, a :class:`Motion`; for a driven one with loads, works and losses."""
+    about_reversals = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {
         "onset_time": motion.onset_time,
         "rest_time": motion.rest_time,
@@ -142,20 +171,20 @@ def motion_dataset(motion: Any) -> xr.Dataset:
         "status": motion.message,
         "steps": motion.steps,
     }
-    more = {"reversals": ("reversal", motion.reversals, turns)} if motion.drive.acts else {}
-    return _dataset(motion, "Motion of a viscoelastic cylinder rolling with partial slip", ("t",), more, about)
+    variables = {"reversals": ("reversal", motion.reversals, about_reversals)} if motion.drive.acts else {}
+    return _dataset(motion, "Motion of a viscoelastic cylinder rolling with partial slip", ("t",), variables, about)
 
 
 def ensemble_dataset(result: Any) -> xr.Dataset:
-    """All motions over (motion, t)."""
-    si, more = result.scale.si, _series(result.scene.material, len(result))
+    """Return the dataset over (motion, t) of a ``result``, an :class:`Ensemble`."""
+    si, variables = result.scale.si, _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:
         value = np.asarray(getattr(result.scene, name))
-        more[name] = ("motion",)[: value.ndim], value, attributes(name)
+        variables[name] = ("motion",)[: value.ndim], value, attributes(name)
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
-        more[name] = "motion", result[name], column_attributes(name, si)
-    more["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
+        variables[name] = "motion", result[name], column_attributes(name, si)
+    variables["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
-    found = _dataset(result, "Ensemble of motions", ("motion", "t"), more, about)
-    own = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
-    return found.assign_coords({name: values for name, values in own.items() if name not in found})
+    dataset = _dataset(result, "Ensemble of motions", ("motion", "t"), variables, about)
+    labels = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
+    return dataset.assign_coords({name: values for name, values in labels.items() if name not in dataset})

@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters
-from ..core.blocks import flattened, run_blocks
-from ..core.typed import Floats, Integers
+from ..core.array_types import Floats, Integers
+from ..core.blocks import broadcast_vector, run_blocks
+from ..kernels.flow.records import Motions
 from .flow_store import FlowMap, load, path_of, save
-from .rolling import motions
+from .problem import integrate_motions
 
 #: ratio of the stated error to the largest error of the sampled motions
 _MARGIN = 4.0
@@ -131,7 +132,7 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
     decay, start = 1.0 / new_map.slow_rate, (np.array([V0]), np.array([omega0]))
 
     def flow(times: NDArray) -> FlowResult:
-        return look_up_ensemble(new_map, 1.0, 0.0, *start, times, _MEASURED_ROWS)
+        return look_up_ensemble(new_map, Motions(1.0, 0.0, *start, times, _MEASURED_ROWS))
 
     at_rest = flow(np.array([0.0, 800.0 * decay]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
@@ -142,7 +143,7 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    exact, how = motions(new_map.parameters, start, np.ones(1), times)
+    exact, how = integrate_motions(new_map.parameters, start, np.ones(1), times)
     out, true_onset = exact[list(_MEASURED_ROWS), 0], how[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
@@ -155,12 +156,14 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
 
 
 def _stiff_time(new_map: FlowMap, speed: float) -> float:
-    """Relaxation time 1/k0 of omega - V for an onset at about this speed."""
+    """Return the relaxation time 1/k0 of omega - V for an onset near a speed.
+
+    new_map : the map.  speed : V at onset, dimensionless.
+    """
     from ..kernels.flow.layout import PLUS, views
 
-    rates = views(new_map.table).asymptote[
-        PLUS, :, 2
-    ]  # the constant of the second of a pair: at the middle of an octave
+    # the constant of the second of a pair: at the middle of an octave
+    rates = views(new_map.table).asymptote[PLUS, :, 2]
     octave = math.floor(math.log2(new_map.parameters[1] * speed)) - new_map.first
     return float(1.0 / rates[min(max(octave, 0), rates.size - 1)])
 
@@ -190,28 +193,24 @@ class FlowResult(NamedTuple):
 
 
 def look_up_ensemble(
-    chosen: FlowMap, gamma: float, rest: float, V0: NDArray, omega0: NDArray, times: NDArray, rows: tuple[int, ...],
-    *, threads: int | None = 1, progress: str | None = None,
-) -> FlowResult:  # fmt: skip
+    chosen: FlowMap, motions: Motions, *, threads: int | None = 1, progress: str | None = None
+) -> FlowResult:
     """Look up motions in a map.
 
-    chosen : the map.  gamma : time scale of the scene.  rest : rest threshold, 0 for none.
-    V0, omega0 : initial speeds, vectors of one or n numbers.  times : output times.
-    rows : output quantities, as in ``kernels/flow/loop.py``.  threads : of the work.  progress : title of a progress
-    bar.
+    chosen : the map.  motions : gamma, threshold of rest, initial speeds, output times and rows.  threads : of the
+    work.  progress : title of a progress bar.
     """
     from ..kernels.flow.loop import look_up_motions
     from ..kernels.flow.records import Flow
 
-    V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
+    V0, omega0, times = (broadcast_vector(a, a.shape) for a in (motions.V0, motions.omega0, motions.t))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
-    result = FlowResult.empty(len(rows), count, times.size)
-    wanted = np.array(rows, np.int64)
+    result = FlowResult.empty(len(motions.rows), count, times.size)
+    motions = motions._replace(V0=V0, omega0=omega0, t=times, rows=np.array(motions.rows, np.int64))
     _, kappa, mu, j = chosen.parameters
     flow = Flow(chosen.table, chosen.first, kappa, mu, j, chosen.slow_rate)
-
-    def work(start: int, stop: int) -> None:
-        look_up_motions(flow, gamma, rest, V0, omega0, times, wanted, result, start, stop)
-
-    run_blocks(work, result.status.size, _BLOCK, threads=threads, progress=progress)
+    run_blocks(
+        lambda start, stop: look_up_motions(flow, motions, result, start, stop), count, _BLOCK,
+        threads=threads, progress=progress,
+    )  # fmt: skip
     return result

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.typed import Floats
+from ..core.array_types import Floats
 from ..kernels.numerics.interpolation import Interpolation, chebyshev, powers_of_chebyshev, to_chebyshev
 from ..kernels.rows.simd_polynomial import TERMS
 
@@ -24,9 +24,9 @@ class Nodes:
     """
 
     def __init__(self, count: int) -> None:
-        known = Interpolation(chebyshev(count))
-        self.t = known.nodes
-        self._integrals = known.integrals([*known.exact, 1])
+        rule = Interpolation(chebyshev(count))
+        self.t = rule.nodes
+        self._integrals = rule.integrals([*rule.exact, 1])
         self._chebyshev, self._powers = to_chebyshev(count), powers_of_chebyshev(count, 0.0, 1.0).T.copy()
 
     def powers(self, values: Floats) -> Floats:
@@ -62,9 +62,9 @@ class Rows:
 
     def __init__(self, edges: Floats) -> None:
         self.edges, self.half = edges, 0.5 * np.diff(edges)
-        self.x = self.at(NODES)
+        self.x = self.node_positions(NODES)
 
-    def at(self, nodes: Nodes) -> Floats:
+    def node_positions(self, nodes: Nodes) -> Floats:
         """Interpolation nodes of all rows."""
         return self.edges[:-1, None] + self.half[:, None] * (1.0 + nodes.t)
 

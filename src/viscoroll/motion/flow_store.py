@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.files import seal, seal_holds
-from ..core.typed import Floats
+from ..core.array_types import Floats
+from ..core.files import seal, seal_matches
 from ..kernels.compile.folder import cache_root, read_private, write_private
 from ..materials.prony import Prony
 
@@ -26,14 +26,14 @@ KEPT = 64
 class FlowMap:
     """Tables of the motions of one scene.
 
-    Attributes ----------
+    Attributes
+    ----------
     parameters : alpha or series in its own unit of time, kappa, mu, j.
     first : kappa V of the slowest tabulated onset is 2**first.
     table : all tables, see ``kernels/flow/layout.py``.
     errors : stated errors, four times the largest of 100 motions against the integrator at rtol 1e-12, measured when
-    the map
-        was built: of V and omega relative to the larger of the two; of distance and angle relative to the larger of
-        the two so far (and to 1e-5 of that at rest); of slip and rolling loss relative to the initial energy.
+        the map was built: of V and omega relative to the larger of the two; of distance and angle relative to the
+        larger of the two so far (and to 1e-5 of that at rest); of slip and rolling loss relative to the initial energy.
     problem : why the scene has no map, or "".
     """
 
@@ -109,7 +109,7 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
     """The map in the bytes ``content`` of a file; raises ValueError if it is damaged or of other ``parameters``."""
     from ..kernels.flow.layout import SIZE
 
-    if not seal_holds(content):
+    if not seal_matches(content):
         raise ValueError("its bytes differ from the SHA-256 at their end")
     with np.load(io.BytesIO(content)) as data:
         if not np.array_equal(data["parameters"], _numbers(parameters)):

@@ -1,24 +1,27 @@
-"""What one motion and many have in common as they are given back: :class:`Rolled`."""
+"""Common data of one motion and of an ensemble: :class:`RollResult`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
-from ..contact_law.parameters import Parameters, Rolls
+from ..contact_law.parameters import Parameters, Roller
+from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.free_rolling import FreeRolling
+from ..contact_law.validity.steadiness import Steadiness
+from ..core.array_types import Floats
 from ..core.errors import MotionStatus
-from ..core.results import Row, Shown, unit_of
+from ..core.results import Result, SummaryRow, unit_of
 from ..core.scale import Scale
 from ..core.symbols import attributes
-from ..core.typed import Floats
-from .driven import Drive
+from .drive import Drive
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Rolled(Shown):
-    """What was rolled, and its rows over the output times."""
+class RollResult(Result):
+    """The roller, its drive, and the rows over the output times."""
 
-    roller: Rolls
+    roller: Roller
     drive: Drive
     t: Floats
     V: Floats
@@ -48,16 +51,30 @@ class Rolled(Shown):
 
     @property
     def scale(self) -> Scale:
-        """What 1 of each quantity is: in SI units of a cylinder."""
+        """1 of each dimensionless quantity: in SI units for a cylinder."""
         return self.roller.scale
 
     @property
     def success(self) -> Any:
-        """Whether it reached the last output time, or rest; of many, which did."""
+        """Whether the motion reached the last output time, or rest; of an ensemble for each motion."""
         return self.status <= MotionStatus.RESTED
 
+    def _add_steadiness(
+        self, report: Validity, roller: Roller, V: Floats, rolls: Any, x: Any, *, ends: bool
+    ) -> Validity:
+        """Add to a report whether the law of steady rolling may drive the motions.
+
+        report: of the motions' states.
+        roller: of the motions.
+        V: speeds in its unit, (times, ...); rolls, x, ends: as of :meth:`.Steadiness.along`.
+        """
+        free = FreeRolling.of_scene(roller.scene(), V / roller.scale["V"]).scaled(roller.scale)
+        return report._replace(steady=Steadiness.along(free, rolls, x, ends=ends))
+
     def _unit(self, name: str) -> str:
+        """Unit of a quantity for a printed report."""
         return unit_of(attributes(name, self.scale.si))
 
-    def _times(self) -> Row:
-        return Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))
+    def _row_of_times(self) -> SummaryRow:
+        """Row of a printed report: number of output times, and the last one."""
+        return SummaryRow("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))

@@ -49,6 +49,6 @@ print(roller.validity(1.0).steady.sentence)
 print(cold.validity(1.0).steady.sentence)
 
 # %%
-# Left: the dots are where V is right to 1 % and 10 %.  Right: what N does to rolling from
-# 1 m/s down to the speed where V is right to 10 %; it ends soon after.  A thousand
+# Left: the dots are where the error of V reaches 1 % and 10 %.  Right: what N does to rolling from
+# 1 m/s down to the speed where the error of V reaches 10 %; it ends soon after.  A thousand
 # times slower rubber is as right.  What is known of lower speeds: :doc:`/validity`.

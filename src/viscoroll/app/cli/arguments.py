@@ -81,10 +81,10 @@ def body_of(text: str) -> Any:
     FileError
         A file that cannot be read, or whose name does not end in .toml.
     """
-    from ...io.config import preset, read_body
+    from ...io.config import preset, read_roller
 
     if text.lower().endswith(".toml"):
-        return read_body(text)
+        return read_roller(text)
     if os.path.exists(text):
         raise vr.FileError(text, "is no scene file: its name must end in .toml")
     return preset(text)

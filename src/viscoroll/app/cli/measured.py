@@ -31,7 +31,7 @@ def show(given: Namespace) -> None:
     from ...materials.file import read_materials
 
     for section, material in read_materials(given.file).items():
-        print(f"[{section}] {as_text(*material._card())}\n")
+        print(f"[{section}] {as_text(*material._summary())}\n")
         series, T = material.prony, material.T_ref
         if series.E.size:
             columns = {"E_i": series.E, "tau_i [s]": series.tau * T, "J_i": series.J, "T_i [s]": series.T * T}
@@ -73,7 +73,7 @@ def fit(given: Namespace) -> int:
     example:
       viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
     """
-    from ...contact_law.assumptions import MISFIT_LIMIT
+    from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.file import as_toml
 
     record = vr.read_dma(
@@ -145,7 +145,7 @@ def identify(given: Namespace) -> None:
     example:
       viscoroll identify docs/examples/measured.toml --plot fit.png
     """
-    from ..identification.file import read_measurements
+    from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json
 
     options = {"robust": given.robust, "starts": given.starts, "seed": given.seed}

@@ -52,13 +52,13 @@ def _of_toml(path: str) -> Any:
     """lam, epsilon, M and the others over speeds around the largest M; or a material."""
     import numpy as np
 
-    from ...core.sections import read
-    from ...io.config import SCENES, read_body
+    from ...core.sections import read_toml
+    from ...io.config import SCENES, read_roller
     from ...materials.file import read_materials
 
-    if not read(path).keys() & set(SCENES):
+    if not read_toml(path).keys() & set(SCENES):
         return read_materials(path)["material"].plot()
-    body = read_body(path)
+    body = read_roller(path)
     found = body.resistance_extrema()
     low, high = (found.V[0], found.V[-1]) if found.V.size else (body.scale["V"],) * 2
     return body.contact(np.geomspace(_BEYOND[0] * low, _BEYOND[1] * high, 301), delta=0.0).plot()

@@ -10,9 +10,8 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
-from contextlib import suppress
 from functools import partial
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TextIO
 
 from ... import __version__
 from ...core.errors import Interrupted, ViscorollError
@@ -115,8 +114,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:  # of files FileError is raised where they are known to fail: without a name, of output
         if error.filename is not None:
             return _failed(f"{error.filename}: {error.strerror}")
-        # whatever is still buffered goes nowhere, or the interpreter would complain at its end
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard(sys.stdout)
         return _BROKEN_PIPE if isinstance(error, BrokenPipeError) else _failed(f"standard output: {error.strerror}")
 
 
@@ -145,7 +143,16 @@ def _failed(error: object) -> int:
 
 
 def _tell(message: object) -> None:
-    """One line on standard error, if it is open and takes it."""
+    """Write one line to standard error, if it is open and can be written."""
     if sys.stderr is not None:
-        with suppress(OSError):
+        try:
             print("viscoroll:", " ".join(str(message).split()), file=sys.stderr, flush=True)
+        except OSError:
+            _discard(sys.stderr)
+
+
+def _discard(stream: TextIO) -> None:
+    """Send buffered and further text of ``stream`` nowhere: the interpreter would fail to write it at its end, and exit
+    with its own code.
+    """
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

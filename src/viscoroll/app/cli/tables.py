@@ -40,9 +40,9 @@ def law(given: Namespace) -> None:
     example:
       viscoroll tables law docs/examples/rubber.toml -o rubber.h
     """
-    from ...io.config import read_bodies
+    from ...io.config import read_law_source
 
-    material = None if given.file is None else read_bodies(given.file)
+    material = None if given.file is None else read_law_source(given.file)
     vr.tables.export(vr.tables.law(material, alpha=given.alpha), given.output)
     _size(given.output)
 
@@ -134,14 +134,14 @@ def fmu(given: Namespace) -> None:
     example:
       viscoroll fmu docs/examples/rubber.toml -o roller.fmu
     """
-    from ...core.sections import read
-    from ...io.config import read_bodies, read_body
+    from ...core.sections import read_toml
+    from ...io.config import read_law_source, read_roller
     from ...materials.law_store import is_law
 
     path = given.file
     if Path(path).suffix == ".nc":
-        what = vr.load_law(path) if is_law(path) else read_bodies(path)
+        what = vr.load_law(path) if is_law(path) else read_law_source(path)
     else:
-        what = read_body(path) if "cylinder" in read(path) else read_bodies(path)
+        what = read_roller(path) if "cylinder" in read_toml(path) else read_law_source(path)
     vr.fmu.build(what, given.output, given.model, given.fmi)
     _size(given.output)

@@ -1,6 +1,6 @@
 """Measured moduli, checked and sorted, and whether storage and loss modulus go together.
 
-:class:`Curve` and :class:`Relaxation` are what a series is fitted to.  Both say what a mode adds to their columns.
+A series is fitted to a :class:`Curve` or a :class:`Relaxation`; both have the response of a mode in their columns.
 """
 
 from __future__ import annotations
@@ -12,20 +12,24 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked
+from ...core.array_types import Floats
+from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 
-#: points that a curve must have
+#: least number of points of a curve: a series of one mode has three constants
 FEWEST_POINTS = 3
-#: points above which the means of logarithmic bins are fitted in their place, and the number of bins: the least squares
-#: take a time in proportion to the points, and 500 bins hold every detail that modes of one or two a decade can follow
-MOST_POINTS, _BINS = 1000, 500
-#: a slope is taken over a quarter of a decade on either side, and over five points at least
-_WINDOW, _NEIGHBOURS = 0.25 * math.log(10.0), 5
-#: of the columns of a curve
+#: number of points above which the means of logarithmic bins are fitted in their place: the time of the least squares
+#: is proportional to the number of points
+MOST_POINTS = 1000
+#: number of logarithmic bins: 500 keep every detail that modes of one or two a decade can follow
+_BINS = 500
+#: half width in ln omega of the window of a slope: a quarter of a decade, within which moduli bend little
+_WINDOW = 0.25 * math.log(10.0)
+#: least number of points of a slope: five average the noise of usual DMA
+_NEIGHBOURS = 5
+#: column of a curve -> its unit
 UNITS = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "t": "s", "relaxation": "Pa"}
-#: of ln omega, below which frequencies are one
+#: range of ln omega below which frequencies count as one: some thousand roundings
 _APART = 1e-12
 
 
@@ -43,30 +47,38 @@ class Curve(NamedTuple):
 
     @property
     def shortest(self) -> float:
-        """Shortest time of a mode that the data can tell, s: of E'' any, since a mode's tail falls as omega only."""
+        """Shortest time of a mode that the data determine, s: any, since the loss modulus of a mode falls as omega
+        only.
+        """
         return 0.0
 
     @property
     def values(self) -> Floats:
         """The measured moduli, a row each, shape (2, n)."""
-        return np.array([self.storage, self.loss])
+        return np.array(self[1:])
 
     @property
     def constant(self) -> tuple[float, ...]:
-        """What a long-time modulus of 1 adds to each row."""
+        """Response of a long-time modulus of 1 in each row."""
         return 1.0, 0.0
 
     def responses(self, tau: Floats) -> Floats:
-        """What modes of strength 1 and times tau, s, shape (modes,), add to each row: shape (2, n, modes).
+        """Return the responses of modes of strength 1, z^2/(1 + z^2) and z/(1 + z^2) with z = omega tau.
 
-        z^2/(1 + z^2) and z/(1 + z^2), z = omega tau.
+        tau : times of the modes, s, shape (modes,).
+        Returns them for each row, dimensionless, shape (2, n, modes).
         """
         z = self.omega[:, None] * tau
         loss = 1.0 / (z + 1.0 / z)
         return np.array([z * loss, loss])
 
     def slopes(self, tau: Floats, responses: Floats) -> Floats:
-        """Derivatives of ``responses(tau)`` by ln tau."""
+        """Return the derivatives of the responses by ln tau.
+
+        tau : times of the modes, s, shape (modes,).
+        responses : ``responses(tau)``.
+        Returns them in the shape of the responses.
+        """
         storage, loss = responses
         return np.array([2.0 * loss * loss, loss * (1.0 - 2.0 * storage)])
 
@@ -80,7 +92,9 @@ class Curve(NamedTuple):
 
 
 class Relaxation(NamedTuple):
-    """Relaxation modulus over time, ascending, all positive.  Properties and methods as of :class:`Curve`, one row."""
+    """Relaxation modulus over time, ascending, all positive.  Properties and methods are those of :class:`Curve`,
+    one row.
+    """
 
     t: Floats
     relaxation: Floats
@@ -91,19 +105,21 @@ class Relaxation(NamedTuple):
 
     @property
     def shortest(self) -> float:
-        """Half of the first, s: of a mode of a tenth exp(-10) is left there, and noise alone would set its strength."""
+        """Half of the first time, s: of a mode of a tenth exp(-10) is left there, and noise alone would set its
+        strength.
+        """
         return 0.5 * float(self.t[0])
 
     @property
     def values(self) -> Floats:
-        return self.relaxation[None]
+        return np.array(self[1:])
 
     @property
     def constant(self) -> tuple[float, ...]:
         return (1.0,)
 
     def responses(self, tau: Floats) -> Floats:
-        """exp(-t/tau)."""
+        """Return exp(-t/tau), shape (1, n, modes)."""
         return np.exp(-self.t[:, None] / tau)[None]
 
     def slopes(self, tau: Floats, responses: Floats) -> Floats:
@@ -119,10 +135,10 @@ _Data = TypeVar("_Data", Curve, Relaxation)
 
 
 class KramersKronig(NamedTuple):
-    """Measured loss modulus over the one that the slope of the storage modulus allows.
+    """Ratio of the measured loss modulus to the one that the slope of the storage modulus gives.
 
-    omega : angular frequency, rad/s.
-    ratio : E''/((pi/2) dE'/d ln omega); infinite where E' does not rise, NaN where there is no slope.
+    omega : angular frequency, rad/s, shape (n,).
+    ratio : E''/((pi/2) dE'/d ln omega); infinite where E' does not rise, NaN where there is no slope, shape (n,).
     median : of the ratios; near 1 where the spectrum is broad and the data are sound.
     """
 
@@ -132,20 +148,19 @@ class KramersKronig(NamedTuple):
 
 
 def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_POINTS) -> _Data:
-    """Columns as a curve, sorted by the first of them.
+    """Check columns and sort them by the first.
 
-    Parameters
-    ----------
     kind : :class:`Curve` or :class:`Relaxation`.
     columns : its fields by the names under which they were given, in their order.
-    fewest : number of points that it must have.
+    fewest : least number of points.
+    Returns the curve.
 
     Raises
     ------
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    values = [checked(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
+    values = [check_array(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
     first = next(iter(columns))
     for name, column in zip(columns, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:
@@ -157,41 +172,51 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
 
 
 def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int = FEWEST_POINTS) -> Curve:
-    """Storage and loss modulus as a curve; arguments and errors of :func:`data_of`."""
+    """Return storage and loss modulus as a curve.
+
+    omega : angular frequencies, rad/s, shape (n,).
+    storage, loss : moduli in one unit, shape (n,).
+    fewest : least number of points.
+    Raises the errors of :func:`data_of`.
+    """
     return data_of(Curve, {"omega": omega, "storage": storage, "loss": loss}, fewest)
 
 
 def thinned(data: _Data) -> _Data:
-    """The means of logarithmic bins where there are more than :data:`MOST_POINTS`, else the data as they are.
+    """Return the means of logarithmic bins where there are more than :data:`MOST_POINTS`, else the data as they are.
 
-    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of measurement that is 0
-    on average stays so.
+    data : a curve.
+    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of
+    measurement that is 0 on average stays so.
     """
     x = np.log(data[0])
     if x.size <= MOST_POINTS:
         return data
-    place = (x - x[0]) * (_BINS / (x[-1] - x[0] or 1.0))
-    which = np.minimum(place.astype(np.int64), _BINS - 1)
-    count = np.bincount(which)
-    full = count > 0
-    first, *others = (np.bincount(which, column)[full] / count[full] for column in (x, *data[1:]))
+    position = (x - x[0]) * (_BINS / (x[-1] - x[0] or 1.0))
+    _, bins, count = np.unique(
+        np.minimum(position.astype(np.int64), _BINS - 1), return_inverse=True, return_counts=True
+    )
+    first, *others = (np.bincount(bins, column) / count for column in (x, *data[1:]))
     return type(data)(np.exp(first), *others)
 
 
 def kramers_kronig(curve: Curve) -> KramersKronig:
-    """The local form of the Kramers-Kronig relations, E'' = (pi/2) dE'/d ln omega.
+    """Compare the loss modulus with the local form of the Kramers-Kronig relations, E'' = (pi/2) dE'/d ln omega.
 
-    It is exact for a power law in the limit of small exponents, and good where E' bends little within a decade
+    curve : storage and loss modulus.
+    Returns the ratio of both sides at each point.
+
+    The form is exact for a power law in the limit of small exponents, and good where E' bends little within a decade
     (H. C. Booij and G. P. J. M. Thoone, Rheologica Acta 21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is
     that of a straight line in ln E' through the neighbours of a point.
     """
     x, y = np.log(curve.omega), np.log(curve.storage)
     ratio, nearest = np.empty_like(x), min(_NEIGHBOURS, x.size) - 1
-    for n, at in enumerate(x):
-        away = np.abs(x - at)
-        near = away <= max(_WINDOW, np.partition(away, nearest)[nearest])
-        slope, here = np.polyfit(x[near] - at, y[near], 1) if np.ptp(x[near]) > _APART else (math.nan, 0.0)
-        allowed = 0.5 * math.pi * slope * math.exp(here)
+    for n, centre in enumerate(x):
+        distance = np.abs(x - centre)
+        near = distance <= max(_WINDOW, np.partition(distance, nearest)[nearest])
+        slope, log = np.polyfit(x[near] - centre, y[near], 1) if np.ptp(x[near]) > _APART else (math.nan, 0.0)
+        allowed = 0.5 * math.pi * slope * math.exp(log)
         ratio[n] = curve.loss[n] / allowed if allowed > 0.0 else math.nan if math.isnan(slope) else math.inf
-    known = ratio[~np.isnan(ratio)]
-    return KramersKronig(curve.omega, ratio, float(np.median(known)) if known.size else math.nan)
+    finite = ratio[~np.isnan(ratio)]
+    return KramersKronig(curve.omega, ratio, float(np.median(finite)) if finite.size else math.nan)

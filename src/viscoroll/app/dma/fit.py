@@ -3,54 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
-from ...core.checks import number, whole
-from ...core.errors import ParameterError, unknown
-from ...core.typed import Numbers
+from ...core.array_types import Numbers
+from ...core.checks import check_choice, check_integer, check_number
+from ...core.errors import ParameterError
 from ...materials.prony import Prony
 from ...materials.prony_forms import MOST_MODES, WIDEST
 from ...materials.shift import celsius
-from .choose import chosen
-from .curve import Relaxation, curve_of, data_of, kramers_kronig, thinned
-from .record import DynamicModuli
-from .results import Fit, Misfit, Mode, RelaxationFit
-from .shift import master_curve
-from .spectrum import Data, Spectrum, misfits
+from .curve import Curve, Relaxation, curve_of, data_of, kramers_kronig, thinned
+from .dynamic_moduli import DynamicModuli
+from .fit_results import Fit, Misfit, Mode, RelaxationFit
+from .master_curve import master_curve
+from .mode_selection import fewest_modes
+from .spectrum import misfits, spectrum_of
 
-#: highest over lowest frequency; times reach a decade beyond on either side
+#: ratio of the highest to the lowest frequency that a fit may have; times reach a decade beyond on either side
 MOST_SPREAD = WIDEST / 100.0
-#: last over first relaxation modulus from which on it is none: noise on a plateau stays below
+#: ratio of the last to the first relaxation modulus above which it is none: noise on a plateau stays below
 _RISES = 1.1
 
 
+_Curve = TypeVar("_Curve", Curve, Relaxation)
+
+
+class _Options(TypedDict, total=False):
+    """Options of :func:`fit_prony` that hold for columns and for records alike."""
+
+    misfit: float
+    temperature: Numbers | None
+    reference: float | None
+    shift: Numbers | Callable[[float], float] | None
+    on: Literal["both", "storage"]
+    mode: Mode | None
+    source: str
+
+
+@overload
+def fit_prony(omega: DynamicModuli, *, modes: int | None = None, **options: Unpack[_Options]) -> Fit: ...
 @overload
 def fit_prony(
-    omega: DynamicModuli,
-    *,
-    modes: int | None = None,
-    misfit: float = 0.01,
-    temperature: Numbers | None = None,
-    reference: float | None = None,
-    shift: Numbers | Callable[[float], float] | None = None,
-    on: Literal["both", "storage"] = "both",
-    mode: Mode | None = None,
-    source: str = "",
-) -> Fit: ...
-@overload
-def fit_prony(
-    omega: Numbers,
-    storage: Numbers,
-    loss: Numbers,
-    modes: int | None = None,
-    *,
-    misfit: float = 0.01,
-    temperature: Numbers | None = None,
-    reference: float | None = None,
-    shift: Numbers | Callable[[float], float] | None = None,
-    on: Literal["both", "storage"] = "both",
-    mode: Mode | None = None,
-    source: str = "",
+    omega: Numbers, storage: Numbers, loss: Numbers, modes: int | None = None, **options: Unpack[_Options]
 ) -> Fit: ...
 def fit_prony(
     omega: Numbers | DynamicModuli,
@@ -125,28 +118,25 @@ def fit_prony(
         for name, given in (("storage", storage), ("loss", loss)):
             if given is not None:
                 raise ParameterError(name, "given", "left out: the record has it (modes=, if that is meant)")
-        if mode is not None and mode != record.mode:
+        if mode not in (None, record.mode):
             raise ParameterError("mode", repr(mode), f"{record.mode!r}, as of {record.source or 'the record'}")
         omega, storage, loss, mode = record.omega, record.storage, record.loss, _mode(record.mode)
         temperature, source = record.temperature if temperature is None else temperature, source or record.source
     elif storage is None or loss is None:
         raise ParameterError("storage and loss", None, "given, as columns beside omega, or a record of read_dma alone")
-    if on not in ("both", "storage"):
-        raise unknown("on", on, ("both", "storage"), "what shifts are found from")
-    mode, shifts = _mode("tension" if mode is None else mode), None
+    check_choice("on", on, "both", "storage")
+    mode = _mode("tension" if mode is None else mode)
     if temperature is None:
         for name, value in (("reference", reference), ("shift", shift)):
             if value is not None:
                 raise ParameterError(name, f"{value!r:.60}", "given with temperature only")
-        curve = curve_of(omega, storage, loss)
+        curve, shifts = curve_of(omega, storage, loss), None
     else:
         curve, shifts = master_curve(omega, storage, loss, temperature, reference, shift, on)
-    data = thinned(curve)
-    series = _series(curve, data, modes, misfit)
+    data, fields, errors = _fit_series(curve, modes, misfit)
     return Fit(
-        **series, misfit=Misfit(*misfits(data, _spectrum(series))), kramers_kronig=kramers_kronig(data), shifts=shifts,
-        temperature=None if shifts is None else shifts.reference, mode=mode, source=source,
-        **data._asdict(),
+        **fields, misfit=Misfit(*errors), kramers_kronig=kramers_kronig(data), shifts=shifts, mode=mode,
+        temperature=None if shifts is None else shifts.reference, source=source,
     )  # fmt: skip
 
 
@@ -196,48 +186,42 @@ def fit_relaxation(
     >>> round(fit.T_ref, 6), fit.material(nu=0.49).measured.high
     (0.5, 100.0)
     """
-    whole_data = data_of(Relaxation, {"t": t, "relaxation": relaxation})
-    first, *_, last = whole_data.relaxation.tolist()
+    curve = data_of(Relaxation, {"t": t, "relaxation": relaxation})
+    first, *_, last = curve.relaxation.tolist()
     if last > _RISES * first:
         found = f"from {first:g} to {last:g} as time goes on"
         raise ParameterError("relaxation", found, "a modulus, which falls (a creep compliance rises)")
-    data = thinned(whole_data)
-    series = _series(whole_data, data, modes, misfit)
-    return RelaxationFit(
-        **series, misfit=misfits(data, _spectrum(series))[0], mode=_mode(mode), source=source,
-        temperature=None if temperature is None else celsius("temperature", temperature), **data._asdict(),
-    )  # fmt: skip
+    _, fields, errors = _fit_series(curve, modes, misfit)
+    temperature = None if temperature is None else celsius("temperature", temperature)
+    return RelaxationFit(**fields, misfit=errors[0], mode=_mode(mode), source=source, temperature=temperature)
 
 
 def _mode(mode: Any) -> Mode:
-    """Which modulus; raises ParameterError."""
-    if mode not in ("tension", "shear"):
-        raise unknown("mode", mode, ("tension", "shear"), "a kind of modulus")
+    """Return which modulus was measured; raise ParameterError for another text."""
+    check_choice("mode", mode, "tension", "shear")
     return mode
 
 
-def _series(whole_data: Data, data: Data, modes: int | None, misfit: float) -> dict[str, Any]:
-    """The fields of a fit that are those of its series; arguments and errors of :func:`fit_prony`.
+def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
+    """Fit a series to measured moduli.
 
-    whole_data, data : what was measured, and what stands for it in the fit.
+    curve : all that was measured.
+    modes, misfit : as of :func:`fit_prony`.
+    Returns (the data that were fitted, the fields of a fit that are of its data and its series, the root mean square
+    of the relative errors of each modulus).
     """
-    target = number("misfit", misfit, low=0.0, strict=True)
-    modes = None if modes is None else whole("modes", modes, 1, MOST_MODES)
-    low, high = whole_data.band
+    target = check_number("misfit", misfit, low=0.0, strict=True)
+    modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
+    (low, high), data = curve.band, thinned(curve)
     if high > MOST_SPREAD * low:
-        first = data._fields[0]
         span = f"from {data[0][0]:g} to {data[0][-1]:g}"
-        raise ParameterError(first, span, f"within a factor of {MOST_SPREAD:g}")
-    spectrum, grid, reached = chosen(data, target, modes)
+        raise ParameterError(data._fields[0], span, f"within a factor of {MOST_SPREAD:g}")
+    spectrum, grid, reached = fewest_modes(data, target, modes)
     T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0
-    return {
-        "E": spectrum.E, "T_ref": T_ref, "prony": Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref),
-        "target": target, "reached": reached, "grid": grid, "band": (low, high), "points": whole_data[0].size,
+    prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)
+    fields = {
+        "E": spectrum.E, "T_ref": T_ref, "prony": prony, "target": target, "reached": reached, "grid": grid,
+        "band": (low, high), "points": curve[0].size,
         "outside": (spectrum.tau < 1.0 / high) | (spectrum.tau > 1.0 / low),
     }  # fmt: skip
-
-
-def _spectrum(series: dict[str, Any]) -> Spectrum:
-    """The spectrum of these fields, in the unit of the data."""
-    prony = series["prony"]
-    return Spectrum(series["E"], prony.E * series["E"], prony.tau * series["T_ref"])
+    return data, fields | data._asdict(), misfits(data, spectrum_of(prony, spectrum.E, T_ref))

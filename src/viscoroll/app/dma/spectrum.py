@@ -1,8 +1,8 @@
-"""Least squares of measured moduli by a discrete spectrum: strengths on given times, and times that move.
+"""Least squares of measured moduli by a discrete spectrum: strengths on fixed times, and times that are refined.
 
-The residuals are the relative errors of every measured modulus (E' and E'', or E(t)), all points alike.  On given times
-the strengths are those of non-negative least squares (as in M. Baumgaertel and H. H. Winter, Rheologica Acta 28,
-511-519, 1989, doi:10.1007/BF01332922, few modes do once their times are free to move).
+The residuals are the relative errors of every measured modulus (E' and E'', or E(t)), all points alike.  On fixed
+times the strengths are those of non-negative least squares (as in M. Baumgaertel and H. H. Winter, Rheologica Acta
+28, 511-519, 1989, doi:10.1007/BF01332922); few modes suffice once their times are free.
 """
 
 from __future__ import annotations
@@ -11,33 +11,53 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
+from ...materials.prony import Prony
 from .curve import Curve, Relaxation
 
-#: modes whose part of the curve is smaller, relative to it, are left out
+#: part of the curve, relative to it, below which a mode is left out: rounding of the strengths
 _NOTHING = 1e-12
-#: the long-time modulus is at least this share of the lowest storage or relaxation modulus
+#: least ratio of the long-time modulus to the lowest storage or relaxation modulus: a fluid has none
 FLOOR = 0.01
 
 Data = Curve | Relaxation
 
 
 class Spectrum(NamedTuple):
-    """Long-time modulus, strengths and times of the modes, times descending; units of the curve."""
+    """A discrete spectrum in the units of the data.
+
+    E : long-time modulus.
+    strength : of each mode, shape (modes,).
+    tau : time of each mode, descending, shape (modes,).
+    """
 
     E: float
     strength: Floats
     tau: Floats
 
     def modulus(self, data: Data) -> Floats:
-        """The moduli at the places of the data, shape of ``data.values``."""
+        """Return the moduli at the frequencies or times of the data, in the shape of ``data.values``."""
         return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
 
 
-def _relative(data: Data, constant: float, modes: Floats) -> Floats:
-    """Columns of a constant and of modes over the data: shape (rows n, 1 + modes).
+def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
+    """Return the spectrum of a series.
 
-    modes : what they add to each row, shape (rows, n, modes).
+    prony : strengths over the long-time modulus, times over T_ref.
+    E : long-time modulus.
+    T_ref : time that those of the series are counted in, s.
+    """
+    return Spectrum(E, prony.E * E, prony.tau * T_ref)
+
+
+def _relative(data: Data, constant: float, modes: Floats) -> Floats:
+    """Return the columns of the least squares: the responses of a constant and of modes, divided by the measured
+    moduli.
+
+    data : the curve.
+    constant : long-time modulus.
+    modes : responses of modes in each row, shape (rows, n, modes).
+    Returns shape (rows n, 1 + modes).
     """
     found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
     found[..., 0], found[..., 1:] = np.multiply(constant, data.constant)[:, None], modes
@@ -46,19 +66,32 @@ def _relative(data: Data, constant: float, modes: Floats) -> Floats:
 
 
 def _residuals(data: Data, values: Floats) -> Floats:
-    """Relative errors, row behind row, by long-time modulus, strengths and times."""
+    """Return the relative errors of all moduli, one row after the other.
+
+    data : the curve.
+    values : long-time modulus, strengths, times; shape (1 + 2 modes,).
+    """
     count = values.size // 2
     return _relative(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
 
 
 def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
-    """Root mean square of the relative error of each row."""
+    """Return the root mean square of the relative error of each row.
+
+    data : the curve.
+    spectrum : the fit.
+    """
     errors = _residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(len(data.constant), -1)
     return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
 
 
 def on_times(data: Data, tau: Floats) -> Spectrum:
-    """The least squares with non-negative strengths on given times; modes without strength are left out."""
+    """Solve the least squares with non-negative strengths on fixed times; modes without strength are left out.
+
+    data : the curve.
+    tau : times of modes, shape (modes,).
+    Returns the spectrum.
+    """
     from scipy.optimize import nnls
 
     columns, floor = _relative(data, 1.0, data.responses(tau)), _floor(data)
@@ -71,12 +104,19 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
 
 def has_plateau(data: Data, spectrum: Spectrum) -> bool:
-    """Whether the curve asks for a long-time modulus by itself."""
+    """Return whether the least squares give a long-time modulus above the least that is allowed."""
     return spectrum.E > 1.0001 * _floor(data)
 
 
-def polished(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
-    """The spectrum with its times moved too, between ``ends``, in at most so many calls of the residuals."""
+def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
+    """Refine a spectrum by varying its times too.
+
+    data : the curve.
+    spectrum : the start.
+    ends : shortest and longest time that is allowed.
+    calls : largest number of evaluations of the residuals.
+    Returns the refined spectrum.
+    """
     count = spectrum.tau.size
     if not count:
         return spectrum
@@ -84,22 +124,32 @@ def polished(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: i
     low, high = start - _RANGE, start + _RANGE
     low[0], high[0] = np.log(_floor(data)), np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
-    return on_times(data, np.exp(_descended(data, start, low, high, calls)[1 + count :]))
+    return on_times(data, np.exp(_minimize(data, start, low, high, calls)[1 + count :]))
 
 
-#: a strength may change by a factor of exp(_RANGE); and where the iteration stops
-_RANGE, _STILL = 20.0, 1e-14
-#: damping at first, and at least, over the diagonal of the normal equations
-_DAMPING, _LEAST_DAMPING = 1e-3, 1e-12
-#: multiplications of a product of matrices that BLAS does on one thread
-_ALONE = 1 << 17
+#: range of the logarithm of a strength about its start
+_RANGE = 20.0
+#: relative decrease of the sum of squares at which the iteration stops
+_CONVERGED = 1e-14
+#: damping of the first step, in units of the diagonal of the normal equations
+_DAMPING = 1e-3
+#: least damping, in the same unit
+_LEAST_DAMPING = 1e-12
+#: number of multiplications of a product of matrices up to which BLAS takes one thread
+_ONE_THREAD = 1 << 17
 
 
-def _descended(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -> Floats:
-    """Levenberg's and Marquardt's iteration between bounds.
+def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -> Floats:
+    """Minimise the sum of squared residuals within bounds by the method of Levenberg and Marquardt.
 
-    On the normal equations: a SVD of some hundred rows takes ten times as long on several threads as on one, and the
-    MINPACK of SciPy 1.17 gives other last digits from call to call.
+    data : the curve.
+    logs : start, logarithms of long-time modulus, strengths and times; shape (1 + 2 modes,).
+    low, high : bounds of the logarithms, of the same shape.
+    calls : largest number of evaluations of the residuals.
+    Returns the logarithms at the minimum.
+
+    The method solves the normal equations: an SVD of some hundred rows takes ten times as long on several threads as
+    on one, and the MINPACK of SciPy 1.17 gives other last digits from call to call.
     """
     logs = np.clip(logs, low, high)
     errors, slopes = _residuals(data, np.exp(logs)), _slopes(logs, data)
@@ -107,32 +157,40 @@ def _descended(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) 
     for _ in range(calls - 1):
         downhill = -(slopes.T @ errors)
         free = ~((logs <= low) & (downhill < 0.0) | (logs >= high) & (downhill > 0.0))
-        normal = _squared(slopes[:, free])
+        normal = _normal_matrix(slopes[:, free])
         np.fill_diagonal(normal, (1.0 + damping) * normal.diagonal() + np.finfo(float).tiny)
-        way = np.zeros_like(logs)
-        way[free] = np.linalg.solve(normal, downhill[free])
-        way = np.clip(logs + way, low, high) - logs
-        found = _residuals(data, np.exp(logs + way))
+        step = np.zeros_like(logs)
+        step[free] = np.linalg.solve(normal, downhill[free])
+        step = np.clip(logs + step, low, high) - logs
+        found = _residuals(data, np.exp(logs + step))
         before, gain = errors @ errors, errors @ errors - found @ found
         if gain > 0.0:
-            damping, logs = max(damping / 3.0, _LEAST_DAMPING), logs + way
+            damping, logs = max(damping / 3.0, _LEAST_DAMPING), logs + step
             errors, slopes = found, _slopes(logs, data)
         else:
             damping *= 4.0
-        if abs(gain) <= _STILL * before:
+        if abs(gain) <= _CONVERGED * before:
             break
     return logs
 
 
-def _squared(slopes: Floats) -> Floats:
-    """slopes.T @ slopes, in products too small for BLAS to share among threads."""
-    rows = max(1, _ALONE // slopes.shape[1] ** 2)
+def _normal_matrix(slopes: Floats) -> Floats:
+    """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads.
+
+    slopes : of the residuals, shape (residuals, unknowns).
+    """
+    rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))
     return sum((part.T @ part for part in parts), np.zeros(2 * (slopes.shape[1],)))
 
 
 def _slopes(logs: Floats, data: Data) -> Floats:
-    """Of the residuals over the logarithms of long-time modulus, strengths and times."""
+    """Return the slopes of the residuals by the logarithms of long-time modulus, strengths and times.
+
+    logs : these logarithms, shape (1 + 2 modes,).
+    data : the curve.
+    Returns shape (residuals, 1 + 2 modes).
+    """
     values, count = np.exp(logs), logs.size // 2
     strength, tau = values[1 : 1 + count], values[1 + count :]
     responses = data.responses(tau)
@@ -141,5 +199,5 @@ def _slopes(logs: Floats, data: Data) -> Floats:
 
 
 def _floor(data: Data) -> float:
-    """The least long-time modulus that is allowed: a share of the lowest modulus of the row that it adds to."""
+    """Return the least long-time modulus that is allowed, :data:`FLOOR` of the lowest modulus of the first row."""
     return FLOOR * float(data.values[0].min())

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import FileError, MissingDependencyError, ParameterError
-from ...core.extras import imported
-from ...core.files import replacing
+from ...core.extras import import_extra
+from ...core.files import replace_file
 from ...cylinder import Cylinder
 from ...io import tables
 from ...materials.cover import Cover
@@ -68,7 +68,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     known = {"T_ref": table.T_ref} | ({} if table.pair is None else {"E_prime": table.pair.E_prime})
     if isinstance(given, Cylinder):
         known |= _of_cylinder(given)
-    fmpy = imported("fmpy", "fmpy", "fmu")
+    fmpy = import_extra("fmpy", "fmpy", "fmu")
     compiler = shutil.which("cc")
     if compiler is None:
         raise MissingDependencyError("cc, a compiler of C,", None)
@@ -88,7 +88,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         content |= {f"sources/{each.name}": each.read_bytes() for each in sources}
         machine = fmpy.platform if version == 2 else fmpy.platform_tuple
         content[f"binaries/{machine}/{library.name}"] = library.read_bytes()
-    with replacing(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+    with replace_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in content.items():
             archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ... import __version__
-from ...core.scale import powers
+from ...core.scale import dimension_powers
 from .variables import MODELS, UNITS, Model, Variable
 
 #: what both models can do, in either version: attributes of ModelExchange and CoSimulation
@@ -37,7 +37,7 @@ def described(version: int, name: str, starts: dict[str, float], token: str, tit
     units = SubElement(root, "UnitDefinitions")
     for unit, base in UNITS.items():
         one = SubElement(units, "Unit", name=unit)
-        SubElement(one, "BaseUnit", {each: str(power) for each, power in powers(base).items()})
+        SubElement(one, "BaseUnit", {each: str(power) for each, power in dimension_powers(base).items()})
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", tolerance=_TOLERANCE, stepSize="0.01")
     variables = SubElement(root, "ModelVariables")
     references = {each.name: str(n) for n, each in enumerate(model.variables, start=1)}

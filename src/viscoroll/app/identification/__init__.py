@@ -1,12 +1,12 @@
-"""From measurements to parameters: records, the fit, and what it says.
+"""Parameters of a cylinder from measurements, with intervals.
 
-Read in this order: :mod:`records`, what was measured; :mod:`unknowns`, names and a cylinder of their values;
-:mod:`problem`, residuals and least squares; :mod:`profile`, intervals and products; :mod:`fit`, what is found;
-:mod:`ask`, all of it by searches; :mod:`report`, in words; :mod:`file`, of TOML.
+Read in this order: :mod:`records`, the measurements; :mod:`unknowns`, their names and a cylinder of their values;
+:mod:`problem`, residuals and least squares; :mod:`profile`, intervals and products; :mod:`fit`, the result;
+:mod:`identify`, the searches; :mod:`report`, text, dataset and JSON; :mod:`measurements_toml`, files.
 """
 
-from .ask import identify
 from .fit import Identification
+from .identify import identify
 from .profile import Product
 from .records import Coastdown, Resistance, Traction
 

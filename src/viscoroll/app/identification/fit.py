@@ -1,4 +1,4 @@
-"""What was found: :class:`Identification`, and :class:`Prediction`."""
+"""Results of an identification: :class:`Identification`, and :class:`Prediction`."""
 
 from __future__ import annotations
 
@@ -9,20 +9,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.checks import number, whole
-from ...core.errors import ParameterError, refuse_unknown
-from ...core.plots.measured import compared
-from ...core.results import Row, Shown, Values
-from ...core.typed import Floats
-from .problem import Found, Problem
+from ...core.array_types import Floats
+from ...core.checks import check_integer, check_number
+from ...core.errors import ParameterError, check_names
+from ...core.plots.measurements import identification
+from ...core.results import Result, SummaryRow, Values
+from .problem import Minimum, Problem
 from .profile import Likelihood, Product
 from .records import Record
 from .report import as_dataset, report
 from .unknowns import cylinder_of
 
+#: confidence level of intervals and bands
 _LEVEL = 0.95
-#: most draws of a band, and of them that are thrown away, at most, for one that lies within the ranges
-_DRAWS, _TRIES = 100_000, 50
+#: most draws of a band
+_DRAWS = 100_000
+#: candidates of each draw: those outside of the ranges are rejected
+_CANDIDATES = 50
 
 
 class Band(NamedTuple):
@@ -40,7 +43,7 @@ class Prediction(Values):
         return Band(*(super(Prediction, self).__getattr__(name + end) for end in ("", "_low", "_high")))
 
 
-class Identification(Shown):
+class Identification(Result):
     """Values that fit measurements best, how well they are known, and what the data do not say.
 
     ``print`` shows a report; its intervals are profiles, which take about as long as the fit for each unknown.
@@ -66,8 +69,13 @@ class Identification(Shown):
     planned : whether the records hold no values: standard deviations and intervals are what to expect.
     """
 
-    def __init__(self, problem: Problem, found: list[Found]) -> None:
-        self._problem, self._about, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
+    def __init__(self, problem: Problem, found: list[Minimum]) -> None:
+        """Collect the values and statistics of the best fit.
+
+        problem : the least squares.
+        found : minima, the best first.
+        """
+        self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
         self.minima = [(one.chi2, problem.values(one.u)) for one in found]
         self.dof, self.records = problem.points - u.size, problem.records
@@ -76,36 +84,39 @@ class Identification(Shown):
         self.noise = problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
         self.cylinder = cylinder_of(problem.cylinder, self.values)
-        self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.live)
-        sd = np.sqrt(np.diag(self._about.cov))
-        self.correlations = self._about.cov / np.outer(sd, sd)
-        sizes = zip(problem.unknowns, sd.tolist(), strict=True)
-        self.stderr = {one.name: one.spread(self.values[one.name]) * size for one, size in sizes}
+        self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.active)
+        self.correlations = self._likelihood.correlations
+        sizes = zip(problem.unknowns, self._likelihood.sd.tolist(), strict=True)
+        self.stderr = {one.name: one.slope(self.values[one.name]) * size for one, size in sizes}
         self.stderr |= dict.fromkeys(self.does_not_act, math.inf)
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
-        """The best fit to each record, with its bands."""
-        return {called: self._predicted(record, called, _LEVEL) for called, record in self.records.items()}
+        """The best fit to each record with its bands, by the name of the record."""
+        return {called: self._predict(record, called, _LEVEL) for called, record in self.records.items()}
 
-    def _rise(self, level: float = _LEVEL) -> float:
-        """What chi2 may rise by: chi-squared where sigma is given, F where it is estimated."""
+    def _delta_chi2(self, level: float = _LEVEL) -> float:
+        """Return the rise of chi2 at the ends of an interval: chi-squared where sigma is given, F where it is
+        estimated.
+
+        level : confidence level, in (0, 0.9999].
+        """
         from scipy import stats
 
-        level = number("level", level, low=0.0, strict=True, high=0.9999)
+        level = check_number("level", level, low=0.0, strict=True, high=0.9999)
         estimated = any(one.estimated for one in self._problem.columns)
         return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
 
     def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
-        """Where each unknown lies, by its profile: (low, high), None on a side that is open.
+        """Return the interval of each unknown by its profile: (low, high), None on a side that is open.
 
-        All other unknowns follow while one is moved, until chi2 has risen by what ``level`` asks: 3.84 at 0.95 where
+        All other unknowns are free while one is varied, until chi2 has risen as ``level`` asks: 3.84 at 0.95 where
         sigma was given, by F where it was estimated.  A side is open where it does not rise up to the end of the
-        range.  If another piece is found beyond an end, the interval reaches over it.
+        range.  If another branch is found beyond an end, the interval includes it.
 
         Parameters
         ----------
-        level : in (0, 0.9999].
+        level : confidence level, in (0, 0.9999].
 
         Raises
         ------
@@ -113,7 +124,7 @@ class Identification(Shown):
             Another level.
         """
         found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
-        for i, sides in self._about.axes(self._rise(level)).items():
+        for i, sides in self._likelihood.axes(self._delta_chi2(level)).items():
             one = self._problem.unknowns[i]
             low, high = (None if end is None else float(one.to_value(end)) for end in sides.ends)
             found[one.name] = low, high
@@ -121,27 +132,30 @@ class Identification(Shown):
 
     @cached_property
     def undetermined(self) -> tuple[str, ...]:
-        """See above."""
-        return tuple(self._problem.names[i] for i in self._about.undetermined(self._rise()))
+        """Names of the unknowns whose interval is wide, and of those that are correlated with them."""
+        return tuple(self._problem.names[i] for i in self._likelihood.undetermined(self._delta_chi2()))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
-        """What is determined of the :attr:`undetermined` unknowns: products of powers, with their intervals.
+        """Return products of powers of the :attr:`undetermined` unknowns that the data determine, with their
+        intervals.
 
-        First those that hold over the whole intervals: exponents in which all that fits lies nearest to each other,
-        and the profile of just these.  Then, where it is much sharper, what holds near the values found alone, by the
-        slopes there.
+        First those that hold over the whole intervals: exponents in which all points that fit lie nearest to each
+        other, and the profile of just these.  Then, where it is much narrower, what holds near the values found
+        alone, by the slopes there.
+
+        level : confidence level, in (0, 0.9999].
         """
-        return self._about.products(self._about.undetermined(self._rise()), self._rise(level))
+        return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
-        """What a record would show, with bands.
+        """Predict a record, with bands.
 
         Parameters
         ----------
-        record : places, load and temperature; for a motion with V0, which may be another than those fitted.
+        record : coordinates, load and temperature; for a motion with V0, which may be another than those fitted.
         draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
             unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
-        level : of the bands, in (0, 0.9999].
+        level : confidence level of the bands, in (0, 0.9999].
         seed : of the draws, >= 0.
 
         Returns
@@ -157,55 +171,65 @@ class Identification(Shown):
         """
         if not isinstance(record, Record):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
-        for name, (_, span) in record.starts(self.cylinder.R).items():
+        for name, (_, span) in record.initial_values(self.cylinder.R).items():
             if span is not None:
                 raise ParameterError(name, None, "a number", f"{name} of the record is open: a prediction needs it")
-        return self._predicted(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
+        return self._predict(
+            record, "", level, check_integer("draws", draws, 0, _DRAWS), check_integer("seed", seed, 0)
+        )
 
-    def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
-        problem, cov, u = self._problem, self._about.cov, self._about.best.u
+    def _predict(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
+        """Predict a record, with bands.
 
-        def seen(u: Floats) -> Floats:
+        record : the record.
+        called : its name among the data, "" of another record.
+        level, draws, seed : as of :meth:`predict`.
+        """
+        problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
+
+        def predict(u: Floats) -> Floats:
             values = problem.predicted(record, u, called)
-            return np.array([values[name] for name in record.KINDS])
+            return np.array([values[name] for name in record.QUANTITIES])
 
-        value, half = seen(u), math.sqrt(self._rise(level))
+        value, factor = predict(u), math.sqrt(self._delta_chi2(level))
         if draws:
-            many = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _TRIES, method="eigh")
-            inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
-            drawn = [seen(at) for at in (inside if len(inside) else [u])]
-            low, high = np.nanquantile(drawn, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
+            drawn = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _CANDIDATES, method="eigh")
+            inside = drawn[((drawn >= problem.low) & (drawn <= problem.high)).all(axis=1)][:draws]
+            predictions = [predict(point) for point in (inside if len(inside) else [u])]
+            low, high = np.nanquantile(predictions, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
         else:
-            J = problem.slopes(seen, u, range(u.size)).T
-            spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
-            low, high = value - spread, value + spread
-        ends = (("", value), ("_low", low), ("_high", high))
-        found = {name + end: rows[n] for end, rows in ends for n, name in enumerate(record.KINDS)}
-        places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
-        units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
-        return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
+            J = problem.slopes(predict, u, range(u.size)).T
+            half = factor * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
+            low, high = value - half, value + half
+        ends = {"": value, "_low": low, "_high": high}
+        found = {name + end: row for end, rows in ends.items() for name, row in zip(record.QUANTITIES, rows)}
+        coordinates = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
+        units = {name: record.unit(name.split("_")[0]) for name in (*found, *coordinates)}
+        return Prediction(found, coordinates, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
-        """Residuals over sigma of all records, in their order, and of the prior, at values by name.
+        """Return residuals over sigma of all records, in their order, and of the prior.
 
-        What is not named is at its start.  For optimisers and samplers of one's own; a motion that fails is 1e6 off.
+        values : name -> value of unknowns; others are at their start.
+        For optimisers and samplers of other packages; a motion that fails has residuals of 1e6.
         """
         return self._problem.residuals(self._coordinates(values))
 
     def jacobian(self, values: Mapping[str, float]) -> Floats:
-        """Slopes of :meth:`residuals` over the values, (residuals, unknowns), by central differences."""
+        """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences."""
         J = self._problem.jacobian(self._coordinates(values))
-        return J / [one.spread(values.get(one.name, one.start)) for one in self._problem.unknowns]
+        return J / [one.slope(values.get(one.name, one.start)) for one in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
-        refuse_unknown("values", values, self.values, "an unknown")
+        """Return the coordinates of values by name; raise ParameterError for unknown names and values out of range."""
+        check_names("values", values, self.values, "an unknown")
         given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
-        return np.array([one.to_u(number(one.name, value, **one.bounds(one.name))) for one, value in given])
+        return np.array([one.to_u(check_number(one.name, value, **one.bounds(one.name))) for one, value in given])
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
-        rows = [Row(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
-        return title, [*rows, Row("chi2", f"{self.chi2:.1f} of {self.dof}")]
+        rows = [SummaryRow(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
+        return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} of {self.dof}")]
 
     __str__, to_xarray = report, as_dataset
-    _figure = compared
+    _figure = identification

@@ -1,4 +1,4 @@
-"""Least squares: residuals of all records over the coordinates of the unknowns, their slopes, and the least of chi2."""
+"""Least squares: residuals of all records over the coordinates of the unknowns, their slopes, and minima of chi2."""
 
 from __future__ import annotations
 
@@ -11,38 +11,46 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import ViscorollError
-from ...core.typed import Floats
 from ...cylinder import Cylinder
 from .records import Record
 from .unknowns import Shift, Unknown, cylinder_of
 
-#: of central differences in a coordinate: their error is 1e-8 of the largest slope (1e-7 where motions are driven)
+#: step of central differences in a coordinate: their error is 1e-8 of the largest slope (1e-7 where motions are driven)
 _STEP = 3e-4
-#: of those to one side, which a search takes: 1e-5; at less the last digits of a motion show, and it stops early
-_SIDE = 1e-5
-#: a residual where there is no motion: as far off as it gets
-FAR = 1e6
-#: weight of a combination that is held, over what the data know of any
+#: step of one-sided differences in a search: below, the last digits of a motion show, and the search stops early
+_ONE_SIDED_STEP = 1e-5
+#: residual where the values make no cylinder or no motion, and the largest one
+FAILED = 1e6
+#: weight of the rule that keeps a combination of coordinates fixed, far above those of the data
 _STIFF = 1e6
-#: a standard deviation that was not given, over that of the values, to begin with; rounds in which it settles, to what
-#: share
-_GUESS, _ROUNDS, _SETTLED = 1e-3, 20, 1e-3
+#: ratio of a standard deviation that was not given to that of the values, as a start
+_FIRST_SIGMA = 1e-3
+#: most rounds in which standard deviations are estimated
+_ROUNDS = 20
+#: relative change of the standard deviations at which the rounds end
+_SIGMA_CHANGE = 1e-3
 #: median of |x| of the normal law of standard deviation 1
 _MEDIAN = 0.6745
-#: outliers are up to a tenth of the points: the median of |x| of all is then that of the noise at 0.5/0.9, which is so
-#: many times its own
+#: largest ratio of the median of |x| with outliers to that of noise alone: a tenth of the points may be outliers, and
+#: the median of all is then the quantile 0.5/0.9 of the noise
 _BY_OUTLIERS = 1.134
-#: three standard deviations of the median of |x|, over that median, times sqrt(points)
+#: ratio of three standard deviations of the median of |x| to that median, times sqrt(points)
 _BY_CHANCE = 3.5
-#: norm of a column of slopes that counts as none: a factor of e moves all residuals by so small a part of sigma
-_NONE = 1e-2
-#: of a range, how near to an end counts as at it
-_AT_END = 1e-6
+#: norm of a column of slopes below which an unknown does not act: a factor of e changes all residuals by less
+_INACTIVE = 1e-2
+#: distance to a bound, in units of the range, below which a value is at the bound
+_AT_BOUND = 1e-6
 
 
 class Column(NamedTuple):
-    """Where the residuals of one quantity of a record lie; ``estimated``: its sigma is."""
+    """The residuals of one quantity of a record.
+
+    record, quantity : names.
+    at : rows of the residuals.
+    estimated : whether its standard deviation is estimated from the residuals.
+    """
 
     record: str
     quantity: str
@@ -54,12 +62,16 @@ class Column(NamedTuple):
 
 
 class Noise(NamedTuple):
-    """Residuals of a column: rms over sigma, lag-1 correlation in the order of its places, what noise allows of it.
+    """Statistics of the residuals of a column.
+
+    rms : root mean square over sigma.
+    lag : lag-1 correlation in the order of the coordinates.
+    allowed : largest lag-1 correlation of noise: three standard deviations.
+    is_noise : whether rms and lag are within three standard deviations of noise; residuals far below sigma may
+    correlate.
 
     Of a robust fit ``rms`` is the median of the absolute residuals over that of normal noise, and ``lag`` is the
     correlation of the weighted residuals, which are below 1: few outliers change neither much.
-
-    is_noise : both within three standard deviations of what noise does; what is far below sigma may go together.
     """
 
     rms: float
@@ -68,66 +80,87 @@ class Noise(NamedTuple):
     is_noise: bool
 
 
-class Found(NamedTuple):
-    """A minimum: coordinates and chi2."""
+class Minimum(NamedTuple):
+    """A minimum: coordinates u, shape (unknowns,), and chi2."""
 
     u: Floats
     chi2: float
 
 
 class Problem:
-    """What is minimised.
+    """The least squares of an identification.
 
-    cylinder, unknowns, records, shifts : what is known; y, sigma : all data, one after the other, by ``columns``, those
-    of a plan as they are at the start; points : how many, and priors; live : which unknowns are searched, the others
-    act nowhere and stay at their start.
+    cylinder, unknowns, records, shifts : as given.
+    names : of the unknowns.
+    start, low, high : coordinates of start and bounds, shape (unknowns,).
+    y, sigma : all data and their standard deviations, one column after the other, shape (n,); those of a plan are
+    the predictions at the start.
+    columns : the columns of y.
+    points : number of data and priors.
+    active : indices of the unknowns that are varied; the others change no residual and stay at their start.
     """
 
     def __init__(
         self, cylinder: Cylinder, unknowns: list[Unknown], records: dict[str, Record], robust: bool,
         shifts: Mapping[str, Shift],
     ) -> None:  # fmt: skip
+        """Collect the data of all records and find the active unknowns.
+
+        cylinder : with the values that are fixed.
+        unknowns : with start, range and prior.
+        records : name -> record.
+        robust : whether outliers count less.
+        shifts : body -> shift factor over temperature.
+        """
         self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
         self.robust, self.names = robust, [one.name for one in unknowns]
         self.start, self.low, self.high = np.array([one.to_u(np.array(one[1:4])) for one in unknowns]).T
         self._mean, self._sd = np.array([(one.mean, one.sd) for one in unknowns]).T
-        self._known, self._model = np.isfinite(self._sd), lru_cache(16)(self._modelled)
+        self._has_prior, self._model = np.isfinite(self._sd), lru_cache(16)(self._predict_all)
         self.columns: list[Column] = []
         y, sigma, size = [], [], 0
         for called, record in records.items():
             values = vars(record) if record.measured else self.predicted(record, self.start, called)
             for quantity, given in record.sigma.items():
                 own = np.ravel(values[quantity])
-                spread = max(_GUESS * float(np.std(own)), 1e-300) if given is None else np.ravel(given)
+                spread = max(_FIRST_SIGMA * float(np.std(own)), 1e-300) if given is None else np.ravel(given)
                 y.append(own)
                 sigma.append(np.broadcast_to(spread, own.shape))
                 self.columns.append(Column(called, quantity, slice(size, size + own.size), given is None))
                 size += own.size
-        self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._known.sum())
-        self.live = self._acting()
+        self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._has_prior.sum())
+        self.active = self._find_active()
 
-    def _acting(self) -> list[int]:
-        """Unknowns that act anywhere: at the start one may have ceased to, so that other places are asked too."""
+    def _find_active(self) -> list[int]:
+        """Return the unknowns that change a residual at the start or at one of four other points."""
         rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
         others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (4, middle.size))
         idle = [*range(middle.size)]
         for u in (self.start, *others):
             J = self.slopes(self.residuals, u, idle)
-            idle = [i for i, column in zip(idle, J.T, strict=True) if np.linalg.norm(column) < _NONE]
+            idle = [i for i, column in zip(idle, J.T, strict=True) if np.linalg.norm(column) < _INACTIVE]
         return [i for i in range(middle.size) if i not in idle]
 
     def values(self, u: Floats) -> dict[str, float]:
-        """By name, at coordinates."""
+        """Return the values of the unknowns at coordinates u, by name."""
         return {one.name: float(one.to_value(x)) for one, x in zip(self.unknowns, u, strict=True)}
 
     def predicted(self, record: Record, u: Floats, called: str = "") -> dict[str, Floats]:
-        """What would be seen of a record."""
+        """Return the prediction of a record.
+
+        record : the record.
+        u : coordinates of the unknowns.
+        called : name of the record, by which its own unknowns are found.
+        """
         values = self.values(u)
         own = {name.removesuffix(f":{called}"): value for name, value in values.items()}
         return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
 
-    def _modelled(self, u: bytes) -> Floats:
-        """All data as predicted; of values that make no cylinder or no motion NaN."""
+    def _predict_all(self, u: bytes) -> Floats:
+        """Return the predictions of all data, shape (n,); NaN for values that make no cylinder or no motion.
+
+        u : coordinates as bytes, which the cache can look up.
+        """
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
             warnings.simplefilter("ignore")
@@ -136,43 +169,59 @@ class Problem:
         return np.full(self.y.size, np.nan)
 
     def residuals(self, u: Floats) -> Floats:
-        """Of data and what is known beforehand, over their sigma; where there is no motion as far off as it gets."""
-        r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAR), -FAR, FAR)
-        return np.append(r, ((u - self._mean) / self._sd)[self._known])
+        """Return residuals over sigma of the data, then of the priors; :data:`FAILED` where there is no prediction."""
+        r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAILED), -FAILED, FAILED)
+        return np.append(r, ((u - self._mean) / self._sd)[self._has_prior])
 
-    def slopes(self, of: Callable[[Floats], Floats], u: Floats, which: Sequence[int], step: float = _STEP) -> Floats:
-        """Of a vector over some coordinates within their ranges: central differences, or of ``_SIDE`` to one side."""
+    def slopes(
+        self, function: Callable[[Floats], Floats], u: Floats, which: Sequence[int], step: float = _STEP
+    ) -> Floats:
+        """Return the derivatives of a vector by some coordinates, by differences within the ranges.
+
+        function : coordinates -> vector.
+        u : coordinates.
+        which : indices of coordinates.
+        step : of central differences; any other step than :data:`_STEP` is taken to one side.
+        Returns shape (vector, which).
+        """
         columns = []
         for i in which:
             up, down = u.copy(), u.copy()
             up[i] = min(u[i] + step, self.high[i])
             if step == _STEP or up[i] < u[i] + step:
                 down[i] = max(u[i] - step, self.low[i])
-            columns.append((of(up) - of(down)) / (up[i] - down[i]))
+            columns.append((function(up) - function(down)) / (up[i] - down[i]))
         return np.array(columns).T
 
     def jacobian(self, u: Floats) -> Floats:
-        """Slopes of the residuals over the coordinates."""
+        """Return the derivatives of the residuals by all coordinates at u."""
         return self.slopes(self.residuals, u, range(u.size))
 
     def cost(self, u: Floats) -> float:
-        """chi2: squares of the residuals, or what outliers count less in."""
+        """Return chi2 at u: the sum of squared residuals, or of a robust fit the sum of a loss that grows as |r|."""
         z = self.residuals(u) ** 2
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
-    def weighed(self, u: Floats) -> tuple[Floats, Floats]:
-        """Residuals and slopes by the weight that each has in chi2."""
+    def weighted(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return residuals and their derivatives at u by the weight that each has in chi2."""
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
         return r * weight, J * weight[:, np.newaxis]
 
-    def least(self, u: Floats, held: Floats | None = None, tolerance: float = 1e-10, steps: int = 200) -> Found:
-        """The least chi2 near ``u``, perhaps with a combination of coordinates, of powers ``held``, as it is there."""
+    def minimize(self, u: Floats, fixed: Floats | None = None, tolerance: float = 1e-10, steps: int = 200) -> Minimum:
+        """Find the minimum of chi2 near a point.
+
+        u : coordinates of the point.
+        fixed : powers of a combination of coordinates that keeps its value at u; None: all are free.
+        tolerance : relative, of chi2, coordinates and gradient.
+        steps : largest number of evaluations.
+        Returns the minimum.
+        """
         from scipy.optimize import least_squares
 
-        powers = np.zeros_like(u) if held is None else held
-        fixed = np.count_nonzero(powers) == 1
-        free = [i for i in self.live if not (fixed and powers[i])]
+        powers = np.zeros_like(u) if fixed is None else fixed
+        single = np.count_nonzero(powers) == 1
+        free = [i for i in self.active if not (single and powers[i])]
         rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
         whole = np.clip(u, self.low, self.high)
 
@@ -185,7 +234,7 @@ class Problem:
             return np.append(self.residuals(at(v)), rule @ (v - u[free]))
 
         def jacobian(v: Floats) -> Floats:
-            return np.vstack([self.slopes(self.residuals, at(v), free, _SIDE), rule])
+            return np.vstack([self.slopes(self.residuals, at(v), free, _ONE_SIDED_STEP), rule])
 
         if free:
             found = least_squares(
@@ -193,29 +242,33 @@ class Problem:
                 xtol=tolerance, gtol=tolerance, loss="soft_l1" if self.robust else "linear", max_nfev=steps,
             )  # fmt: skip
             whole = at(found.x)
-        return Found(whole, self.cost(whole))
+        return Minimum(whole, self.cost(whole))
 
-    def settled(self, best: Found) -> Found:
-        """Each sigma that was not given estimated from its residuals, and fitted again, until both stay."""
+    def estimate_sigma(self, best: Minimum) -> Minimum:
+        """Estimate each standard deviation that was not given from its residuals and fit again, until both converge.
+
+        best : minimum with the standard deviations of today.
+        Returns the minimum with the estimated ones.
+        """
         estimated = [one for one in self.columns if one.estimated]
         for _ in range(_ROUNDS if estimated else 0):
             r, before = self.residuals(best.u), self.sigma.copy()
-            share = 1.0 - min(len(self.live) / r.size, 0.9)
+            share = 1.0 - min(len(self.active) / r.size, 0.9)
             for one in estimated:
                 own = r[one.at]
                 size = np.median(np.abs(own)) / _MEDIAN if self.robust else np.sqrt(np.mean(own**2) / share)
                 self.sigma[one.at] *= max(float(size), 1e-12)
-            best = self.least(best.u)
-            if np.abs(self.sigma / before - 1.0).max() < _SETTLED:
+            best = self.minimize(best.u)
+            if np.abs(self.sigma / before - 1.0).max() < _SIGMA_CHANGE:
                 break
         return best
 
     def noise(self, u: Floats) -> dict[str, Noise]:
-        """Of each column, by record and quantity; lag by the order of its places."""
+        """Return statistics of the residuals at u of each column, by record and quantity."""
         found, r = {}, self.residuals(u)
         for one in self.columns:
             record = self.records[one.record]
-            part = r[one.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.PLACES)])]
+            part = r[one.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.COORDINATES)])]
             allowed = 3.0 / math.sqrt(part.size)
             if self.robust:
                 rms, most = float(np.median(np.abs(part))) / _MEDIAN, _BY_OUTLIERS + _BY_CHANCE / math.sqrt(part.size)
@@ -227,7 +280,7 @@ class Problem:
             found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
         return found
 
-    def at_end(self, u: Floats) -> list[int]:
-        """Unknowns that lie at an end of their range."""
+    def at_bounds(self, u: Floats) -> list[int]:
+        """Return the indices of the unknowns that lie at an end of their range."""
         width = self.high - self.low
-        return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_END * width).tolist()
+        return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_BOUND * width).tolist()

@@ -1,51 +1,69 @@
-"""How chi2 rises about the best fit: intervals by profiles, and what is determined of what cannot be told apart."""
+"""Rise of chi2 about the best fit: intervals by profiles, and products of unknowns that the data determine."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
 from functools import cache
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
 
-from ...core.typed import Floats
-from .problem import Found, Problem
+from ...core.array_types import Floats
+from .problem import Minimum, Problem
 
-#: of a coordinate, first and longest step: farther ones land in other minima
-_FIRST, _STEP = 0.25, 0.7
-#: of the height at an end, how near it is found
+#: longest first step of a coordinate
+_FIRST_STEP = 0.25
+#: longest step of a coordinate: longer ones land in other minima
+_LONGEST_STEP = 0.7
+#: relative tolerance of the delta_chi2 at an end
 _CLOSE = 3e-3
-#: places at an end and beyond that are looked at, as shares of the way to the bound, and how often
-_BEYOND, _OFTEN = (0.0, 0.15, 0.4, 0.8), 3
-#: tolerance and steps of a place on the way
-_LOOSE, _FEW = 1e-5, 30
-#: over the rise at an end, what shows that another branch lies below, and from what no search leads down to one
-_LOWER, _HOPELESS = 0.98, 1e3
-#: share of the rise that an unknown at the end of its range must cost to make an end
-_MAKES = 0.02
-#: of coordinates, what is one place
+#: points beyond an end where another branch is sought, as parts of the distance to the bound
+_BEYOND = (0.0, 0.15, 0.4, 0.8)
+#: most branches beyond an end
+_BRANCHES = 3
+#: relative tolerance of a minimum along a profile
+_TOLERANCE = 1e-5
+#: evaluations of a minimum along a profile
+_EVALUATIONS = 30
+#: ratio of the delta_chi2 at a point to that at an end below which the point is on another branch
+_LOWER = 0.98
+#: ratio of the delta_chi2 at a point to that at an end above which no search from there leads to another branch
+_HOPELESS = 1e3
+#: part of the delta_chi2 by which chi2 must fall beyond a bound for the bound to limit the interval
+_LIMITS = 0.02
+#: distance of coordinates up to which two points are one
 _SAME = 1e-6
-#: width of an interval of a coordinate from which on it counts as not determined, and correlation with such a one from
-#: which on others do; width of a product from which on that does
-_WIDE, _TOGETHER, _NARROW = 2.0, 0.95, 1.0
-#: exponents are rounded to whole numbers, halves, ... where places stay as near to each other as by this factor
-_PARTS, _AS_NEAR = (1, 2, 10, 100), 2.0
-#: width of what holds near the best values alone, over the least of what holds everywhere, to be worth a word
+#: width of an interval of a coordinate from which on an unknown is undetermined: a factor of e^2
+_WIDE = 2.0
+#: correlation with an undetermined unknown from which on another is undetermined too
+_TOGETHER = 0.95
+#: largest width of the interval of a product that is determined: a factor of e
+_NARROW = 1.0
+#: parts of 1 to which exponents are rounded, the coarsest first
+_PARTS = (1, 2, 10, 100)
+#: factor by which rounding of exponents may widen the range of a product over all points that fit
+_ROUNDING = 2.0
+#: ratio of the width of a product near the best values to the least width over whole intervals below which the report
+#: has it
 _SHARPER = 1.0 / 3.0
 
 
 class Profile(NamedTuple):
-    """How far a combination may go, and where it may be.
+    """The interval of a combination of coordinates.
 
-    ends : coordinates, None on a side that is open; made_by : of each end, unknowns whose range makes it; pieces :
-    whether another branch led on where a walk ended; best : that was met; within : places met that fit, (k, n).
+    ends : lower and upper end; None on a side that is open.
+    limited_by : for each end the unknowns whose range, not the data, limits it.
+    pieces : whether another branch of the fit continued the interval.
+    best : the point with the least chi2 that was met.
+    within : all points met that fit, shape (k, unknowns).
     """
 
     ends: list[float | None]
-    made_by: list[list[str]]
+    limited_by: list[list[str]]
     pieces: bool
-    best: Found
+    best: Minimum
     within: Floats
 
 
@@ -54,7 +72,7 @@ class Product(NamedTuple):
 
     powers : exponents by name; those of brake, drag, V0, omega0 and t0 hold near the values found.
     value : of the product.
-    low, high : ends of its interval over ``value``.
+    low, high : ends of its interval, divided by ``value``.
     near : whether this holds by slopes, within about a fifth of the values found, and other exponents farther off.
     """
 
@@ -66,174 +84,236 @@ class Product(NamedTuple):
 
 
 class Likelihood:
-    """chi2 about the best of the minima ``found``; ``cov`` : by slopes there, and as far as the ranges let it."""
+    """chi2 about the best of the minima.
 
-    def __init__(self, problem: Problem, found: list[Found]) -> None:
+    problem : the least squares.
+    best : the best minimum.
+    cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
+    sd : standard deviations, shape (unknowns,).
+    correlations : of the coordinates, shape (unknowns, unknowns).
+    others : other minima and the start, from which branches are sought.
+    ends : points at the ends of all intervals, likewise; empty until an interval is open.
+    """
+
+    def __init__(self, problem: Problem, found: list[Minimum]) -> None:
+        """Compute the covariance at the best minimum.
+
+        problem : the least squares.
+        found : minima, the best first.
+        """
         self.problem, self.best, (u, _) = problem, found[0], found[0]
-        J = problem.weighed(u)[1]
+        J = problem.weighted(u)[1]
         self.cov = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
+        self.sd = np.sqrt(np.diag(self.cov))
+        self.correlations = self.cov / np.outer(self.sd, self.sd)
         self.others = [v for v in (*(one.u for one in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
         self.ends: list[Floats] = []
-        self._walked = cache(lambda rise, *powers: Walk(self, np.array(powers)).both_ways(rise))
+        self._profiles = cache(lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile())
 
-    def profile(self, powers: Floats, rise: float) -> Profile:
-        """The interval of a combination within which chi2 rises by no more than ``rise``.
+    def profile(self, powers: Floats, delta_chi2: float) -> Profile:
+        """Return the interval of a combination within which chi2 rises by no more than a bound.
 
-        Beyond the ends that a walk finds it looks from other minima, the start, and the ends of other unknowns.
+        powers : of the coordinates, shape (unknowns,).
+        delta_chi2 : the bound.
+        Beyond the ends of the interval the search goes on from other minima, the start, and the ends of other unknowns.
         """
-        return self._walked(rise, *powers.tolist())
+        return self._profiles(delta_chi2, *powers.tolist())
 
-    def axes(self, rise: float) -> dict[int, Profile]:
-        """Of each unknown that acts; where a side is open, as seen from the ends of what fits of the others too."""
-        found = {i: self.profile(np.eye(self.best.u.size)[i], rise) for i in self.problem.live}
-        if not self.ends and any(None in one.ends for one in found.values()):
-            ways = ((one.within, one.within[:, i]) for i, one in found.items())
-            self.ends = [within[n] for within, way in ways for n in (np.argmin(way), np.argmax(way))]
-            self._walked.cache_clear()
-            return self.axes(rise)
-        return found
+    def axes(self, delta_chi2: float) -> dict[int, Profile]:
+        """Return the profile of each active unknown.
 
-    def undetermined(self, rise: float) -> list[int]:
-        """Unknowns whose interval tells little, and what is correlated with these."""
-        problem, sd, wide = self.problem, np.sqrt(np.diag(self.cov)), []
-        for i, one in self.axes(rise).items():
-            least, most = problem.low[i], problem.high[i]
-            low, high = (bound if end is None else end for end, bound in zip(one.ends, (least, most), strict=True))
-            if high - low > min(_WIDE, 0.5 * (most - least)):
+        delta_chi2 : bound of the rise of chi2 above the best.
+        Where a side is open, all are computed again with the ends of the others as further starts.
+        """
+        found = {i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active}
+        if self.ends or not any(None in profile.ends for profile in found.values()):
+            return found
+        for i, profile in found.items():
+            along = profile.within[:, i]
+            self.ends += [profile.within[np.argmin(along)], profile.within[np.argmax(along)]]
+        self._profiles.cache_clear()
+        return self.axes(delta_chi2)
+
+    def undetermined(self, delta_chi2: float) -> list[int]:
+        """Return the indices of unknowns with a wide interval, and of those that are correlated with them.
+
+        delta_chi2 : bound of the rise of chi2 above the best.
+        """
+        wide = []
+        for i, profile in self.axes(delta_chi2).items():
+            bounds = self.problem.low[i], self.problem.high[i]
+            low, high = (bound if end is None else end for end, bound in zip(profile.ends, bounds, strict=True))
+            if high - low > min(_WIDE, 0.5 * (bounds[1] - bounds[0])):
                 wide.append(i)
-        together = np.abs(self.cov / np.outer(sd, sd))[:, wide] > _TOGETHER
-        return [i for i in problem.live if together[i].any()]
+        return [i for i in self.problem.active if (np.abs(self.correlations[i, wide]) > _TOGETHER).any()]
 
-    def products(self, which: list[int], rise: float) -> list[Product]:
-        """What is determined of undetermined unknowns: by places that all fit, else by slopes at the best.
+    def products(self, which: list[int], delta_chi2: float) -> list[Product]:
+        """Return the products of undetermined unknowns that the data determine.
 
-        And what these say of its neighbourhood where that is much more, or where none holds over the whole interval.
+        which : indices of these unknowns.
+        delta_chi2 : bound of the rise of chi2 above the best.
+        First by points that all fit, else by slopes at the best; then those near the best that are much narrower.
         """
         if len(which) < 2:
             return []
-        steep = [*self._by_slopes(which)]
-        found = self._narrow(self._by_places(which, rise), rise) or self._narrow(steep, rise)
+        by_slopes = [*self._by_slopes(which)]
+        found = self._narrow(self._by_points(which, delta_chi2), delta_chi2) or self._narrow(by_slopes, delta_chi2)
         least = min((one.high - one.low for one in found), default=math.inf)
-        near = self._narrow(steep, rise, near=True)
+        near = self._narrow(by_slopes, delta_chi2, near=True)
         return found + [one for one in near if one.high - one.low < _SHARPER * least]
 
-    def _narrow(self, family: Iterable[Floats], rise: float, near: bool = False) -> list[Product]:
-        """Products with their intervals, by profiles or ``near`` the best, up to the first one that is open or wide."""
+    def _narrow(self, family: Iterable[Floats], delta_chi2: float, near: bool = False) -> list[Product]:
+        """Return products with their intervals, up to the first one that is open or wide.
+
+        family : powers of combinations, the best determined first.
+        delta_chi2 : bound of the rise of chi2 above the best.
+        near : whether intervals are by slopes at the best, else by profiles.
+        """
         found, values = [], self.problem.values(self.best.u)
         for powers in family:
-            half, centre = math.sqrt(rise * (powers @ self.cov @ powers)), powers @ self.best.u
-            low, high = (centre - half, centre + half) if near else self.profile(powers, rise).ends
+            half, centre = math.sqrt(delta_chi2 * (powers @ self.cov @ powers)), powers @ self.best.u
+            low, high = (centre - half, centre + half) if near else self.profile(powers, delta_chi2).ends
             if low is None or high is None or high - low > _NARROW:
                 break
             exponents = {
-                one.name: p * (values[one.name] / one.spread(values[one.name]))
+                one.name: p * (values[one.name] / one.slope(values[one.name]))
                 for one, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
             }  # fmt: skip
             value = math.prod(values[name] ** p for name, p in exponents.items())
             found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
         return found
 
-    def _by_places(self, which: list[int], rise: float) -> Iterator[Floats]:
-        """Combinations in which all places that fit lie nearest to each other, best first, as round as that allows."""
-        axes = self.axes(rise)
+    def _by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
+        """Yield combinations in which all points that fit lie nearest to each other, the best first.
+
+        which : indices of unknowns.
+        delta_chi2 : bound of the rise of chi2 above the best.
+        Exponents are rounded as far as that keeps the points near to each other.
+        """
+        axes = self.axes(delta_chi2)
         within = np.concatenate([axes[i].within for i in which])[:, which]
         for v in np.linalg.svd(within - within.mean(axis=0))[2][::-1]:
             exact = v / v[np.argmax(np.abs(v))]
             rounded = (np.round(exact * parts) / parts for parts in _PARTS)
-            width = _AS_NEAR * np.ptp(within @ exact)
+            width = _ROUNDING * np.ptp(within @ exact)
             powers = next((p for p in rounded if np.ptp(within @ p) <= width), np.round(exact, 2))
             yield powers @ np.eye(self.best.u.size)[which]
 
     def _by_slopes(self, which: list[int]) -> Iterator[Floats]:
-        """Combinations that are known best, whatever other unknowns are."""
+        """Yield combinations of unknowns with indices ``which`` by the covariance, the best determined first."""
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
 
 
-class Walk:
-    """A walk outwards from the best fit along a combination, each step from the last one's place."""
+class ProfileWalk:
+    """A profile of chi2: minima with a combination of coordinates fixed, each from the one before.
 
-    def __init__(self, about: Likelihood, powers: Floats) -> None:
-        self.about, self.problem, self.best = about, about.problem, about.best
-        self.powers, along = powers, about.cov @ powers
+    likelihood, problem, best : chi2 about the best minimum.
+    powers : of the combination, shape (unknowns,).
+    delta_chi2 : bound of the rise of chi2 above the best.
+    sd : standard deviation of the combination by slopes.
+    slope : change of the coordinates with the combination, along the covariance.
+    visited : minima that were found.
+    """
+
+    def __init__(self, likelihood: Likelihood, powers: Floats, delta_chi2: float) -> None:
+        """Begin at the best minimum; the arguments are the attributes of these names."""
+        self.likelihood, self.problem, self.best = likelihood, likelihood.problem, likelihood.best
+        self.powers, self.delta_chi2, along = powers, delta_chi2, likelihood.cov @ powers
         self.sd, self.slope = math.sqrt(powers @ along), along / (powers @ along)
-        self.passed = [self.best]
+        self.visited = [self.best]
 
-    def way(self, u: Floats) -> float:
-        """How far a place is from the best."""
+    def distance(self, u: Floats) -> float:
+        """Return how far the combination at a point is from that at the best."""
         return float(self.powers @ (u - self.best.u))
 
-    def moved(self, d: float, u: Floats) -> Floats:
-        """A place so far from the best: ``u`` moved along the covariance."""
-        return u + self.slope * (d - self.way(u))
+    def shift_to(self, d: float, u: Floats) -> Floats:
+        """Return the point u, moved along the covariance to a distance d from the best."""
+        return u + self.slope * (d - self.distance(u))
 
-    def at(self, d: float, u: Floats) -> Found:
-        """The least chi2 so far from the best, near ``u``."""
-        self.passed.append(self.problem.least(self.moved(d, u), self.powers, _LOOSE, _FEW))
-        return self.passed[-1]
+    def minimum_at(self, d: float, u: Floats) -> Minimum:
+        """Return the minimum of chi2 at a distance d from the best, near u."""
+        self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _TOLERANCE, _EVALUATIONS))
+        return self.visited[-1]
 
-    def both_ways(self, rise: float) -> Profile:
-        """As :meth:`Likelihood.profile`."""
-        problem, ends, made_by, pieces = self.problem, [], [], False
+    def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
+        """Return whether the rise of chi2 at a minimum is below a part of the bound."""
+        return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
+
+    def profile(self) -> Profile:
+        """Find both ends of the interval and return the profile."""
+        problem, ends, limits, pieces = self.problem, [], [], False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
-            reach = self.way(np.where(self.powers > 0.0, near, far))
-            d, last = self.out(reach, rise, self.best)
-            for _ in range(_OFTEN):
-                if d is None or not (seen := self.beyond(d, reach, rise)):
+            reach = self.distance(np.where(self.powers > 0.0, near, far))
+            d, last = self.find_end(reach, self.best)
+            for _ in range(_BRANCHES):
+                if d is None or not (lower := self.search_beyond(d, reach)):
                     break
                 pieces = True
-                d, last = self.out(reach, rise, seen[-1])
+                d, last = self.find_end(reach, lower[-1])
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
-            made_by.append([] if d is None else self.made_by(last.u, rise))
-        within = np.array([one.u for one in self.passed if one.chi2 - self.best.chi2 <= rise])
-        return Profile(ends, made_by, pieces, min(self.passed, key=lambda one: one.chi2), within)
+            limits.append([] if d is None else self.limiting_bounds(last.u))
+        within = np.array([one.u for one in self.visited if one.chi2 - self.best.chi2 <= self.delta_chi2])
+        return Profile(ends, limits, pieces, min(self.visited, key=attrgetter("chi2")), within)
 
-    def out(self, reach: float, rise: float, low: Found) -> tuple[float | None, Found]:
-        """(Where chi2 has risen by so much, None if less up to ``reach``; the place there), from a lower one."""
+    def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
+        """Find the distance at which chi2 has risen to the bound.
+
+        reach : distance of the bound of the ranges, with the sign of the side.
+        start : a minimum at which it is lower.
+        Returns (the distance, None if chi2 stays below up to ``reach``; the minimum there).
+        """
         from scipy.optimize import brentq
 
-        goal, d = math.sqrt(rise), self.way(low.u)
-        step, known = min(goal * self.sd, _FIRST), {d: low}
+        goal, d = math.sqrt(self.delta_chi2), self.distance(start.u)
+        step, found = min(goal * self.sd, _FIRST_STEP), {d: start}
 
-        def over(d: float) -> float:  # the root of the rise grows as the way
-            if d not in known:
-                b, *more = sorted(known, key=lambda b: abs(d - b))
-                u = known[b].u
-                known[d] = self.at(d, u + (u - known[more[0]].u) * ((d - b) / (b - more[0])) if more else u)
-            f = math.sqrt(max(known[d].chi2 - self.best.chi2, 0.0)) - goal
+        def excess(d: float) -> float:  # the root of the rise is proportional to the distance near the best
+            if d not in found:
+                b, *more = sorted(found, key=lambda b: abs(d - b))
+                u = found[b].u
+                found[d] = self.minimum_at(d, u + (u - found[more[0]].u) * ((d - b) / (b - more[0])) if more else u)
+            f = math.sqrt(max(found[d].chi2 - self.best.chi2, 0.0)) - goal
             return 0.0 if abs(f) < _CLOSE * goal else f
 
-        f = over(d)
+        f = excess(d)
         while f < 0.0:
             if abs(reach - d) < 1e-9:
-                return None, known[d]
+                return None, found[d]
             a, fa = d, f
             d = a + math.copysign(min(step, abs(reach - a)), reach)
-            f = over(d)
+            f = excess(d)
             rate = max((f - fa) / step, 0.05 * goal / step)
-            step = min(max(-1.05 * f / rate, 0.3 * step), 3.0 * step, _STEP)
-        end = brentq(over, a, d, xtol=_CLOSE * min(self.sd, 1.0))
-        return end, known[min(known, key=lambda d: abs(d - end))]
+            step = min(max(-1.05 * f / rate, 0.3 * step), 3.0 * step, _LONGEST_STEP)
+        end = brentq(excess, a, d, xtol=_CLOSE * min(self.sd, 1.0))
+        return end, found[min(found, key=lambda d: abs(d - end))]
 
-    def beyond(self, d: float, reach: float, rise: float) -> list[Found]:
-        """Places at an end or behind it, met from elsewhere, where chi2 has risen by less, the farthest last."""
-        found, about = [], self.about
-        for u, shares in [*((u, _BEYOND) for u in about.others), *((u, _BEYOND[:1]) for u in about.ends)]:
-            own = self.way(u)
-            for place in [d + share * (reach - d) for share in shares] + [own] * ((own - d) * (reach - d) > 0.0):
-                seen = np.clip(self.moved(place, u), self.problem.low, self.problem.high)
-                if self.problem.cost(seen) - self.best.chi2 < _HOPELESS * rise:
-                    found.append(self.at(place, u))
-        lower = [one for one in found if one.chi2 - self.best.chi2 < _LOWER * rise]
-        return sorted(lower, key=lambda one: abs(self.way(one.u)))
+    def search_beyond(self, d: float, reach: float) -> list[Minimum]:
+        """Return minima at an end or behind it where chi2 is below the bound, the farthest last.
 
-    def made_by(self, u: Floats, rise: float) -> list[str]:
-        """Unknowns at an end of their range that would lower chi2 by going beyond, by slopes, the combination held."""
+        d : distance of the end.
+        reach : distance of the bound of the ranges.
+        """
+        found, problem = [], self.problem
+        starts = [(u, _BEYOND) for u in self.likelihood.others] + [(u, _BEYOND[:1]) for u in self.likelihood.ends]
+        for u, parts in starts:
+            own = self.distance(u)
+            for target in [d + part * (reach - d) for part in parts] + [own] * ((own - d) * (reach - d) > 0.0):
+                cost = problem.cost(np.clip(self.shift_to(target, u), problem.low, problem.high))
+                if self.is_below(Minimum(u, cost), _HOPELESS):
+                    found.append(self.minimum_at(target, u))
+        return sorted((one for one in found if self.is_below(one, _LOWER)), key=lambda one: abs(self.distance(one.u)))
+
+    def limiting_bounds(self, u: Floats) -> list[str]:
+        """Return the names of unknowns at a bound beyond which chi2 would fall, with the combination fixed.
+
+        u : the end of an interval.  The fall is by slopes there.
+        """
         problem = self.problem
-        if not (at := [i for i in problem.at_end(u) if not self.powers[i]]):
+        if not (at := [i for i in problem.at_bounds(u) if not self.powers[i]]):
             return []
-        (r, J), others = problem.weighed(u), [i for i in problem.live if i not in at]
+        (r, J), others = problem.weighted(u), [i for i in problem.active if i not in at]
         others.remove(np.flatnonzero(self.powers)[0])
         own = J[:, at] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, at], rcond=None)[0]
         gains = (r @ own) ** 2 / np.maximum((own**2).sum(axis=0), 1e-300)
-        return [problem.names[i] for i, gain in zip(at, gains, strict=True) if gain > _MAKES * rise]
+        return [problem.names[i] for i, gain in zip(at, gains, strict=True) if gain > _LIMITS * self.delta_chi2]

@@ -1,6 +1,6 @@
-"""What was measured, in SI units: :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.
+"""Records of measurements in SI units: :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.
 
-A record without values is a plan: what would be learnt from it is told before it is made.
+A record without values is a plan: the fit then says how well it would determine the unknowns.
 """
 
 from __future__ import annotations
@@ -12,34 +12,36 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...core.checks import broadcast_shape, checked, number
-from ...core.errors import ParameterError, refuse_unknown
-from ...core.labels import Labels, unlabelled
-from ...core.quantities import in_unit
+from ...core.array_types import Floats, Numbers
+from ...core.checks import broadcast_shape, check_array, check_number
+from ...core.errors import ParameterError, check_names
+from ...core.labels import Labels, strip_labels
+from ...core.quantities import to_unit
 from ...core.scale import DIMENSIONLESS, si_unit
-from ...core.typed import Floats, Numbers
 from ...cylinder import Cylinder
 
-#: what a start may be in place of a number: V0/R
+#: word for an initial angular velocity of V0/R
 ROLLING = "rolling"
-#: what may be unknown of a record
+#: unknowns of a record
 OF_RECORDS = ("V0", "omega0", "t0")
-#: numbers of a record, each above its least
+#: number of a record -> its lower bound
 _NUMBERS = {"load": 0.0, "m": 0.0, "temperature": -math.inf, "V0": -math.inf, "omega0": -math.inf}
-#: name -> where it starts, and a range
-Starts = dict[str, tuple[float, tuple[float, float] | None]]
-#: of a motion: free, and driven, whose outputs are smooth in the parameters to 2e-12 at this one
-_RTOL, _RTOL_DRIVEN = 1e-8, 1e-10
+#: name -> initial value, and range where the record leaves it open
+InitialValues = dict[str, tuple[float, tuple[float, float] | None]]
+#: relative tolerance of a free motion
+_RTOL = 1e-8
+#: relative tolerance of a driven motion: its outputs are smooth in the parameters to 2e-12 then
+_RTOL_DRIVEN = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """What all records have: places, values and their standard deviations, each one a place or one for all."""
+    """A record: coordinates, values at them, and standard deviations, each one for each coordinate or one for all."""
 
     #: names of places and of what may be measured there, the first what a plan is about
-    PLACES: ClassVar[tuple[str, ...]] = ()
-    KINDS: ClassVar[tuple[str, ...]] = ()
-    KIND: ClassVar[str] = ""
+    COORDINATES: ClassVar[tuple[str, ...]] = ()
+    QUANTITIES: ClassVar[tuple[str, ...]] = ()
+    LABEL: ClassVar[str] = ""
 
     _: KW_ONLY
     sigma: Any = None
@@ -49,65 +51,81 @@ class Record:
     labels: Labels | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Check coordinates, values and standard deviations, convert them to SI units and give them one shape.
+
+        Raises ParameterError for values that are not finite, of another unit, or of shapes that do not go together.
+        """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
-        given = {name: getattr(self, name) for name in (*self.PLACES, *self.measured)}
-        given = {name: in_unit(self.of(name), value, self.unit(name)) for name, value in given.items()}
-        plain, labels = unlabelled(given, DIMENSIONLESS)
-        arrays = {name: np.atleast_1d(checked(self.of(name), value)) for name, value in plain.items()}
+        names = (*self.COORDINATES, *self.measured)
+        given = {name: to_unit(self.label(name), getattr(self, name), self.unit(name)) for name in names}
+        plain, labels = strip_labels(given, DIMENSIONLESS)
+        arrays = {name: np.atleast_1d(check_array(self.label(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
-            arrays[f"sigma of {name}"] = checked(
-                self.of(f"sigma of {name}"), value, unit=self.unit(name), low=0.0, strict=True
-            )
-        shape = broadcast_shape(**{self.of(name): array for name, array in arrays.items()})
-        if broadcast_shape(**{name: arrays[name] for name in self.PLACES}) != shape:
-            raise ParameterError(self.of(self.KINDS[0]), f"of shape {shape}", "a value a place")
+            label = f"sigma of {name}"
+            arrays[label] = check_array(self.label(label), value, unit=self.unit(name), low=0.0, strict=True)
+        shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
+        if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
+            raise ParameterError(self.label(self.QUANTITIES[0]), f"of shape {shape}", "a value a place")
         if 0 in shape:
-            raise ParameterError(self.of(self.PLACES[0]), "empty", "at least one place")
+            raise ParameterError(self.label(self.COORDINATES[0]), "empty", "at least one place")
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
         vars(self).update(whole, labels=labels, sigma=sigmas)
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
             if value is not None and not (name == "omega0" and isinstance(value, str) and value == ROLLING):
-                vars(self)[name] = number(self.of(name), value, unit=self.unit(name), low=low, strict=True)
+                vars(self)[name] = check_number(self.label(name), value, unit=self.unit(name), low=low, strict=True)
 
     @staticmethod
     def unit(name: str) -> str:
-        """SI unit of a place or quantity; a creep has none."""
+        """Return the SI unit of a coordinate or quantity; a creep has none."""
         return si_unit("force" if name == "F" else name)
 
-    def of(self, name: str) -> str:
-        """What a message calls a part of it."""
-        return f"{self.name or self.KIND}: {name}"
+    def label(self, name: str) -> str:
+        """Return the name of a field in a message."""
+        return f"{self.name or self.LABEL}: {name}"
 
     def _sigmas(self) -> dict[str, Any]:
-        """Standard deviations that are given, by quantity; a single one is of what is measured, or planned first."""
-        among, given = self.measured or self.KINDS, {} if self.sigma is None else self.sigma
+        """Return the standard deviations that are given, by quantity; a single one is of the quantity that is
+        measured or planned.
+
+        Raises ParameterError for a single one of several quantities, and for a quantity that the record does not
+        have.
+        """
+        among, given = self.measured or self.QUANTITIES, {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
             if len(self.measured) > 1:
                 allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
-                raise ParameterError(self.of("sigma"), f"{given!r:.40}", allowed)
+                raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
-        refuse_unknown(self.of("sigma"), given, among, "a quantity of it")
+        check_names(self.label("sigma"), given, among, "a quantity of it")
         return {name: value for name, value in given.items() if value is not None}
 
     @property
     def measured(self) -> tuple[str, ...]:
-        """Quantities that it has values of; none of a plan."""
-        return tuple(name for name in self.KINDS if getattr(self, name) is not None)
+        """Names of the quantities that the record has values of; none of a plan."""
+        return tuple(name for name in self.QUANTITIES if getattr(self, name) is not None)
 
     @property
-    def own(self) -> dict[str, float]:
-        """What it has in place of the cylinder's."""
+    def overrides(self) -> dict[str, float]:
+        """Inputs of the cylinder that the record replaces: load and mass."""
         return {name: value for name in ("load", "m") if (value := getattr(self, name, None)) is not None}
 
-    def starts(self, R: float) -> Starts:
-        """What it may have unknown: where that starts, and the range of what is unknown without being asked for."""
+    def initial_values(self, R: float) -> InitialValues:
+        """Return the unknowns that the record may have: name -> initial value, and range where the record leaves it
+        open.
+
+        R : radius of the cylinder, m.
+        """
         return {}
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """What the ``cylinder`` would show of all :attr:`KINDS`; ``values`` of bearing and record by their names."""
+        """Return all :attr:`QUANTITIES` of the record as the model predicts them.
+
+        cylinder : of the values of the unknowns.
+        values : of unknowns of bearing and record, by their names without that of the record.
+        """
         raise NotImplementedError
 
 
@@ -131,7 +149,7 @@ class Resistance(Record):
         Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma <= 0.
     """
 
-    PLACES, KINDS, KIND = ("V",), ("M", "F"), "resistance"
+    COORDINATES, QUANTITIES, LABEL = ("V",), ("M", "F"), "resistance"
 
     V: Numbers
     M: Numbers | None = None
@@ -139,6 +157,11 @@ class Resistance(Record):
     F: Numbers | None = None
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
+        """Return M and F with the torque of the bearing.
+
+        cylinder : of the values of the unknowns.
+        values : of brake and drag.
+        """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
         return {"M": M, "F": M / cylinder.R}
@@ -161,7 +184,7 @@ class Traction(Record):
         As there.
     """
 
-    PLACES, KINDS, KIND = ("V", "delta"), ("Q",), "traction"
+    COORDINATES, QUANTITIES, LABEL = ("V", "delta"), ("Q",), "traction"
 
     V: Numbers
     delta: Numbers
@@ -194,7 +217,7 @@ class Coastdown(Record):
         As there; times that fall.
     """
 
-    PLACES, KINDS, KIND = ("t",), ("V", "omega", "x"), "run"
+    COORDINATES, QUANTITIES, LABEL = ("t",), ("V", "omega", "x"), "run"
 
     t: Numbers
     V: Numbers | None = None
@@ -207,29 +230,35 @@ class Coastdown(Record):
     m: float | None = None
 
     def __post_init__(self) -> None:
+        """Check times and t0 beside all that every record checks."""
         super().__post_init__()
         t: Any = self.t
         if t.ndim > 1:
-            raise ParameterError(self.of("t"), f"an array of shape {t.shape}", "a vector, in ascending order")
+            raise ParameterError(self.label("t"), f"an array of shape {t.shape}", "a vector, in ascending order")
         if (np.diff(t) < 0.0).any():
             n = int(np.argmax(np.diff(t.ravel()) < 0.0))
             at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"
-            raise ParameterError(self.of("t"), at, "a vector, in ascending order")
-        t0 = checked(self.of("t0"), self.t0, unit="s")
+            raise ParameterError(self.label("t"), at, "a vector, in ascending order")
+        t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
-            raise ParameterError(self.of("t0"), self.t0, "a number, or (low, high)")
+            raise ParameterError(self.label("t0"), self.t0, "a number, or (low, high)")
         vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)
 
-    def starts(self, R: float) -> Starts:
+    def initial_values(self, R: float) -> InitialValues:
         ends: Any = np.ravel(self.t0)
-        found: Starts = {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
+        found: InitialValues = {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
         for name, value in (("V0", self.V0), ("omega0", self.omega0)):
             if not isinstance(value, str):
                 found[name] = self._first(name, R) if value is None else (value, None)
         return found
 
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
-        """A speed at the release by the data, and a range about it."""
+        """Return the speed at the release that the data show, and a range about it.
+
+        name : "V0" or "omega0".
+        R : radius of the cylinder, m.
+        Raises ParameterError where the data do not show it.
+        """
         given: Any = self.V if name == "V0" else self.omega
         if given is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
             given = R * np.asarray(self.omega)
@@ -237,12 +266,16 @@ class Coastdown(Record):
             some = slice(0, max(3, np.size(self.t) // 10))
             given = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
         if given is None:
-            raise ParameterError(self.of(name), None, "a number: the data do not show it")
+            raise ParameterError(self.label(name), None, "a number: the data do not show it")
         first, most = float(given[0]), float(np.max(np.abs(given)))
         return first, (first - most, first + most)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """As all do, and which of its points fall into full slip."""
+        """Return V, omega, x, and for each point whether it is in full slip.
+
+        cylinder : of the values of the unknowns.
+        values : of brake and drag, and of V0, omega0 and t0 in place of those of the record.
+        """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0
         drive = {name: values[name] for name in ("brake", "drag") if values.get(name)}

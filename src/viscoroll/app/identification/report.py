@@ -1,6 +1,6 @@
-"""An identification in words: what the residuals say first, then values, then what the data do not tell.
+"""Report of an identification: noise of the residuals first, then values, then limits of the data.
 
-The same as a dataset, and as what JSON holds.
+The same as a dataset, and for JSON.
 """
 
 from __future__ import annotations
@@ -15,14 +15,16 @@ from ... import __version__
 if TYPE_CHECKING:
     import xarray as xr
 
-#: points of a motion's phase below which it is told
+#: points of full slip in a motion below which the report says that mu rests on few
 _FEW = 5
-#: correlation that is worth a word, and chi2 by which a profile's way must undercut the fit
-_CLOSE, _BETTER = 0.9, 0.1
+#: correlation from which on the report names it
+_CLOSE = 0.9
+#: fall of chi2 below the best fit from which on the report names a point of a profile
+_BETTER = 0.1
 
 
 def report(fit: Any) -> str:
-    """The report that ``print(fit)`` shows, of a :class:`viscoroll.app.identification.Identification`."""
+    """Return the report that ``print(fit)`` shows, of a :class:`viscoroll.app.identification.Identification`."""
     width = max(map(len, fit.values))
     rows = []
     for name, ends in fit.intervals().items():
@@ -33,6 +35,7 @@ def report(fit: Any) -> str:
 
 
 def _heading(fit: Any) -> str:
+    """Return the first line of a ``fit``: points, and chi2 or estimated standard deviations."""
     from scipy import stats
 
     problem = fit._problem
@@ -46,7 +49,7 @@ def _heading(fit: Any) -> str:
 
 
 def _noise(fit: Any) -> Iterator[str]:
-    """Residuals that are no noise."""
+    """Yield a sentence for each column of a ``fit`` whose residuals are no noise."""
     for name in fit.misfit:
         rms, lag, allowed, _ = fit.noise[name]
         size = f"{rms:.2f} sigma" + " by their median" * fit._problem.robust
@@ -57,15 +60,16 @@ def _noise(fit: Any) -> Iterator[str]:
 
 
 def _limits(fit: Any) -> Iterator[str]:
+    """Yield sentences on what the data of a ``fit`` do not determine."""
     yield from (f"{name} does not act on these data" for name in fit.does_not_act)
     *names, last = fit.undetermined or ("",)
     if names:
         yield f"{', '.join(names)} and {last} cannot be told apart by these data: {_products(fit.products())}"
     elif last:
         yield f"{last} is not determined by these data"
-    yield from _sides(fit)
+    yield from _interval_limits(fit)
     for chi2, values in fit.minima[1:]:
-        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_listed(values)}"
+        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_values_text(values)}"
     yield from _phases(fit)
     loose, names = {*fit.does_not_act, *fit.undetermined}, list(fit.values)
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
@@ -74,7 +78,8 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
-    sure, near = (" and ".join(_named(one) for one in found if one.near is where) for where in (False, True))
+    """Return the words on the products that are determined, ``found``."""
+    sure, near = (" and ".join(_product_text(one) for one in found if one.near is where) for where in (False, True))
     if not found:
         return "no product of their powers is determined"
     text = f"only {sure or near} {'are' if ' and ' in (sure or near) else 'is'} determined"
@@ -82,20 +87,21 @@ def _products(found: list[Any]) -> str:
     return text + more * bool(near)
 
 
-def _named(one: Any) -> str:
+def _product_text(one: Any) -> str:
+    """Return a product with its value and interval."""
     powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
     text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
     low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
     return f"{text} = {one.value:.4g} (95%: {low} to {high})"
 
 
-def _sides(fit: Any) -> Iterator[str]:
-    """What ends of intervals are not of the data."""
+def _interval_limits(fit: Any) -> Iterator[str]:
+    """Yield sentences on ends of intervals of a ``fit`` that ranges, not data, make."""
     made: dict[str, list[str]] = {}
     problem = fit._problem
-    for i, found in fit._about.axes(fit._rise()).items():
+    for i, found in fit._likelihood.axes(fit._delta_chi2()).items():
         name = problem.names[i]
-        for side, end, bounds in zip(("lower", "upper"), found.ends, found.made_by, strict=True):
+        for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by, strict=True):
             if end is None:
                 yield f"{name} is open on its {side} side: chi2 has not risen enough at the end of its range"
             for bound in bounds:
@@ -103,27 +109,31 @@ def _sides(fit: Any) -> Iterator[str]:
         if found.pieces:
             yield f"the interval of {name} joins branches of the fit: one value within it may fit worse than its ends"
         if found.best.chi2 < fit.chi2 - _BETTER:
-            listed = _listed(problem.values(found.best.u))
+            listed = _values_text(problem.values(found.best.u))
             yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
-    for i in problem.at_end(fit._about.best.u):
+    for i in problem.at_bounds(fit._likelihood.best.u):
         yield f"the best fit has {problem.names[i]} at the end of its range"
     yield from (f"the range of {bound}, not the data, makes {', '.join(ends)}" for bound, ends in made.items())
 
 
-def _listed(values: dict[str, float]) -> str:
+def _values_text(values: dict[str, float]) -> str:
+    """Return values by name in one line."""
     return ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
 
 
 def _phases(fit: Any) -> Iterator[str]:
-    """Motions with too few points in a phase."""
+    """Yield a sentence for each motion of a ``fit`` with few points in full slip, on which mu rests."""
     for called, record in fit.records.items() if "mu" in fit.values else ():
-        slips = int(np.sum(fit._problem.predicted(record, fit._about.best.u, called).get("slips", 0)))
+        slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, called).get("slips", 0)))
         if 0 < slips < _FEW:
             yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
-    """Values over ``unknown``, each record's places, data, fit and sigma over an axis of its own."""
+    """Return a ``fit`` as a dataset.
+
+    Values are over ``unknown``; each record's coordinates, data, fit and sigma over an axis of its own.
+    """
     import xarray as xr
 
     names, ends = np.array(list(fit.values), object), np.array(list(fit.intervals().values()), float)
@@ -134,7 +144,7 @@ def as_dataset(fit: Any) -> xr.Dataset:
         "correlation": (("unknown", "other"), fit.correlations),
     }  # fmt: skip
     for called, record in fit.records.items():
-        columns = {name: getattr(record, name) for name in (*record.PLACES, *record.measured)}
+        columns = {name: getattr(record, name) for name in (*record.COORDINATES, *record.measured)}
         for name in record.sigma:
             fitted = getattr(fit.predicted[called], name).value
             columns |= {f"{name} fit": fitted, f"{name} sigma": fit.sigma[f"{name} of {called}"]}
@@ -145,7 +155,7 @@ def as_dataset(fit: Any) -> xr.Dataset:
 
 
 def as_json(fit: Any) -> dict[str, Any]:
-    """What the report says, by name; null where a side is open or nothing acts."""
+    """Return the content of the report of a ``fit`` by name; null where a side is open or an unknown does not act."""
     told = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
     unknowns = {

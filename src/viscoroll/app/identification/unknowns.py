@@ -1,4 +1,5 @@
-"""Unknowns by the names that run files give their inputs: what they are of a cylinder, and a cylinder of such values.
+"""Unknowns by the names that run files give their inputs: what each is of a cylinder, and a cylinder of their
+values.
 
 A material's modes count from its longest time; names of the half-space begin with ``base_``, those of a record end
 with its name, as V0:run.
@@ -14,8 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...core.checks import checked, number
-from ...core.errors import ParameterError, refuse_unknown
+from ...core.checks import check_array, check_number
+from ...core.errors import ParameterError, check_names
 from ...core.scale import si_unit
 from ...cylinder import Cylinder
 from ...materials.material import Material
@@ -24,21 +25,28 @@ from .records import OF_RECORDS, Record
 
 #: degrees Celsius -> a_T
 Shift = Callable[[float], float]
-_OWN = ("R", "m", "mu", "j", "g", "load")
-_OF_BODY = ("E", "nu", "T_ref")
+#: unknowns that are inputs of a cylinder
+_OF_CYLINDER = ("R", "m", "mu", "j", "g", "load")
+#: unknowns that are inputs of a material, beside its modes
+_OF_MATERIAL = ("E", "nu", "T_ref")
+#: body -> prefix of the names of its unknowns
 _PREFIX = {"material": "", "base": "base_"}
-#: of the bearing
+#: unknowns of the bearing and their start, 0
 _BEARING = {"brake": 0.0, "drag": 0.0}
-#: what goes linearly, and its least value; others, above 0, go by their logarithm
+#: unknowns with a linear coordinate and their least value; others, above 0, have a logarithmic one
 _LINEAR = _BEARING | dict.fromkeys(("nu", "base_nu", *OF_RECORDS), -math.inf)
-#: of its range, the least unit of what is counted from 0
+#: least unit of a linear coordinate, in units of the range
 _UNIT = 0.1
 
 
 class Unknown(NamedTuple):
-    """Where it starts, and its range; ``unit`` is what a linear one is counted in, None of logarithms.
+    """An unknown, which the search varies by a coordinate u: the logarithm of its value, or its value in a unit.
 
-    mean, sd : of its coordinate, as known beforehand.
+    name : of the unknown.
+    start : value from which the search starts.
+    low, high : range of its value.
+    unit : of a linear coordinate; None: the coordinate is the logarithm.
+    mean, sd : mean and standard deviation of the coordinate as known before; sd is infinite without such knowledge.
     """
 
     name: str
@@ -51,7 +59,9 @@ class Unknown(NamedTuple):
 
     @staticmethod
     def bounds(name: str) -> dict[str, Any]:
-        """What its values have to be, as of :func:`checked`."""
+        """Return unit and bounds of the values of an unknown with a name, as arguments of
+        :func:`.core.checks.check_array`.
+        """
         kind = name.split(":")[0]
         return {
             "unit": si_unit(kind.removeprefix(_PREFIX["base"])),
@@ -60,86 +70,109 @@ class Unknown(NamedTuple):
         }
 
     def to_u(self, value: Any) -> Any:
-        """The coordinate of a value."""
+        """Return the coordinate of a value."""
         return np.log(value) if self.unit is None else value / self.unit
 
     def to_value(self, u: Any) -> Any:
-        """The value at a coordinate."""
+        """Return the value at a coordinate."""
         return np.exp(u) if self.unit is None else u * self.unit
 
-    def spread(self, value: float) -> float:
-        """How much the value changes with its coordinate."""
+    def slope(self, value: float) -> float:
+        """Return the derivative of the value by the coordinate, at a value."""
         return value if self.unit is None else self.unit
 
 
 def unknowns_of(
     cylinder: Cylinder, given: Mapping[str, Any], records: Mapping[str, Record], priors: Mapping[str, Any]
 ) -> list[Unknown]:
-    """The unknowns that are asked for, and those that records bring along.
+    """Return the unknowns that are requested, and those that records leave open.
+
+    cylinder : from whose inputs the search starts.
+    given : name -> range.
+    records : name -> record.
+    priors : name -> (value, standard deviation).
 
     Raises
     ------
     ParameterError
-        A name that is none, a range that does not hold the start, a cylinder with arrays; a prior of what is known.
+        An unknown name, a range that does not contain the start, a cylinder with arrays; a prior of what is no
+        unknown.
     """
-    starts = {name: getattr(cylinder, name) for name in _OWN} | _BEARING
+    starts = {name: getattr(cylinder, name) for name in _OF_CYLINDER} | _BEARING
     for section, body in _bodies(cylinder).items():
         starts |= {_PREFIX[section] + name: value for name, value in _inputs(body).items()}
-    starts, ranges = {name: number(name, value) for name, value in starts.items()}, dict(given)
+    starts, ranges = {name: check_number(name, value) for name, value in starts.items()}, dict(given)
     for called, record in records.items():
-        for name, (start, span) in record.starts(cylinder.R).items():
+        for name, (start, span) in record.initial_values(cylinder.R).items():
             starts[f"{name}:{called}"] = start
             if span is not None:
                 ranges.setdefault(f"{name}:{called}", span)
-    refuse_unknown("unknown", ranges, starts, "an input")
-    refuse_unknown("prior", priors, ranges, "an unknown")
+    check_names("unknown", ranges, starts, "an input")
+    check_names("prior", priors, ranges, "an unknown")
     return [_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
 
 
 def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
-    low, high = _pair("unknown", name, span, "(low, high), low < high")
-    if not low < high:
-        raise ParameterError(f"unknown {name}", f"{span!r:.60}", "(low, high), low < high")
+    """Return an unknown after checks.
+
+    name, start : of the unknown.
+    span : (low, high).
+    prior : (value, standard deviation), None without.
+    Raises ParameterError for a range or a prior that is none.
+    """
+    low, high = _pair("unknown", name, span)
     if not low <= start <= high:
         raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", f"a range that holds the start, {start:.6g}")
     linear = name.split(":")[0] in _LINEAR
     one = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
     if prior is None:
         return one
-    mean, sd = _pair("prior", name, prior, "(value, standard deviation)")
-    sd = number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
+    mean, sd = _pair("prior", name, prior)
+    sd = check_number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
     return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
 
 
-def _pair(what: str, name: str, given: Any, allowed: str) -> list[float]:
-    """Two numbers, each a value that the unknown may have."""
+def _pair(argument: str, name: str, given: Any) -> list[float]:
+    """Return two numbers, each a value that the unknown may have.
+
+    argument : "unknown" or "prior", of :func:`.identify.identify`.
+    name : of the unknown.
+    given : the pair.
+    Raises ParameterError for another number of them, and for a range that does not ascend.
+    """
     bounds = Unknown.bounds(name)
-    if what == "prior":  # the standard deviation is of a logarithm: one unit is none of both
+    if argument == "prior":  # the standard deviation is of a logarithm: one unit is none of both
         del bounds["unit"]
-    pair = checked(f"{what} {name}", given, **bounds)
-    if pair.shape != (2,):
-        raise ParameterError(f"{what} {name}", f"{given!r:.60}", allowed)
+    pair = check_array(f"{argument} {name}", given, **bounds)
+    if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):
+        allowed = {"unknown": "(low, high), low < high", "prior": "(value, standard deviation)"}[argument]
+        raise ParameterError(f"{argument} {name}", f"{given!r:.60}", allowed)
     return pair.tolist()
 
 
 def cylinder_of(
     cylinder: Cylinder, values: Mapping[str, float], record: Record | None = None, shifts: Mapping[str, Shift] = {}
 ) -> Cylinder:
-    """The cylinder with other ``values``, at the load and the temperature of a record.
+    """Return the cylinder with other values, at the load and the temperature of a record.
+
+    cylinder : with the values that are fixed.
+    values : name -> value of unknowns.
+    record : whose load, mass and temperature are taken; None: those of the cylinder.
+    shifts : body -> shift factor over temperature.
 
     Raises
     ------
     ParameterError
         Values that make no cylinder; a temperature without a shift of a body, or that the shift does not allow.
     """
-    changes: dict[str, Any] = {name: values[name] for name in _OWN if name in values}
-    changes |= {} if record is None else record.own
+    changes: dict[str, Any] = {name: values[name] for name in _OF_CYLINDER if name in values}
+    changes |= {} if record is None else record.overrides
     for section, body in _bodies(cylinder).items():
-        made = _changed(body, _PREFIX[section], values)
+        made = _with_values(body, _PREFIX[section], values)
         if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
             if section not in shifts:
                 allowed = f"given with a shift of the {section}, as vr.WLF(T0=20.0)"
-                raise ParameterError(record.of("temperature"), record.temperature, allowed)
+                raise ParameterError(record.label("temperature"), record.temperature, allowed)
             made = made.at(record.temperature, shifts[section])
         if made is not body:
             changes[section] = made
@@ -147,24 +180,31 @@ def cylinder_of(
 
 
 def _bodies(cylinder: Cylinder) -> dict[str, Material]:
-    """Those that deform: nothing of a rigid one may be unknown."""
+    """Return the bodies that deform, by section; a rigid one has no unknowns."""
     bodies = zip(_PREFIX, (cylinder.pair.cylinder, cylinder.pair.base), strict=True)
     return {section: body for section, body in bodies if not (body is None or body.is_rigid)}
 
 
 def _inputs(body: Material) -> dict[str, float]:
-    """All that may be unknown of a body, by name."""
+    """Return all inputs of a body that may be unknown, by name."""
     series = {"E": body.prony.E.tolist(), "tau": body.prony.tau.tolist()}
     modes = {f"{name}_{n}": value for name, column in series.items() for n, value in enumerate(column, 1)}
-    return {name: getattr(body, name) for name in _OF_BODY} | modes
+    return {name: getattr(body, name) for name in _OF_MATERIAL} | modes
 
 
-def _changed(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
+def _with_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
+    """Return a material with other values.
+
+    body : the material.
+    prefix : of its names, "" or "base_".
+    values : name -> value of unknowns, of other bodies too.
+    With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
+    """
     old = _inputs(body)
     new = {name: values.get(prefix + name, value) for name, value in old.items()}
     if new == old:
         return body
-    changes: dict[str, Any] = {name: new.pop(name) for name in _OF_BODY}
+    changes: dict[str, Any] = {name: new.pop(name) for name in _OF_MATERIAL}
     if any(new[name] != old[name] for name in new):  # of the modes: it is no longer what was measured
         modes, count = tuple(new.values()), body.prony.E.size
         changes |= {"prony": _series(modes[:count], modes[count:]), "measured": None}
@@ -175,5 +215,5 @@ def _changed(body: Material, prefix: str, values: Mapping[str, float]) -> Materi
 
 @lru_cache(maxsize=256)
 def _series(strengths: tuple[float, ...], times: tuple[float, ...]) -> Prony:
-    """A series once: what does not change it pays no table of it."""
+    """Return a series, the same object for the same values, so that its table of the law is made once."""
     return Prony(strengths, times)

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import broadcast_shape, checked
-from ...core.drive import Feedback, slope_factor
+from ...core.array_types import Floats
+from ...core.checks import broadcast_shape, check_array
+from ...core.drive import Feedback, slope_tan_cos
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 from ..contact_table import refuse_overflow
 from ..parameters import Parameters, refuse_arrays
 
@@ -73,12 +73,12 @@ def loads_of(
     if type(scene.alpha) is not float:
         refuse_arrays(scene, ("alpha",))
     given = None if V is None else _given_load(slope, force=force, torque=torque)
-    tangent = slope_factor(slope)[0]
+    tangent = slope_tan_cos(slope)[0]
     push, *of_force = _split_feedback("force", force)
     turn, *of_torque = _split_feedback("torque", torque)
     arrays = {"force": push, "torque": turn, "kappa": scene.kappa, "mu": scene.mu, "j": scene.j, "slope": tangent}
     if V is not None:
-        arrays["V"] = checked("V", V)
+        arrays["V"] = check_array("V", V)
         refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
     shape = broadcast_shape(**{name: np.asarray(each) for name, each in arrays.items()})
     arrays["force"] = push + arrays.pop("slope")
@@ -93,7 +93,7 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     or a Feedback.
     """
     if not isinstance(value, Feedback):
-        return checked(name, 0.0 if value is None else value), 0.0, 0.0
+        return check_array(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):
         raise ParameterError(name, "a feedback on a schedule", "constant in time")
     if value.shape:

@@ -10,16 +10,17 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.array_types import Booleans, Floats, Integers
 from ...core.errors import ParameterError
 from ...core.renamed import warn_renamed
-from ...core.typed import Booleans, Floats, Integers
 from ...materials.law_table import LawTable
-from ..contact_table import rolling
-from ..parameters import Rolls, framed, refuse_arrays
+from ..contact_table import pure_rolling_fields
+from ..parameters import Roller, refuse_arrays, resolve_model
 
 #: octaves of u on either side of the rates of a material with closely spaced nodes
 _CLOSE_OCTAVES = 15
@@ -88,7 +89,7 @@ class Branches:
 
     @cached_property
     def maximum(self) -> tuple[float, float]:
-        """(largest value, kappa V there)."""
+        """Return (largest value, kappa V there)."""
         n = int(np.argmax(self.resistance))
         return float(self.resistance[n]), float(self.u[n])
 
@@ -102,30 +103,31 @@ class Branches:
         """
         from ...kernels.rows.load_crossings import EXTREMUM_RTOL
 
-        which, nodes, near = [], [], EXTREMUM_RTOL * np.abs(load)
+        indices, nodes, tolerance = [], [], EXTREMUM_RTOL * np.abs(load)
         for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
-            rise = self.resistance[first : last + 1]
-            rises = rise[-1] > rise[0]
-            low, high = (rise[0], rise[-1]) if rises else (rise[-1], rise[0])
+            values = self.resistance[first : last + 1]
+            rising = values[-1] > values[0]
+            low, high = (values[0], values[-1]) if rising else (values[-1], values[0])
             inside = (load > low) & (load < high)
             if self.extremum[first]:
-                inside &= np.abs(load - rise[0]) > near
+                inside &= np.abs(load - values[0]) > tolerance
             if self.extremum[last]:
-                inside |= np.abs(load - rise[-1]) <= near
-            which.append(of := inside.nonzero()[0])
-            at = rise.searchsorted(load[of], "right") if rises else (-rise).searchsorted(-load[of])
-            nodes.append(first + np.minimum(np.maximum(at - 1, 0), last - first - 1))
-        return np.concatenate(which), np.concatenate(nodes)
+                inside |= np.abs(load - values[-1]) <= tolerance
+            indices.append(index := inside.nonzero()[0])
+            above = values.searchsorted(load[index], "right") if rising else (-values).searchsorted(-load[index])
+            nodes.append(first + np.minimum(np.maximum(above - 1, 0), last - first - 1))
+        return np.concatenate(indices), np.concatenate(nodes)
 
 
-def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
+def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     """Every local maximum and minimum of the rolling resistance M over the speed.
 
     A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
 
-    Parameters ----------
+    Parameters
+    ----------
     roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; numbers, no
-    arrays.
+        arrays.
 
     Returns
     -------
@@ -144,11 +146,12 @@ def resistance_extrema(roller: Rolls) -> ResistanceExtrema:
 
     Examples
     --------
-    >>> top = vr.resistance_extrema(vr.presets.RUBBER_CYLINDER)
-    >>> top.is_maximum[0]
+    >>> import viscoroll as vr
+    >>> extrema = vr.resistance_extrema(vr.presets.RUBBER_CYLINDER)
+    >>> extrema.is_maximum[0]
     np.True_
     """
-    _, scene, scale = framed(roller, "resistance_extrema")
+    _, scene, scale = resolve_model(roller, "resistance_extrema")
     refuse_arrays(scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None
@@ -189,18 +192,20 @@ def branches(law: LawTable, gain: float) -> Branches:
 def speed_nodes(law: LawTable) -> Floats:
     """Nodes of log2(u), ascending, closely spaced where the material of the rows ``law`` relaxes."""
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
-    low, high = (
-        math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES,
-        math.ceil(-math.log2(times.min())) + _CLOSE_OCTAVES,
-    )
-    parts = (low - _FAR_OCTAVES, low, _FAR_NODES), (low, high, _CLOSE_NODES), (high, high + _FAR_OCTAVES, _FAR_NODES)
-    steps = [np.linspace(start, stop, (stop - start) * per, endpoint=False) for start, stop, per in parts]
-    return np.concatenate([*steps, [high + _FAR_OCTAVES]])
+    low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
+    high = math.ceil(-math.log2(times.min())) + _CLOSE_OCTAVES
+    ends = low - _FAR_OCTAVES, low, high, high + _FAR_OCTAVES
+    densities = _FAR_NODES, _CLOSE_NODES, _FAR_NODES
+    parts = [
+        np.linspace(start, stop, (stop - start) * density, endpoint=False)
+        for (start, stop), density in zip(pairwise(ends), densities, strict=True)
+    ]
+    return np.concatenate([*parts, ends[-1:]])
 
 
 def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
-    """kappa (M - gain V) and its slope in kappa V, at u = kappa V; two rows."""
-    return rolling(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
+    """Return kappa (M - gain V) and its slope in kappa V at u = kappa V, two rows; ``law``: rows of the material."""
+    return pure_rolling_fields(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
 
 
 def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
@@ -213,8 +218,8 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
     has a minimum at a node.
     """
     values = function(nodes)
-    known = np.abs(values) > noise
-    nodes, values = nodes[known], values[known]
+    signed = np.abs(values) > noise
+    nodes, values = nodes[signed], values[signed]
     parts = [(nodes, values), *_refine_near_double_roots(function, nodes, values)]
     brackets = [_sign_changes(*part) for part in parts]
     low, high, rising = (np.concatenate(each) for each in zip(*brackets, strict=True))
@@ -226,7 +231,10 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
 
 
 def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
-    """(lower ends, upper ends, whether the function rises) of the intervals in which y changes its sign."""
+    """Return (lower ends, upper ends, whether the function rises) of the intervals in which y changes its sign.
+
+    x: points, ascending, (n,).  y: values of the function there.
+    """
     at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)
     return x[at], x[at + 1], y[at + 1] > 0.0
 
@@ -239,11 +247,13 @@ def _refine_near_double_roots(function: Function, x: Floats, y: Floats) -> list[
     Returns a list of (points, values), one for each pair of zeros.
     """
     size, sign = np.abs(y), np.sign(y)
-    near = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:]) & (sign[1:-1] == sign[:-2]) & (sign[1:-1] == sign[2:])
-    # a parabola through three nodes reaches 0 between them where it is bent by more than that; rounding is not
-    near &= size[1:-1] < size[:-2] - 2.0 * size[1:-1] + size[2:]
+    minimum = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
+    minimum &= (sign[1:-1] == sign[:-2]) & (sign[1:-1] == sign[2:])
+    # A parabola through three nodes reaches 0 between them if its second difference exceeds the value at the node;
+    # rounding errors have no such difference.
+    minimum &= size[1:-1] < size[:-2] - 2.0 * size[1:-1] + size[2:]
     found = []
-    for n in np.flatnonzero(near) + 1:
+    for n in np.flatnonzero(minimum) + 1:
         low, high = x[n - 1], x[n + 1]
         for _ in range(_REFINEMENTS):
             points = np.linspace(low, high, _REFINED_NODES)

@@ -10,35 +10,35 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.array_types import Floats, Integers
 from ...core.labels import Labels
-from ...core.results import Row, Values, short, unit_of
+from ...core.results import SummaryRow, Values, format_value, unit_of
 from ...core.scale import DIMENSIONS, Scale
-from ...core.typed import Floats, Integers
 from .loads import Loads
 from .states import Field, States
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Fields of the result in the order of the rows.
 _FIELDS = "V", "delta", "Q", "M_half_space", "M_cylinder", "beta", "omega", "M", "grip", "force", "torque"
-#: of :class:`Loss`, in datasets
+#: Names of the fields of :class:`Loss` in datasets.
 _LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "efficiency"
 
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """Power balance, over P R/T_ref (W per m of length for a Cylinder).
+    """Power balance, divided by P R/T_ref (W per m of length for a Cylinder).
 
-    Attributes ----------
+    Attributes
+    ----------
     slip : power lost in slip, (omega - V) Q.
     half_space, cylinder : power lost in rolling, V M_half_space and omega M_cylinder; their sum with ``slip`` is the
-    power of
-        force and torque.
+        power of force and torque.
     coefficient : coefficient of rolling resistance, all losses divided by P |V|: M and the slip loss; at V = 0 the
-    limit V -> 0.
+        limit V -> 0.
     efficiency : output power divided by input power, -force V/(torque omega) of a driving roller, the inverse of a
-    towed
-        one that drives; 0 without output, NaN at rest.
+        towed one that drives; 0 without output, NaN at rest.
     """
 
     slip: Floats
@@ -52,9 +52,8 @@ class Diagnosis(NamedTuple):
     """Data for the explanation why a load has no equilibrium.
 
     loads : the loads.  states : load, V and Q of all states, whether or not the friction suffices.  number :
-    equilibria of each
-    load.  maximum : largest kappa M and its kappa V; NaN with feedback.  elastic : whether the bodies are elastic,
-    without a gain.
+    equilibria of each load.  maximum : largest kappa M and its kappa V; NaN with feedback.  elastic : whether the
+    bodies are elastic, without a gain.
     """
 
     loads: Loads
@@ -64,15 +63,16 @@ class Diagnosis(NamedTuple):
     elastic: bool
 
     def text(self, scale: Scale) -> Any:
-        """Reason for each load, one string or an array of strings; empty where an equilibrium exists.  ``scale`` :
-        units of the roller.
+        """Return the reason for each load, one string or an array of strings; empty where an equilibrium exists.
+
+        scale: units of the roller.
         """
         shape = self.loads.shape
-        found = [self._of(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)]
+        found = [self._reason(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)]
         return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
-    def _of(self, n: int, scale: Scale) -> str:
-        """Reason why the load ``n`` has no equilibrium, in the units of ``scale``."""
+    def _reason(self, n: int, scale: Scale) -> str:
+        """Return why the load ``n`` has no equilibrium, in the units of ``scale``."""
         name, moment, of_load, of_speed = "force + torque", "rolling moment", "", ""
         if scale.si:
             name, moment, of_load, of_speed = "force + torque/R", "rolling moment over R", " N/m", " m/s"
@@ -109,10 +109,10 @@ class Steady(Values):
     Attributes
     ----------
     V, omega, delta : speeds and creepage (omega - V)/V, infinite for a cylinder that spins at V = 0.
-    Q, M : creep force and rolling resistance moment, over P and P R; M_half_space, M_cylinder : the parts of M.
+    Q, M : creep force and rolling resistance moment, divided by P and P R; M_half_space, M_cylinder : the parts of M.
     beta : stick zone divided by contact length.  grip : friction reserve 1 - |Q|/mu, 0 in full slip.
     stable : whether (V, omega) returns after any small disturbance; False if an eigenvalue is 0.
-    eigenvalues : last axis of two, complex, fast and slow: rates over gamma t of small disturbances.
+    eigenvalues : last axis of two, complex, fast and slow: growth rates of small disturbances, in units of gamma.
     force, torque : loads, with slope and feedback; the one to be found where V was given.
     loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
     count : number of equilibria of each load.
@@ -139,11 +139,11 @@ class Steady(Values):
         with np.errstate(invalid="ignore"):
             coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
         powers = np.stack([force * V, torque * omega])
-        taken, put_in = (np.maximum(each, 0.0).sum(axis=0) for each in (-powers, powers))
-        efficiency = np.divide(taken, put_in, out=np.full(V.shape, np.nan), where=put_in > 0.0)
+        output, input_ = (np.maximum(signed, 0.0).sum(axis=0) for signed in (-powers, powers))
+        efficiency = np.divide(output, input_, out=np.full(V.shape, np.nan), where=input_ > 0.0)
         found: Any = slip, half_space, cylinder, coefficient, efficiency
         if self._labels is not None:
-            found = map(self._labels.of, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
+            found = map(self._labels.apply, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
         return Loss(*found)
 
     @property
@@ -164,18 +164,19 @@ class Steady(Values):
     #: as :attr:`reason`
     message = reason
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return (title, rows): of one load its equilibria, of several their number."""
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
-            speeds = Row("V", short(np.asarray(self.V)), unit_of(self._attributes("V")))
-            return f"Steady rolling, {np.size(self.count)} states", [Row("equilibria", found), speeds]
+            speeds = SummaryRow("V", format_value(np.asarray(self.V)), unit_of(self._attributes("V")))
+            return f"Steady rolling, {np.size(self.count)} states", [SummaryRow("equilibria", found), speeds]
         if not self.count:
-            return "Steady rolling: no equilibrium", [Row("reason", str(self.reason))]
+            return "Steady rolling: no equilibrium", [SummaryRow("reason", str(self.reason))]
         rows = []
         for n in range(self.count):
-            rows.append(Row("equilibrium", "stable" if self.stable[n] else "not stable"))
+            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "not stable"))
             for name in ("V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"):
-                rows.append(Row(f"  {name}", f"{self[name][n]:.6g}", unit_of(self._attributes(name))))
+                rows.append(SummaryRow(f"  {name}", f"{self[name][n]:.6g}", unit_of(self._attributes(name))))
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:
@@ -184,7 +185,7 @@ class Steady(Values):
 
         shape = np.shape(self.count)
         dims = ("state",) if len(shape) == 1 else tuple(f"state_{n}" for n in range(len(shape)))
-        dims, coords = self._labels.beside((*_FIELDS, "count"), "given") if self._labels else (dims, {})
+        dims, coords = self._labels.renamed_coords((*_FIELDS, "count"), "given") if self._labels else (dims, {})
         found = {name: self[name] for name in _FIELDS} | {"stable": np.asarray(self.stable).astype(np.int8)}
         rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
         found |= dict(zip(("rate_fast", "rate_slow"), rates, strict=True))
@@ -197,7 +198,7 @@ class Steady(Values):
 
 
 def append_axis(unit: Any) -> Any:
-    """A unit of each load with an axis for its equilibria."""
+    """Return the ``unit`` of each load with an axis for its equilibria; a single unit as it is."""
     return unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
 
 
@@ -205,8 +206,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     """Pack sorted states into arrays over loads and equilibria.
 
     loads : the loads.  states : existing states, sorted.  reasons : data of missing equilibria.  scale : units of
-    the
-    result.  labels : of the arguments, or None.
+    the result.  labels : of the arguments, or None.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows
@@ -237,5 +237,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
     if labels is not None and labels.shape == loads.shape:
         behind_them = {"count": (), "eigenvalues": ("equilibrium", "rate")}
-        found = {name: labels.of(name, each, *behind_them.get(name, ("equilibrium",))) for name, each in found.items()}
+        found = {
+            name: labels.apply(name, each, *behind_them.get(name, ("equilibrium",))) for name, each in found.items()
+        }
     return Steady(found, reasons, scale, labels)

@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.array_types import Floats, Integers
 from ...core.blocks import run_blocks
-from ...core.typed import Floats, Integers
 from ...materials.law_table import LawTable
-from ..contact_table import states_of
+from ..contact_table import evaluate_law
 from .loads import Gains, Loads
 from .resistance import branches
 
@@ -146,7 +146,7 @@ def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any
 
     law : rows of the material.  kappa, mu : parameters.  V : speeds, (n,).  delta : creepage.
     """
-    return states_of(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
+    return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
 
 def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:

@@ -10,12 +10,13 @@ import math
 
 import numpy as np
 
-from ...core.drive import Feedback, over
+from ...core.array_types import Integers, Numbers
+from ...core.drive import Feedback, make_dimensionless
 from ...core.errors import ParameterError
-from ...core.labels import unlabelled
-from ...core.typed import Integers, Numbers
+from ...core.labels import strip_labels
 from ...materials.law_table import LawTable
-from ..parameters import Rolls, framed, scale_of
+from ..parameters import Roller, resolve_model, scale_of
+from ..validity.model_warnings import warn_of_contact
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import Diagnosis, Steady, pack_result
@@ -24,14 +25,14 @@ from .states import Field, States, find_crossings, states_at
 
 
 def steady(
-    roller: Rolls,
+    roller: Roller,
     *,
     force: Numbers | Feedback | None = None,
     torque: Numbers | Feedback | None = None,
     slope: Numbers | None = None,
     V: Numbers | None = None,
 ) -> Steady:
-    """Steady rolling: every pair of V and omega that force and torque hold, and whether it is stable.
+    """Steady rolling: every pair of V and omega at which force and torque balance, and whether it is stable.
 
     Arguments and what rolls broadcast against each other.
 
@@ -40,9 +41,11 @@ def steady(
     roller : a :class:`Scene`, of which alpha or material, kappa, mu and j are used; or a :class:`Cylinder`, in SI units
         per m of its length: V in m/s, omega in rad/s, force and Q in N/m, torque and M in N m/m, ``eigenvalues`` in
         1/s, powers of ``loss`` in W/m.
-    force : over P, along V; torque : over P R, along omega; default 0.  Either may be a :class:`Feedback`.
-    slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta): P sin(theta) adds to
-        ``force``; of a scene kappa becomes kappa/sqrt(cos(theta)), and forces and torques are over P cos(theta).
+    force : along V, of a Scene divided by P; default 0.  It may be a :class:`Feedback`.
+    torque : along omega, of a Scene divided by P R; default 0.  It may be a :class:`Feedback`.
+    slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta), and P sin(theta) adds to
+        ``force``.  Of a Scene kappa becomes kappa/sqrt(cos(theta)), and the divisors of forces and torques have
+        P cos(theta) in place of P.
     V : the speed, in place of one of force and torque, which is found (a slope alone counts as the force given).
 
     Returns
@@ -59,29 +62,37 @@ def steady(
         with a feedback, an array of alphas, shapes that do not broadcast, kappa |force + torque| in (0, 1e-120) or
         above 1e80.
     ConvergenceError
-        If a solve hits its iteration cap.
+        If an iteration reaches its limit.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.steady(vr.presets.RUBBER_CYLINDER, force=1.0)  # N/m
+    >>> found.stable.tolist()
+    [True, False]
 
     Notes
     -----
-    For |force + torque| below the largest M(V) there are two equilibria a hump, on its rising and its falling
-    branch; they need |Q| < mu.  force + torque = 0: V = 0 alone, where ``delta`` and ``eigenvalues`` are those
-    of V -> 0 (that of slip is -inf).  Where equilibria are a continuum (elastic bodies without a drive; Q = mu
-    exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan of V, some 0.02 s a load.
+    For |force + torque| below the largest M(V) there are two equilibria for each maximum of M(V), on its rising and
+    its falling branch; they need |Q| < mu.  For force + torque = 0 there is V = 0 alone, where ``delta`` and
+    ``eigenvalues`` are those of V -> 0 (that of slip is -inf).  Where equilibria are a continuum (elastic bodies
+    without a drive; Q = mu exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan
+    of V, some 0.02 s a load.
 
     Stability is that of (V, omega) under force and torque as named, also where V was given.  Without feedback
-    det = (dQ/domega) M'(V)/j, so the falling branch of a hump is a saddle.
+    det = (dQ/domega) M'(V)/j, so that equilibria on a falling branch of M(V) are saddles.
 
-    Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
-    to that over ``grip`` (``tests/test_steady.py``).
+    The relative error of speeds is below 1e-12/sqrt(1 - |force + torque|/M_top), where M_top is the extremum of M
+    nearby; that of fields which follow from Q is this bound divided by ``grip`` (``tests/test_steady.py``).
     """
     units = scale_of(roller)
-    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V}, units)
+    plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
-    roller, scene, scale = framed(roller, "steady", slope=slope)
-    force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
+    roller, scene, scale = resolve_model(roller, "steady", slope=slope)
+    force, torque, V = (make_dimensionless(name, plain[name], scale) for name in ("force", "torque", "V"))
     loads = loads_of(scene, force, torque, slope, V)
     law = scene.table
-    assert law is not None  # loads_of refuses many
+    assert law is not None  # loads_of refuses arrays of materials
     elastic = law.alpha == 1.0
     gained = bool(loads.gains.V or loads.gains.omega)
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
@@ -105,7 +116,7 @@ def steady(
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
     reasons = Diagnosis(loads, states, count, maximum, neutral)
     found = pack_result(loads, existing, reasons, scale, labels)
-    roller.look(found.V)
+    warn_of_contact(roller, found.V)
     return found
 
 

@@ -1,4 +1,4 @@
-"""Figures of results: :func:`draw` of any dataset that a result or a file holds."""
+"""Figures of results: :func:`draw` of any dataset of a result or a file."""
 
 from __future__ import annotations
 
@@ -12,27 +12,31 @@ if TYPE_CHECKING:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """The figure of a result: a motion, an ensemble or its summary, a run or its Sobol indices, equilibria, stresses,
-    contact states, a table.
+    """Draw a result: a motion, an ensemble or its summary, a run or its Sobol indices, equilibria, stresses, contact
+    states, a table.
+
+    Parameters
+    ----------
+    data : dataset of the result, as of its ``to_xarray()``.
 
     Raises
     ------
     ParameterError
-        A dataset that is none of these, or holds a single state.
+        If the dataset is none of these, or has a single state.
     """
-    from . import many, states
+    from . import ensembles, states
 
-    has = {*data.dims, *data}
+    names = {*data.dims, *data, *data.coords}
     kinds = (
-        ("quantile" in has or {"motion", "t"} <= set(data.dims), many.distributions),
-        ("input" in data.dims, many.sobol_bars),
-        ({"t", "regime"} <= {*has, *data.coords}, states.motion),
+        ("quantile" in names or {"motion", "t"} <= set(data.dims), ensembles.distributions),
+        ("input" in data.dims, ensembles.sobol_bars),
+        ({"t", "regime"} <= names, states.motion),
         ("equilibrium" in data.dims, states.equilibria),
-        ({"p", "tau", "x"} <= {*has, *data.coords}, states.stresses),
-        (bool(states.axes_of(data)), states.over_axes),
+        ({"p", "tau", "x"} <= names, states.stresses),
+        (bool(states.varied_axes(data)), states.field_curves),
     )
-    for holds, figure in kinds:
-        if holds:
+    for applies, figure in kinds:
+        if applies:
             return figure(data)
     found = ", ".join(f"{name}: {size}" for name, size in data.sizes.items()) or "a single state"
     sentence = f"there is nothing to draw over: the result holds {found}; compute it at several speeds or creeps"

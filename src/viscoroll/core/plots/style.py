@@ -1,4 +1,4 @@
-"""What all figures share: size, line styles that differ in grey, titles, labels."""
+"""Common parts of all figures: size, line styles that differ in grey, titles, labels."""
 
 from __future__ import annotations
 
@@ -11,28 +11,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FileError
-from ..files import replacing
+from ..files import replace_file
 from ..symbols import SYMBOLS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: Colour, dashes: the colours differ in lightness too, from black to light.
+#: Styles of curves.  The colours differ in lightness too, from black to light, so that prints in grey are readable.
 LINES: tuple[dict[str, Any], ...] = (
     {"color": "black", "linestyle": "-"},
     {"color": "#1f5fa8", "linestyle": "--"},
     {"color": "#c8642a", "linestyle": "-."},
     {"color": "#6aa84f", "linestyle": (0, (1, 1.2))},
 )
-#: Of quantile bands, from the widest.
+#: Greys of quantile bands, from the widest.
 _GREYS = ("0.85", "0.65", "0.45")
+#: Style of lines of reference, such as zero.
 THIN = {"color": "0.7", "linewidth": 0.6}
 
 
 def new_figure(
     title: str, rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 4.2), **options: Any
 ) -> tuple[Figure, Any]:
-    """A figure with a title line, and its axes; nothing global is touched."""
+    """Return (figure, its axes) without a change of matplotlib's global state.
+
+    title: line on top.  rows, columns: of axes.  size: width and height, inches.  options: of ``Figure.subplots``.
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, dpi=150, layout="constrained")
@@ -40,39 +44,49 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def panels(title: str, count: int, most: int, size: tuple[float, float], **shared: bool) -> tuple[Figure, list[Any]]:
-    """A figure of so many axes of one size, at ``most`` so many beside each other."""
-    columns = min(most, count)
+def new_panels(
+    title: str, count: int, per_row: int, size: tuple[float, float], **options: bool
+) -> tuple[Figure, list[Any]]:
+    """Return (figure, list of axes of one size).
+
+    title: line on top.  count: number of axes.  per_row: largest number in a row.  size: of each, inches.  options: of
+    ``Figure.subplots``.
+    """
+    columns = min(per_row, count)
     rows = -(-count // columns)
     whole = max(6.4, size[0] * columns), 0.8 + size[1] * rows
-    figure, grid = new_figure(title, rows, columns, whole, squeeze=False, **shared)
+    figure, grid = new_figure(title, rows, columns, whole, squeeze=False, **options)
     for axes in grid.flat[count:]:
         axes.remove()
     return figure, [*grid.flat[:count]]
 
 
-def dashed(axes: Any, x: NDArray, y: NDArray, held: tuple[float, float] | None, **line: Any) -> list[Any]:
-    """Lines of matplotlib: a curve where |x| lies between the ends of what data ``held``, and dashed beyond."""
-    if held is None:
+def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, float] | None, **line: Any) -> list[Any]:
+    """Plot a curve, solid where |x| lies in a measured band and dashed outside; return its lines.
+
+    axes: of matplotlib.  x, y: points of the curve.  band: lowest and highest measured |x|, None without.  line: style.
+    """
+    if band is None:
         return list(axes.plot(x, y, **line))
-    beyond = (np.abs(x) < held[0]) | (np.abs(x) > held[1])
-    seen = np.where(beyond, np.nan, y)
-    beyond[1:], beyond[:-1] = beyond[1:] | beyond[:-1], beyond[:-1] | beyond[1:]  # up to its neighbours
-    drawn = axes.plot(x, seen, **line | {"linestyle": "-"})
-    return [*drawn, *axes.plot(x, np.where(beyond, y, np.nan), **line | {"linestyle": "--", "label": None})]
+    outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
+    solid = np.where(outside, np.nan, y)
+    # The dashed curve begins at the last measured point.
+    outside[1:], outside[:-1] = outside[1:] | outside[:-1], outside[:-1] | outside[1:]
+    drawn = axes.plot(x, solid, **line | {"linestyle": "-"})
+    return [*drawn, *axes.plot(x, np.where(outside, y, np.nan), **line | {"linestyle": "--", "label": None})]
 
 
-def by_factors(x: NDArray[Any]) -> bool:
-    """Whether places lie more evenly on a logarithmic axis than on a linear one."""
-    places = np.unique(x)
-    if places.size < 3 or places[0] <= 0.0:
+def spaced_by_factors(x: NDArray[Any]) -> bool:
+    """Whether the numbers ``x`` are spaced more evenly on a logarithmic axis than on a linear one."""
+    points = np.unique(x)
+    if points.size < 3 or points[0] <= 0.0:
         return False
-    linear, logarithmic = np.diff(places), np.diff(np.log(places))
+    linear, logarithmic = np.diff(points), np.diff(np.log(points))
     return bool(logarithmic.std() / logarithmic.mean() < linear.std() / linear.mean())
 
 
 def log_ticks(axis: Any) -> None:
-    """Labels of a logarithmic axis that do not meet: 1, 2, 5 in plain digits below two decades, else powers of ten."""
+    """Set labels of a logarithmic ``axis`` that do not overlap: 1, 2, 5 as digits below two decades, else powers."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
@@ -82,8 +96,21 @@ def log_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+def zero_line(axes: Any) -> None:
+    """Draw a thin line at 0 into ``axes``."""
+    axes.axhline(0.0, **THIN)
+
+
+def small_legend(axes: Any, **options: Any) -> None:
+    """Add a legend without a frame to ``axes``; ``options`` as of ``Axes.legend``."""
+    axes.legend(frameon=False, fontsize="small", **options)
+
+
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
-    """Quantiles over t, a row a level: pairs of them as bands, a middle one as a line."""
+    """Plot quantiles over time: pairs of levels as bands, the middle one as a line.
+
+    axes: of matplotlib.  t: times, (n,).  levels: probabilities, ascending, (k,).  values: quantiles, (k, n).
+    """
     for n in range(levels.size // 2):
         text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
         grey = _GREYS[min(n, len(_GREYS) - 1)]
@@ -91,31 +118,39 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
     if levels.size % 2:
         n = levels.size // 2
         axes.plot(t, values[n], ".-", color="black", label=f"{100 * levels[n]:g} %")
-    axes.axhline(0.0, **THIN)
+    zero_line(axes)
     if levels.size:
-        axes.legend(frameon=False, fontsize="small")
+        small_legend(axes)
 
 
-def labelled(name: str, units: str = "1", symbol: str = "") -> str:
-    """Axis label of a quantity: its symbol, or its name in words, and its unit if it has one."""
+def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
+    """Return the label of an axis: symbol or name of a quantity, and its unit.
+
+    name: of the quantity.  units: "1" of a dimensionless one.  symbol: LaTeX, where the table of symbols has none.
+    """
     symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
-    # an SI quantity is not the ratio that its symbol may spell out
+    # A symbol such as p/E' stands for a ratio; in SI units the quantity is p.
     symbol = symbol.partition("/")[0] if units != "1" else symbol
     return with_unit(f"${symbol}$" if symbol else name.replace("_", " "), units, ", ")
 
 
-def axis(values: Any) -> str:
-    """Axis label of a variable of a dataset."""
-    return labelled(str(values.name), values.attrs.get("units", "1"), values.attrs.get("symbol", ""))
+def variable_label(variable: Any) -> str:
+    """Return the label of an axis for a ``variable`` of a dataset."""
+    return axis_label(str(variable.name), variable.attrs.get("units", "1"), variable.attrs.get("symbol", ""))
 
 
-def with_unit(text: str, units: str, between: str = " ") -> str:
-    """Text, and behind it a unit like "m s-1", but for numbers ("1")."""
-    return text if units == "1" else text + between + re.sub(r"(-\d)", r"$^{\1}$", units)
+def with_unit(text: str, units: str, separator: str = " ") -> str:
+    """Return ``text``, a ``separator`` and ``units`` as "m s-1" with exponents; the text alone for the units "1"."""
+    return text if units == "1" else text + separator + re.sub(r"(-\d)", r"$^{\1}$", units)
 
 
 def save(figure: Figure, path: str | PathLike[str]) -> None:
-    """Write a figure, whole or not at all; the suffix of ``path`` chooses the format.
+    """Write a figure, whole or not at all.
+
+    Parameters
+    ----------
+    figure : of matplotlib.
+    path : its suffix chooses the format.
 
     Raises
     ------
@@ -126,5 +161,5 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     suffix = Path(path).suffix
     if suffix.removeprefix(".").lower() not in formats:
         raise FileError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         figure.savefig(temporary)

@@ -16,10 +16,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
-from ...core.blocks import heed, thread_count
-from ...core.checks import yes_or_no
+from ...core.blocks import cancel_with, thread_count
+from ...core.checks import check_bool
 from ...core.errors import FileError, Interrupted, ParameterError, ViscorollError
-from ...core.extras import imported
+from ...core.extras import import_extra
 from .evaluate import look_at_materials
 from .runfile import Run
 from .store import Store, locked
@@ -86,9 +86,9 @@ def run_ensemble(
     of kills (``tests/runs/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
     """
     if progress != "lines":
-        progress = yes_or_no("progress", progress)
+        progress = check_bool("progress", progress)
     store = Store(Path(path).absolute(), run)
-    imported("zarr", "zarr", "runs")
+    import_extra("zarr", "zarr", "runs")
     store.refuse_other()
     with _executor(store, cluster, threads) as (pool, workers, shared):  # a cluster that is not there is refused first
         look_at_materials(run)
@@ -133,7 +133,7 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
     """(executor, workers, the store as tasks are handed it)."""
     if cluster is None:
         ended = threading.Event()
-        pool = ThreadPoolExecutor(thread_count(threads), initializer=heed, initargs=(ended,))
+        pool = ThreadPoolExecutor(thread_count(threads), initializer=cancel_with, initargs=(ended,))
         try:
             yield pool, thread_count(threads), store
         except BaseException:
@@ -144,7 +144,7 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
         return
     if cluster != "local" and not _ADDRESS.fullmatch(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
-    distributed = imported("distributed", "distributed", "cluster")
+    distributed = import_extra("distributed", "distributed", "cluster")
     try:
         with _silent("distributed", "distributed.client"), _client(distributed, cluster, threads) as client:
             workers = sum(client.nthreads().values())

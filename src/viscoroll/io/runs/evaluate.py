@@ -9,12 +9,12 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ...contact_law.assumptions import passage
 from ...contact_law.contact import contact
-from ...contact_law.known import warn_of_share
-from ...core.typed import Floats
-from ...motion.batch import ensemble
-from ...motion.many import Ensemble
+from ...contact_law.validity.assumptions import transit_frequency
+from ...contact_law.validity.model_warnings import warn_of_contact, warn_of_unmeasured_starts
+from ...core.array_types import Floats
+from ...motion.ensemble import ensemble
+from ...motion.ensemble_result import Ensemble
 from ..sampling import points
 from .rollers import drive_of, measured_bands, roller_of
 from .runfile import START, Run
@@ -72,8 +72,8 @@ def look_at_materials(run: Run) -> None:
     content = run.inputs.filled(medians)
     if "V0" in content["start"]:
         bands = measured_bands(run.path, content)
-        if not (bands and warn_of_share(_share_outside(run), bands)):
-            roller_of(run.path, content).look(run.inputs.largest("V0"))
+        if not (bands and warn_of_unmeasured_starts(_share_outside(run), bands)):
+            warn_of_contact(roller_of(run.path, content), run.inputs.largest("V0"))
     settings = msgspec.structs.replace(run.settings, summaries=("V",), keep="summaries", method="integrate")
     roll_inputs(replace(run, settings=settings), medians)
 
@@ -90,7 +90,7 @@ def _share_outside(run: Run) -> float:
     V0 = np.abs(content["start"]["V0"])
     scene = roller.scene()
     lam = contact(scene, V0 / roller.scale["V"], delta=0.0, fields="lam").lam
-    rate = passage(V0, lam * getattr(roller, "like", roller).R / scene.kappa)
+    rate = transit_frequency(V0, lam * getattr(roller, "like", roller).R / scene.kappa)
     bands = measured_bands(run.path, content).values()
     outside = [(rate < low) | (rate > high) for low, high in bands]
     return float(np.mean(np.logical_or.reduce(np.broadcast_arrays(*outside)) & (V0 > 0.0)))

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ...core.errors import FileError
-from ...core.extras import imported
-from ...core.files import replacing
+from ...core.extras import import_extra
+from ...core.files import replace_file
 from .results import open_run
 from .store import MOTIONS
 from .verify import verify
@@ -45,7 +45,7 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
     summaries, verdict = open_run(store).summaries, verify(store)
     if not verdict.ok:
         raise FileError(store, "; ".join(str(verdict).splitlines()[-2:]))
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         temporary.write_bytes(bytes(summaries.to_netcdf(engine="h5netcdf")))
         if (Path(store) / MOTIONS).is_dir():
             _append_motions(Path(store), temporary)
@@ -54,7 +54,7 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 def _append_motions(store: Path, path: Path) -> None:
     import h5netcdf
 
-    zarr = imported("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "zarr", "runs")
 
     source = zarr.open_group(store, mode="r", path=MOTIONS, use_consolidated=False)
     arrays = dict(source.arrays())

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.typed import Floats
+from ...core.array_types import Floats
 from ..sampling import LARGEST, SMALLEST
 
 #: in place of a time of a drive: that before once more, so that the value jumps

@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 
 from ...core.errors import FileError
-from ...core.files import seal, seal_holds, write_bytes
+from ...core.files import seal, seal_matches, write_bytes
 from ...motion.summaries import Summary
 
 #: folder of the records in a store
@@ -51,7 +51,7 @@ def read_record(path: Path) -> Record | None:
     """The record, or None where it is missing or damaged in any way."""
     try:
         stored = path.read_bytes()
-        if not seal_holds(stored):
+        if not seal_matches(stored):
             return None
         content = zlib.decompressobj().decompress(stored)  # the seal is what it leaves over
         return msgspec.msgpack.decode(content, type=Record, dec_hook=_to_array)

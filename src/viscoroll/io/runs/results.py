@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core.errors import FileError, MotionStatus
-from ...core.extras import imported
-from ...core.results import Row, Shown, column, unit_of
+from ...core.extras import import_extra
+from ...core.results import Result, SummaryRow, column_name, unit_of
 from .store import MOTIONS, problems
 from .verify import start_of
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _PARTS = ("mean", "std", "min", "max")
 
 
-class RunResults(Shown):
+class RunResults(Result):
     """Results of a run in a folder; what :func:`open_run` gives back.
 
     Attributes
@@ -73,32 +73,32 @@ class RunResults(Shown):
         import pandas as pd
 
         data, tables = self.summaries, []
-        time = column("t", unit_of(data["t"].attrs))
+        time = column_name("t", unit_of(data["t"].attrs))
         for name in self.names:
             columns: dict[Any, Any] = {part: np.atleast_1d(data[f"{name}_{part}"].values) for part in _PARTS}
             quantiles = zip(data["quantile"].values, data[f"{name}_quantiles"].values, strict=True)
             columns |= {float(level): np.atleast_1d(values) for level, values in quantiles}
             t = data["t"].values if data[f"{name}_mean"].ndim else [np.nan]
-            named = column(name, unit_of(data[f"{name}_mean"].attrs))
+            named = column_name(name, unit_of(data[f"{name}_mean"].attrs))
             tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product([[named], t], names=["quantity", time])))
         return pd.concat(tables)
 
-    def _card(self) -> tuple[str, list[Row]]:
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
         data = self.summaries
         t, about = data["t"], data.attrs
         rows = [
-            Row("path", str(self.path)),
-            Row("drawn by", f"{about['design']}, seed {about['seed']}"),
-            Row("t", f"{t.size} times to {float(t[-1]):.6g}", unit_of(t.attrs)),
+            SummaryRow("path", str(self.path)),
+            SummaryRow("drawn by", f"{about['design']}, seed {about['seed']}"),
+            SummaryRow("t", f"{t.size} times to {float(t[-1]):.6g}", unit_of(t.attrs)),
         ]
         for name in self.names:
             mean, std = (np.atleast_1d(data[f"{name}_{part}"].values)[-1] for part in ("mean", "std"))
             at = "at the end: " if data[f"{name}_mean"].ndim else ""
-            rows.append(Row(name, f"{at}mean {mean:.6g}, std {std:.3g}", unit_of(data[f"{name}_mean"].attrs)))
+            rows.append(SummaryRow(name, f"{at}mean {mean:.6g}, std {std:.3g}", unit_of(data[f"{name}_mean"].attrs)))
         ended = zip(data["status"].values, data["ended"].values, strict=True)
-        rows += [Row("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
+        rows += [SummaryRow("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
         kept = "every motion" if (self.path / MOTIONS).is_dir() else "summaries"
-        return f"Results of a run of {len(self)} motions", [*rows, Row("kept", kept)]
+        return f"Results of a run of {len(self)} motions", [*rows, SummaryRow("kept", kept)]
 
 
 def open_run(path: str | PathLike[str]) -> RunResults:
@@ -122,7 +122,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     """
     import xarray as xr
 
-    imported("zarr", "zarr", "runs")
+    import_extra("zarr", "zarr", "runs")
     root = Path(path)
     start = start_of(root)
     if found := problems(root, "end", start.run, start.motions):

@@ -10,8 +10,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from ...contact_law.parameters import Parameters, Rolls
-from ...core.checks import checked
+from ...contact_law.parameters import Parameters, Roller
+from ...core.checks import check_array
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
@@ -20,11 +20,11 @@ from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
-from ..config import body_of
+from ..config import make_roller
 
 
 @dataclass(frozen=True, eq=False)
-class Rollers(Rolls):
+class Rollers(Roller):
     """Cylinders each of a material of its own, in SI units.
 
     like : their numbers, with one of their materials.
@@ -55,8 +55,8 @@ class Rollers(Rolls):
     def scene(self) -> Parameters:
         return self._scene
 
-    def tilted(self, slope: Any) -> Self:
-        return replace(self, like=self.like.tilted(slope))
+    def on_slope(self, slope: Any) -> Self:
+        return replace(self, like=self.like.on_slope(slope))
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
@@ -66,10 +66,10 @@ class Rollers(Rolls):
         return found
 
 
-def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
+def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
     """What rolls, one or one a motion; raises ParameterError, of a material FileError."""
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
-    one = body_of(path, content, {name: typical for name, (typical, _) in bodies.items()})
+    one = make_roller(path, content, {name: typical for name, (typical, _) in bodies.items()})
     if not isinstance(one, Cylinder):
         return one
     each = {name: body for name, (_, body) in bodies.items()}
@@ -112,9 +112,9 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical, typical
     if thickness is not None:
-        thickness = checked("thickness", thickness, low=0.0, strict=True)
-    E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
-    return typical, Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref, thickness)
+        thickness = check_array("thickness", thickness, low=0.0, strict=True)
+    E = check_array("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
+    return typical, Solid(E, check_array("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref, thickness)
 
 
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:

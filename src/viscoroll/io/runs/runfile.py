@@ -28,15 +28,17 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from ...core.errors import FileError, ParameterError, refuse_unknown
-from ...core.sections import fault, read
-from ...core.typed import Floats
+from ...core.array_types import Floats
+from ...core.errors import FileError, ParameterError, check_names
+from ...core.sections import read_toml, section_error
 from ...materials.file import as_toml, materials_of
-from ...motion.batch import FIELDS, FLOW_PAYS, Asked, begin
+from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
-from ...motion.driven import Drive
+from ...motion.drive import Drive
+from ...motion.ensemble import FIELDS
+from ...motion.problem import SolverOptions, make_problem
 from ...motion.summaries import QUANTITIES
-from ..config import check_sections, located
+from ..config import check_sections, locate_error
 from ..sampling import Design
 from ..tables import spread
 from .inputs import Inputs, inputs_in
@@ -218,14 +220,14 @@ def read_run(path: str | PathLike[str]) -> Run:
         the wrong type or with a unit, a range that leaves what the input allows, a sample
         that cannot be read: each with its line.
     """
-    path, content = Path(path), read(path)
+    path, content = Path(path), read_toml(path)
     inputs = inputs_of(path, content)
     medians = inputs.filled(inputs.medians)
     sections = {"start": StartSection, "drive": DriveSection, "run": RunSection, "correlation": None}
     check_sections(path, medians, sections)
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
-            raise fault(path, "", name, f"section [{name}] is missing: it needs {needed}")
+            raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
     materials = materials_of(path, medians)
     # those that are certain are read once
     known = {name: found for name, found in materials.items() if not inputs_in(inputs.content[name])}
@@ -235,7 +237,7 @@ def read_run(path: str | PathLike[str]) -> Run:
         given = settings.t
         times = output_times(spread(**msgspec.to_builtins(given)) if isinstance(given, TimesSection) else given)
     except ParameterError as error:
-        raise fault(path, "run", "t", str(error)) from error
+        raise section_error(path, "run", "t", str(error)) from error
     text = path.read_text(encoding="utf-8-sig")
     digest = _digest(settings, times, content, [as_toml(each) for each in known.values()], inputs)
     run = Run(path, text, settings, inputs, times, digest)
@@ -248,15 +250,15 @@ def _check_settings(run: Run) -> None:
     """Raise FileError for what msgspec cannot check of [run]."""
     settings = run.settings
     try:
-        refuse_unknown("fields", settings.fields, FIELDS, "a field")
-        refuse_unknown("summaries", settings.summaries, QUANTITIES, "a summary")
+        check_names("fields", settings.fields, FIELDS, "a field")
+        check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     except ParameterError as error:
-        raise fault(run.path, "run", error.name, str(error)) from error
+        raise section_error(run.path, "run", error.name, str(error)) from error
     if not settings.summaries:
-        raise fault(run.path, "run", "summaries", "summaries = []: must name at least one quantity")
+        raise section_error(run.path, "run", "summaries", "summaries = []: must name at least one quantity")
     if settings.method == "flow" and not run.mappable:
         problem = "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, and where scenes differ"
-        raise fault(run.path, "run", "method", problem)
+        raise section_error(run.path, "run", "method", problem)
 
 
 def _check_inputs(run: Run) -> None:
@@ -265,17 +267,19 @@ def _check_inputs(run: Run) -> None:
     try:
         _begin(run, medians)
     except ParameterError as error:
-        raise located(run.path, inputs.content, error) from error
+        raise locate_error(run.path, inputs.content, error) from error
     for at in inputs_in(inputs.content):
         ends = inputs.ends(at.name)
         try:
             _begin(run, medians | {at.name: ends})
         except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
-                raise located(run.path, inputs.content, error) from error
+                raise locate_error(run.path, inputs.content, error) from error
             reaches = f"{at.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
             problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
-            raise fault(run.path, at.section, at.key, f"{reaches}: {problem}; add truncate = [low, high]") from error
+            raise section_error(
+                run.path, at.section, at.key, f"{reaches}: {problem}; add truncate = [low, high]"
+            ) from error
     wholes = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *wholes):
         try:
@@ -284,7 +288,7 @@ def _check_inputs(run: Run) -> None:
             more = ParameterError(
                 error.name, error.value, error.allowed, f"{error} in every draw: truncate so that it is"
             )
-            raise located(run.path, inputs.content, more) from error
+            raise locate_error(run.path, inputs.content, more) from error
 
 
 def _begin(run: Run, values: dict[str, Any]) -> None:
@@ -294,9 +298,9 @@ def _begin(run: Run, values: dict[str, Any]) -> None:
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
             raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
-    asked = Asked(settings.rtol, settings.rest, 1)
+    options = SolverOptions(settings.rtol, settings.rest, 1, None, settings.unsteady, settings.rested)
     drive = Drive(**drive_of(content))
-    begin(roller, start, drive, run.t[-1], asked, unsteady=settings.unsteady, rested=settings.rested)
+    make_problem(roller, start, drive, run.t[-1], options)
 
 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:

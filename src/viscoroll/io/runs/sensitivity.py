@@ -14,11 +14,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.array_types import Floats
 from ...core.blocks import run_blocks
-from ...core.checks import whole, yes_or_no
+from ...core.checks import check_bool, check_integer
 from ...core.errors import MotionStatus, ParameterError
-from ...core.results import column, unit_of
-from ...core.typed import Floats
+from ...core.results import column_name, unit_of
 from ...motion.export import column_attributes, provenance
 from ...motion.summaries import QUANTITIES
 from ..sampling import points
@@ -81,8 +81,10 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     from .store import about
 
     names = _independent(run.inputs)
-    progress = yes_or_no("progress", progress)
-    base = 1 << (whole("n", n, 16, 1 << 16) - 1).bit_length()  # a Sobol sequence is even only over so many points
+    progress = check_bool("progress", progress)
+    base = (
+        1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
+    )  # a Sobol sequence is even only over so many points
     rows = base * (len(names) + 2)
     summaries = tuple(dict.fromkeys(run.settings.summaries))
     settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
@@ -202,4 +204,4 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
         frame.insert(0, "quantity", name)
         over = ["t"] * ("t" in frame)
         tables.append(frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable"))
-    return pd.concat(tables).rename(columns={"t": column("t", unit_of(indices["t"].attrs))})
+    return pd.concat(tables).rename(columns={"t": column_name("t", unit_of(indices["t"].attrs))})

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from ...core.errors import FileError
 from ...core.files import write_bytes
-from ...motion.many import Ensemble
-from ...motion.summaries import Summary, merged, summarise, summary_dataset
+from ...motion.ensemble_result import Ensemble
+from ...motion.summaries import Summary, merge_summaries, summarise, summary_dataset
 from . import zarr_files
 from .columns import attributes
 from .evaluate import roll_block, roll_inputs
@@ -113,7 +113,9 @@ class Store:
 
     def end(self) -> None:
         """Merge the summaries of all blocks and write them; raises FileError."""
-        dataset = summary_dataset(merged(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si)
+        dataset = summary_dataset(
+            merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
+        )
         files = zarr_files.dataset_files(dataset.assign_attrs(about(self.run)))
         files[".zmetadata"] = zarr_files.consolidated(files | metadata(self.run))
         self._keep("end", files)

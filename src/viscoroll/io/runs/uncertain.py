@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.errors import FileError
-from ...core.extras import imported
+from ...core.extras import import_extra
 from ...core.scale import si_unit
-from ...core.sections import fault, hint, refuse_unknown
-from ...core.typed import Floats
+from ...core.sections import check_keys, section_error, suggestion
 from ...materials.file import SECTIONS
 from ..config import SCHEMA
-from ..measurements import is_heading, quantity, read_table
+from ..measurements import column_in_unit, named_table
 from .inputs import Distribution, Input, Inputs
 
 #: what the names of inputs of a section begin with
@@ -61,8 +60,8 @@ class _Reader:
             return given
         if not given.keys() & _ONE:
             for name in given:
-                if near := hint(name, _ONE):
-                    raise fault(self.path, section, key, f"{key}: unknown key {name!r}{near}")
+                if near := suggestion(name, _ONE):
+                    raise section_error(self.path, section, key, f"{key}: unknown key {name!r}{near}")
             return {name: self.part(each, f"{section}.{key}", name, (*words, name)) for name, each in given.items()}
         own = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
         found = Input(PREFIXES.get(section.partition(".")[0], "") + own, section, key)
@@ -73,7 +72,7 @@ class _Reader:
         return found
 
     def fault(self, at: Input, problem: str) -> FileError:
-        return fault(self.path, at.section, at.key, f"{at.name}: {problem}")
+        return section_error(self.path, at.section, at.key, f"{at.name}: {problem}")
 
     @np.errstate(all="ignore")  # scipy may overflow on what is refused here
     def distribution(self, at: Input, given: dict[str, Any]) -> Distribution:
@@ -96,12 +95,10 @@ class _Reader:
         found = getattr(stats, which, None) if isinstance(which, str) else None
         if not isinstance(found, stats.rv_continuous):
             known = [key for key, value in vars(stats).items() if isinstance(value, stats.rv_continuous)]
-            near = hint(str(which), known)
+            near = suggestion(str(which), known)
             raise self.fault(at, f"distribution {which!r:.40} is no continuous one of scipy.stats{near}")
         shapes = [shape.strip() for shape in (found.shapes or "").split(",") if shape.strip()]
-        refuse_unknown(
-            self.path, f"{at.section}.{at.key}", given, ("distribution", *shapes, "loc", "scale", "truncate")
-        )
+        check_keys(self.path, f"{at.section}.{at.key}", given, ("distribution", *shapes, "loc", "scale", "truncate"))
         values = {key: value for key, value in given.items() if key not in ("distribution", "truncate")}
         for key, value in values.items():
             if not _is_number(value) or not math.isfinite(value):
@@ -116,7 +113,7 @@ class _Reader:
 
     def column(self, at: Input, given: dict[str, Any]) -> None:
         """File a column of a CSV, netCDF or Parquet file."""
-        refuse_unknown(self.path, f"{at.section}.{at.key}", given, ("file", "column", "distribution"))
+        check_keys(self.path, f"{at.section}.{at.key}", given, ("file", "column", "distribution"))
         file, column = given.get("file"), given.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
             raise self.fault(at, "must name a distribution, or a file and a column")
@@ -142,11 +139,11 @@ def _is_number(value: Any) -> bool:
 def read_column(path: Path, column: str, unit: str) -> Floats:
     """One column of numbers; of a CSV in this unit, if the file gives one."""
     if path.suffix == ".csv":
-        values = quantity(read_table(path, partial(is_heading, (column,))), column, unit)
+        values = column_in_unit(named_table(path, (column,)), column, unit)
     elif path.suffix == ".parquet":
         import pandas as pd
 
-        imported("pyarrow", "pyarrow", "parquet")
+        import_extra("pyarrow", "pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
     elif path.suffix == ".nc":
         import xarray as xr
@@ -164,27 +161,33 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
     """The same under the Gaussian copula of [correlation]; raises FileError."""
     given, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(given, dict):
-        raise fault(path, "", "correlation", "correlation: must be a section [correlation] with lines like V0.mu = 0.5")
+        raise section_error(
+            path, "", "correlation", "correlation: must be a section [correlation] with lines like V0.mu = 0.5"
+        )
     for a, row in given.items():
         if not isinstance(row, dict):
-            raise fault(path, "correlation", a, f"{a} = {row!r:.40}: must be a line like V0.mu = 0.5")
+            raise section_error(path, "correlation", a, f"{a} = {row!r:.40}: must be a line like V0.mu = 0.5")
     pairs = {(a, b): value for a, row in given.items() for b, value in row.items()}
     names = tuple(name for name in random if any(name in pair for pair in pairs))
     matrix = np.eye(len(names))
     for (a, b), value in pairs.items():
         for name in (a, b):
             if name not in random:
-                problem = f"{name!r} has no distribution: must be one of {', '.join(random)}{hint(name, random)}"
-                raise fault(path, "correlation", a, problem)
+                problem = f"{name!r} has no distribution: must be one of {', '.join(random)}{suggestion(name, random)}"
+                raise section_error(path, "correlation", a, problem)
         if a == b or not _is_number(value) or not -1.0 < value < 1.0:
-            raise fault(path, "correlation", a, f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)")
+            raise section_error(
+                path, "correlation", a, f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)"
+            )
         if pairs.get((b, a), value) != value:
             problem = f"{a}.{b} = {value!r}: must be that of {b}.{a} = {pairs[b, a]!r:.40}"
-            raise fault(path, "correlation", a, problem)
+            raise section_error(path, "correlation", a, problem)
         n, m = names.index(a), names.index(b)
         matrix[n, m] = matrix[m, n] = value
     try:
         mixing: Any = np.linalg.cholesky(matrix) if names else None
     except np.linalg.LinAlgError:
-        raise fault(path, "", "correlation", "[correlation] no joint distribution has these correlations") from None
+        raise section_error(
+            path, "", "correlation", "[correlation] no joint distribution has these correlations"
+        ) from None
     return replace(inputs, correlated=names, mixing=mixing)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...core.extras import imported
+from ...core.extras import import_extra
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,7 +21,7 @@ _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None = None) -> dict[str, bytes]:
     """The group of all ``count`` motions without their chunks, or the chunks of block ``number``, whose they are."""
-    zarr = imported("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=motions.attrs)
@@ -43,7 +43,7 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
 
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
     """All files of a small dataset."""
-    zarr = imported("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     dataset.to_zarr(zarr.storage.MemoryStore(files), zarr_format=2, consolidated=False)

@@ -1,4 +1,4 @@
-"""Tables of the contact law: files of one material or pair, exact, and grids for look-up blocks of other programs.
+"""Tables of the contact law: exact files of one material or pair, and grids for look-up blocks of other programs.
 
     import viscoroll as vr
     law = vr.tables.law(vr.presets.RUBBER_CYLINDER)
@@ -9,7 +9,7 @@
     grid = vr.tables.build(roller, V=vr.tables.spread(1e-3, 10.0, 201, "log"), delta=[-0.01, 0.0, 0.01])
     vr.tables.export(grid, "rubber.txt")  # Modelica
 
-Read in this order: :mod:`law`, :mod:`nodes`, :mod:`build`, :mod:`schema` (what a grid's file holds),
+Modules, in the order of reading: :mod:`law`, :mod:`nodes`, :mod:`build`, :mod:`schema` (file of a grid),
 :mod:`interpolate`, :mod:`store` (atomic save, checked load), :mod:`export` (formats of other programs).
 """
 

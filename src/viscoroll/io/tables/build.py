@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
+from ...core.array_types import Floats
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...materials.law_file import described, law_of
 from ...materials.law_store import content_of
@@ -24,14 +24,17 @@ from .nodes import MAX_NODES, increasing
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Random points that a stated error is the largest over, and their seed: it can be had again.
-SAMPLE, SEED = 100_000, 20260102
-#: Fields whose difference of two methods is relative at every node.  The printed forms of the others lose relative
-#: digits where they are small beside their largest value (kernels/printed/law.py).
-RELATIVE = ("lam", "zeta", "delta_star")
-#: of a scene, and of a cylinder: the numbers among the attributes, and what all is counted in
-_NUMBERS = ("alpha", "kappa", "mu"), ("R", "m", "mu", "load")
-_UNITS = "dimensionless", "in SI units, per m of length"
+#: Random points over which a stated error is the largest.
+SAMPLE_SIZE = 100_000
+#: Seed of these points, so that the error can be reproduced.
+SEED = 20260102
+#: Fields whose difference of two methods is relative at every node.  The printed forms of other fields lose relative
+#: digits where they are small beside their largest value (kernels/printed/law.py), which is their scale.
+RELATIVE_FIELDS = ("lam", "zeta", "delta_star")
+#: Attributes with the parameters of a scene.
+_SCENE_NUMBERS = ("alpha", "kappa", "mu")
+#: Attributes with the parameters of a cylinder.
+_CYLINDER_NUMBERS = ("R", "m", "mu", "load")
 
 
 def build(
@@ -43,19 +46,20 @@ def build(
     method: Literal["table", "direct"] = "table",
     command: str | None = None,
 ) -> xr.Dataset:
-    """Table of the contact over (V, delta) or (V, delta, alpha), with what interpolation makes of it.
+    """Table of the contact over (V, delta) or (V, delta, alpha), with the errors of interpolation in it.
 
     Parameters
     ----------
-    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; a law, of :func:`viscoroll.load_law` or
-        :func:`viscoroll.io.tables.law`: then kappa = mu = 1: V is kappa V, delta kappa delta/mu, Q Q/mu and M
-        kappa M.  Its numbers are single.
+    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or a law, of :func:`viscoroll.load_law` or
+        :func:`viscoroll.io.tables.law`, with kappa = mu = 1: then V is kappa V, delta kappa delta/mu, Q Q/mu and M
+        kappa M.  Its parameters are numbers, no arrays.
     V : speeds of the axis, > 0, strictly increasing; for V < 0 see the signs of Eqs. (17), (18).
-    delta : creep ratios, any sign, strictly increasing.
+    delta : creepages, any sign, strictly increasing.
     alpha : strictly increasing, in place of that of a scene without a material.
     method : as of :func:`contact`: "table", from the rows of the law, or "direct", by root solves of the printed
-        equations, of one relaxation time; the rows are then evaluated too, and ``difference_from_rows`` of a field is
-        the largest difference: of lam, zeta and delta_star relative, of other fields over their largest value.
+        equations, of one relaxation time.  With "direct" the rows are evaluated too, and ``difference_from_rows`` of a
+        field is the largest difference: of lam, zeta and delta_star relative, of other fields divided by their largest
+        value.
     command : recorded in ``history``; default: the command line of this process.
 
     Returns
@@ -64,7 +68,7 @@ def build(
         beta and Q over all axes; lam, epsilon, M, its parts in both bodies, delta_star and zeta over V (and alpha);
         units, symbols, equations in the attributes.  Nodes have the bits of :func:`contact`.  ``spline_error`` of a
         field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of linear interpolation in
-        the axes as they stand, over 10^5 random points in random cells; ``spline_error_at`` and ``linear_error_at``
+        the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and ``linear_error_at``
         name the point, as in "V = 0.31, delta = 0.0042".
 
     Raises
@@ -73,13 +77,21 @@ def build(
         Where ``what`` is none of these or has arrays, an axis is out of range or does not increase; an unknown method,
         or "direct" of a material.
 
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> grid = vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1])
+    >>> grid["Q"].dims
+    ('V', 'delta')
+
     Notes
     -----
     For programs that look up tables.  The file of a law is smaller and exact (:func:`viscoroll.io.tables.law`).
     """
     import xarray as xr
 
-    what = _single(what)
+    what = _roller_of(what)
+    si = isinstance(what, Cylinder)
     axes = {"V": increasing("V", V, unit=what.scale, low=0.0, strict=True), "delta": increasing("delta", delta)}
     if alpha is not None:
         if isinstance(what, Cylinder) or what.material is not None:
@@ -87,20 +99,21 @@ def build(
         axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
     if math.prod(nodes.size for nodes in axes.values()) > MAX_NODES:
         raise ParameterError(", ".join(axes), "their product", f"at most {MAX_NODES} nodes in all")
-    fields = _on_nodes(what, axes, method)
-    si = isinstance(what, Cylinder)
     plane = tuple(name for name in axes if name != "delta")
     data = {
         name: schema.variable(name, plane if name in schema.PLANE else tuple(axes), values, si)
-        for name, values in fields.items()
+        for name, values in _evaluate_nodes(what, axes, method).items()
     }
     coordinates = {name: schema.variable(name, (name,), nodes, si) for name, nodes in axes.items()}
-    title = f"Contact of a viscoelastic cylinder rolling with partial slip, {_UNITS[si]}"
-    of = ", ".join(f"{name} {nodes.size} in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items())
-    table = xr.Dataset(data, coordinates, schema.global_attributes(title, of, command) | {"method": method})
+    units = "in SI units, per m of length" if si else "dimensionless"
+    title = f"Contact of a viscoelastic cylinder rolling with partial slip, {units}"
+    grid = ", ".join(f"{name} {nodes.size} in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items())
+    table = xr.Dataset(data, coordinates, schema.global_attributes(title, grid, command) | {"method": method})
+    numbers = _CYLINDER_NUMBERS if si else _SCENE_NUMBERS
+    table.attrs |= {name: float(getattr(what, name)) for name in numbers if name not in axes}
     material = what.pair if isinstance(what, Cylinder) else what.material
-    numbers = {name: float(getattr(what, name)) for name in _NUMBERS[si] if name not in axes}
-    table.attrs |= numbers | ({} if material is None else {"material": described(material)})
+    if material is not None:
+        table.attrs["material"] = described(material)
     _state_errors(table, what)
     if method == "direct":
         for name, difference in differences(table, what).items():
@@ -108,108 +121,101 @@ def build(
     return table
 
 
-def _single(what: Any) -> Scene | Cylinder:
-    """What has the contact: a law at kappa = mu = 1."""
+def _roller_of(what: Any) -> Scene | Cylinder:
+    """Return the roller of a grid: ``what`` itself, or the scene with kappa = mu = 1 of a law; else ParameterError."""
     if getattr(what, "attrs", {}).get(schema.KIND) == "law":
         what = law_of(content_of(what), "law")
     if isinstance(what, LawTable):
         what = Scene(kappa=1.0, mu=1.0, material=what)
     if not isinstance(what, Scene | Cylinder):
         raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law")
-    shape = (what if isinstance(what, Scene) else what.scene()).shape
-    if shape:
+    if shape := (what if isinstance(what, Scene) else what.scene()).shape:
         raise ParameterError("what", f"of shape {shape}", "one scene, of single numbers")
     return what
 
 
-def _on_nodes(what: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
-    """All fields on the nodes of a grid.
+def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
+    """Return all fields on the nodes of a grid.
 
-    Parameters
-    ----------
-    what : of single numbers.
-    axes : V, delta and perhaps alpha -> nodes.
-    method : "table" or "direct".
+    roller: of the grid.  axes: V, delta and perhaps alpha -> nodes.  method: "table" or "direct".
 
-    Returns
-    -------
-    Field -> values over all axes, or over V and alpha, of those that creep does not change.
+    Returns field -> values over all axes, or over V and alpha for fields that do not depend on the creepage.
     """
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
-    flat = _fields(what, plane, schema.PLANE, method)
-    volume = _fields(what, grid, schema.VOLUME, method)
-    return volume | {name: np.take(values, 0, axis=1) for name, values in flat.items()}
+    fields = _evaluate(roller, plane, schema.PLANE, method)
+    volume = _evaluate(roller, grid, schema.VOLUME, method)
+    return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}
 
 
-def _fields(
-    what: Scene | Cylinder, at: dict[str, Floats], names: tuple[str, ...], method: Any = "table"
+def _evaluate(
+    roller: Scene | Cylinder, points: dict[str, Floats], names: tuple[str, ...], method: Any = "table"
 ) -> dict[str, Floats]:
-    """Fields at V, perhaps delta, and perhaps an alpha each."""
-    one = what.replace(alpha=at["alpha"]) if "alpha" in at else what
-    creep = at.get("delta", np.zeros(1))
-    return contact(one, at["V"], delta=creep, fields=names, method=method).as_dict()
+    """Return fields of the contact by name.
 
-
-def _difference(name: str, direct: Floats, rows: Floats) -> float:
-    """Largest difference of two ways to a field, relative, or over the largest value of the field."""
-    scale = np.abs(rows) if name in RELATIVE else np.abs(rows).max()
-    return float(np.max(np.abs(direct - rows) / np.where(scale > 0.0, scale, 1.0)))
-
-
-def _state_errors(table: xr.Dataset, what: Scene | Cylinder) -> None:
-    """Put the largest errors of both ways to interpolate, and where they occur, into the attributes of the fields.
-
-    Parameters
-    ----------
-    table : the grid; its fields gain ``spline_error``, ``spline_error_at``, ``linear_error``, ``linear_error_at``.
-    what : the scene or cylinder that the grid is of, for the exact values at the random points.
+    roller: of the grid.  points: V, and perhaps delta (else 0) and alpha (else that of the roller), which broadcast.
+    names: of the fields.  method: "table" or "direct".
     """
-    points = random_points(table, SAMPLE, SEED)
+    own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
+    creep = points.get("delta", np.zeros(1))
+    return contact(own, points["V"], delta=creep, fields=names, method=method).as_dict()
+
+
+def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
+    """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields.
+
+    table: the grid.  roller: of the grid, for the exact values at random points.
+    """
+    points = random_points(table, SAMPLE_SIZE, SEED)
     for key, linear in (("spline_error", False), ("linear_error", True)):
-        for name, errors in errors_at(table, what, points, linear).items():
+        for name, errors in errors_at(table, roller, points, linear).items():
             worst = int(errors.argmax())
-            place = ((dim, points[str(dim)][worst]) for dim in table[name].dims)
             table[name].attrs[key] = float(errors[worst])
-            table[name].attrs[f"{key}_at"] = ", ".join(f"{dim} = {at:.6g}" for dim, at in place)
+            table[name].attrs[f"{key}_at"] = ", ".join(
+                f"{dim} = {points[str(dim)][worst]:.6g}" for dim in table[name].dims
+            )
 
 
 def errors_at(
-    table: xr.Dataset, what: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
+    table: xr.Dataset, roller: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
 ) -> dict[str, Floats]:
-    """Absolute errors of interpolation in a grid.
+    """Return the absolute errors of interpolation in a grid, field -> errors.
 
-    Parameters
-    ----------
-    table : the grid.
-    what : that it is of.
-    points : axis -> coordinates, all of one length.
-    linear : of linear interpolation, in place of splines.
-
-    Returns
-    -------
-    Field -> its errors at the points.
+    table: the grid.  roller: of the grid.  points: axis -> coordinates, (n,).  linear: whether interpolation is linear,
+    else by splines.
     """
-    exact = _fields(what, points, schema.VOLUME + schema.PLANE)
+    exact = _evaluate(roller, points, schema.VOLUME + schema.PLANE)
     found = Interpolant(table, linear)(**points)
     return {name: np.abs(found[name] - exact[name]) for name in schema.fields_of(table)}
 
 
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
-    """Random points in random cells of a grid: axis -> ``count`` coordinates."""
+    """Return random points in random cells of a grid, axis -> coordinates, (count,); of one node always that.
+
+    table: the grid.  count: number of points.  seed: of the generator.
+    """
     random = np.random.default_rng(seed)
-    return {name: _between(table[name].values, count, random) for name in schema.axes_of(table)}
+    points = {}
+    for name in schema.axes_of(table):
+        nodes = table[name].values
+        if nodes.size == 1:
+            points[name] = np.full(count, nodes[0])
+            continue
+        cell = random.integers(nodes.size - 1, size=count)
+        points[name] = nodes[cell] + random.random(count) * (nodes[cell + 1] - nodes[cell])
+    return points
 
 
-def differences(table: xr.Dataset, what: Scene | Cylinder) -> dict[str, float]:
-    """Largest difference of the nodes of a grid from the rows of the law, by field: relative, or over the largest."""
-    rows = _on_nodes(what, {name: table[name].values for name in schema.axes_of(table)}, "table")
-    return {name: _difference(name, table[name].values, values) for name, values in rows.items() if name in table}
+def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
+    """Return the largest difference of each field between the nodes of a grid and the rows of the law.
 
-
-def _between(nodes: Floats, count: int, random: np.random.Generator) -> Floats:
-    """Random points within random cells of an axis; its node where it has only one."""
-    if nodes.size == 1:
-        return np.full(count, nodes[0])
-    cell = random.integers(nodes.size - 1, size=count)
-    return nodes[cell] + random.random(count) * (nodes[cell + 1] - nodes[cell])
+    table: the grid.  roller: of the grid.  Differences are relative for :data:`RELATIVE_FIELDS`, else divided by the
+    largest value of the field.
+    """
+    rows = _evaluate_nodes(roller, {name: table[name].values for name in schema.axes_of(table)}, "table")
+    found = {}
+    for name in schema.fields_of(table):
+        size = np.abs(rows[name])
+        scale = size if name in RELATIVE_FIELDS else size.max()
+        found[name] = float(np.max(np.abs(table[name].values - rows[name]) / np.where(scale > 0.0, scale, 1.0)))
+    return found

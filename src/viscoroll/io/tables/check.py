@@ -1,4 +1,4 @@
-"""The file of a law against the formulas of its modes, and a grid against the rows of the law: rows of a report."""
+"""Checks of tables: the file of a law against the formulas of its modes, a grid against the rows of the law."""
 
 from __future__ import annotations
 
@@ -8,28 +8,34 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ... import __version__
-from ...core.checks import whole
+from ...core.checks import check_integer
 from ...core.errors import FileError
 from ...materials.law_file import axis_of, law_of
 from ...materials.law_store import AXIS, KIND, content_of, errors_of
 from ...scene import Scene
 from . import schema
-from .build import RELATIVE, differences, errors_at, random_points
+from .build import RELATIVE_FIELDS, differences, errors_at, random_points
 from .law import measured_errors
 from .store import is_law
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Largest difference of a node of a grid from the rows, relative or over the largest of its field: M as printed is
-#: good to 9e-14 at kappa V = 100 (kernels/printed/law.py).
+#: Largest allowed difference of a node of a grid from the rows, relative or divided by the largest value of its field:
+#: M as printed has an error of 9e-14 at kappa V = 100 (kernels/printed/law.py).
 NODES_ALLOWED = 1e-12
-#: The stated error is the largest of a sample; of 10^5 others it may be a few roundings more.
-ALLOWANCE, ROUNDING = 2.0, 2e-15
+#: Ratio by which the error in a random sample may exceed the stated error, which is the largest of another sample.
+SAMPLE_RATIO = 2.0
+#: Rounding error of a value, added to the stated error.
+ROUNDING = 2e-15
 
 
 class Check(NamedTuple):
-    """A largest difference, and what is allowed; ``meaning`` says of what, in which unit, and where."""
+    """A largest difference and its bound.
+
+    name : of the check.  measured : largest difference.  allowed : its bound.  meaning : words: of which quantity, in
+    which unit, at which points.
+    """
 
     name: str
     measured: float
@@ -38,13 +44,13 @@ class Check(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Whether the difference is within what is allowed; a NaN is not."""
+        """Whether the difference is within the bound; a NaN is not."""
         return bool(self.measured <= self.allowed)
 
 
 @dataclass(frozen=True)
 class Report:
-    """All checks of a a validation, and the settings it ran with."""
+    """All checks of a validation, and the settings it ran with."""
 
     checks: tuple[Check, ...]
     settings: dict[str, int]
@@ -63,64 +69,67 @@ class Report:
         failed = sum(not check.passed for check in self.checks)
         verdict = f"{failed} beyond what is allowed" if failed else "every difference is within what is allowed"
         settings = ", ".join(f"{name} {value}" for name, value in self.settings.items())
-        foot = ["", f"{len(self.checks)} checks: {verdict}.", f"viscoroll {__version__}; {settings}"]
-        return "\n".join([f"{'check':<{width}}  measured   allowed            of what", *lines, *foot])
+        return "\n".join([
+            f"{'check':<{width}}  measured   allowed            of what", *lines, "",
+            f"{len(self.checks)} checks: {verdict}.", f"viscoroll {__version__}; {settings}",
+        ])  # fmt: skip
 
 
 def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
-    """Compare a law, or those of random alphas, with the formulas of its modes at ``count`` random places.
+    """Compare a law, or the laws of random alphas, with the formulas of the modes at random speeds.
 
-    Of a grid compare every node with the rows of the law, and splines at ``count`` random points in random cells.
+    Of a grid compare every node with the rows of the law, and the splines at random points in random cells.
 
     Parameters
     ----------
     table : of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one relaxation
         time, or of :func:`viscoroll.io.tables.load`.
-    count : >= 1.
-    seed : of the random places, >= 0.
+    count : number of random points, >= 1.
+    seed : of the random points, >= 0.
 
     Returns
     -------
     list of Check
-        One a function: the largest relative error against that which the file states, times :data:`ALLOWANCE`.
+        One for each function: the largest relative error, and the stated error times :data:`SAMPLE_RATIO`.
 
     Raises
     ------
     ParameterError
         A count or seed out of range.
     FileError
-        A grid that is of a material or a cylinder.
+        A grid of a material or a cylinder.
     """
-    count, seed = whole("n", count, 1), whole("seed", seed, 0)
+    count, seed = check_integer("n", count, 1), check_integer("seed", seed, 0)
     source = table.encoding.get("source", "table")
     if not is_law(table):
         return _check_grid(table, count, seed, source)
     content = content_of(table)
     read = axis_of if content.attributes[KIND] == AXIS else law_of
-    found = measured_errors(read(content, source), count, seed)
+    errors = measured_errors(read(content, source), count, seed)
+    meaning = f"relative; {count} places, against the formulas of the modes"
     return [
-        Check(
-            f"{table.attrs['title']}: {name}", found[name],
-            ALLOWANCE * stated + ROUNDING,
-            f"relative; {count} places, against the formulas of the modes",
-        )
+        Check(f"{table.attrs['title']}: {name}", errors[name], SAMPLE_RATIO * stated + ROUNDING, meaning)
         for name, stated in errors_of(table).items()
-    ]  # fmt: skip
+    ]
 
 
 def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
-    """Rows for the nodes of a grid and for the splines between them, two a field; raises FileError."""
+    """Return two checks for each field of a grid: its nodes, and the splines between them.
+
+    table, count, seed: as of :func:`check_table`.  source: path of the grid.  Raises FileError for a grid that is not
+    of a scene with an alpha.
+    """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
         raise FileError(source, "is no grid of a scene with an alpha, and states its errors by itself")
     scene = Scene(alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"])
     nodes = differences(table, scene)
-    between = errors_at(table, scene, random_points(table, count, seed))
+    splines = errors_at(table, scene, random_points(table, count, seed))
     checks = []
     for name in schema.fields_of(table):
-        kind = "relative" if name in RELATIVE else "over the largest"
+        kind = "relative" if name in RELATIVE_FIELDS else "divided by the largest"
         checks.append(Check(f"grid: {name}, nodes", nodes[name], NODES_ALLOWED, f"{kind}; all, against rows"))
-        stated = ALLOWANCE * float(table[name].attrs["spline_error"]) + ROUNDING
-        found = float(np.max(between[name]))
-        checks.append(Check(f"grid: {name}, splines", found, stated, f"absolute; {count} points, against rows"))
+        allowed = SAMPLE_RATIO * float(table[name].attrs["spline_error"]) + ROUNDING
+        meaning = f"absolute; {count} points, against rows"
+        checks.append(Check(f"grid: {name}, splines", float(np.max(splines[name])), allowed, meaning))
     return checks

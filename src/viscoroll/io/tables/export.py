@@ -1,4 +1,4 @@
-"""Laws and grids in the formats of other programs."""
+"""Export of laws and grids: netCDF, C, JSON, CSV, Modelica, MATLAB."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ import numpy as np
 
 from ... import __version__
 from ...core.errors import ParameterError
-from ...core.files import replacing, write_text
+from ...core.files import replace_file, write_text
 from ...core.symbols import PAPER
-from ...core.typed import Floats
 from ...materials.law_file import law_of
 from ...materials.law_store import CHECKSUM, COVER, content_of
 from . import schema, store
@@ -24,8 +23,8 @@ from . import schema, store
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Numbers of what a grid is of, among its attributes.
-_GIVEN = ("alpha", "kappa", "mu", "R", "m", "load")
+#: Attributes of a grid with the parameters of its roller.
+_PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
 
 
 def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
@@ -45,9 +44,14 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     FileError
         If it cannot be written there.
 
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.export(vr.tables.law(11.0), "rubber.h")
+
     Notes
     -----
-    All formats hold the same bits as ``table``.
+    All formats hold the same bits as ``table`` (``tests/tables/test_grids.py``, ``tests/tables/test_law.py``).
     """
     path = Path(path)
     store.check(table, "export")
@@ -61,67 +65,75 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
 
 def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
-    """64-bit offset format (CDF-2), which every netCDF library since 2004 reads."""
-    with replacing(path) as temporary:
+    """Write ``table`` to ``path`` in the 64-bit offset format (CDF-2), which every netCDF library since 2004 reads."""
+    with replace_file(path) as temporary:
         encoding = {name: {"_FillValue": None} for name in table.variables}
         table.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT", encoding=encoding)
 
 
 def _write_csv(table: xr.Dataset, path: Path) -> None:
-    """A row of names, then a row for every node, first axis slowest; digits that read back to the same bits."""
+    """Write a grid ``table`` to ``path``: a row of names, then one for every node, the first axis slowest.
+
+    The digits read back to the same bits.
+    """
     fields = table[list(schema.fields_of(table))]
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         fields.to_dataframe(dim_order=list(schema.axes_of(table))).to_csv(temporary)
 
 
 def _write_modelica(table: xr.Dataset, path: Path) -> None:
-    """Q over (V, delta) for CombiTable2D blocks, M over V for CombiTable1D blocks and CombiTimeTable."""
-    of_one = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
-    if schema.axes_of(of_one) != ("V", "delta"):
+    """Write a grid ``table`` to ``path``: Q over (V, delta) for CombiTable2D, M over V for CombiTable1D blocks."""
+    plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
+    if schema.axes_of(plane) != ("V", "delta"):
         allowed = "one over (V, delta): a Modelica table has two inputs; table.sel(alpha=...) is at one alpha"
         raise ParameterError("table", f"over {', '.join(schema.axes_of(table))}", allowed)
     V, delta = table["V"].values, table["delta"].values
-    two = np.block([[np.zeros((1, 1)), delta[np.newaxis]], [V[:, np.newaxis], of_one["Q"].values]])
-    one = np.column_stack([V, of_one["M"].values])
-    write_text(path, "\n".join([*_modelica_header(table), _matrix("Q", two), _matrix("M", one), ""]))
+    matrices = {
+        "Q": np.block([[np.zeros((1, 1)), delta[np.newaxis]], [V[:, np.newaxis], plane["Q"].values]]),
+        "M": np.column_stack([V, plane["M"].values]),
+    }
+    lines = ["#1", *(f"# {line}" for line in _modelica_header(table))]
+    for name, matrix in matrices.items():
+        lines += [f"double {name}({matrix.shape[0]},{matrix.shape[1]})"]
+        lines += [" ".join(map(repr, row)) for row in matrix.tolist()]
+    write_text(path, "\n".join([*lines, ""]))
 
 
 def _modelica_header(table: xr.Dataset) -> list[str]:
+    """Return the lines that describe a grid ``table`` and its use in Modelica."""
     units = {name: table[name].attrs["units"].replace("1", "dimensionless") for name in ("V", "Q", "M")}
-    lines = [
+    errors = []
+    for name in ("Q", "M"):
+        point = table[name].attrs.get("linear_error_at")
+        errors.append(f"error_{name} = {linear_error(table[name]):.3g}" + (f" at {point}" if point else ""))
+    return [
         f"viscoroll {__version__}: {table.attrs['title']}",
         PAPER,
-        *(f"{name} = {table.attrs[name]!r}" for name in _GIVEN if name in table.attrs),
+        *(f"{name} = {table.attrs[name]!r}" for name in _PARAMETERS if name in table.attrs),
         *str(table.attrs.get("material", "")).splitlines(),
         f"{table.attrs['grid']}; V: {units['V']}, Q: {units['Q']}, M: {units['M']}",
         "Q: CombiTable2D (CombiTable2Ds from Modelica 4.0 on), u1 = V, u2 = delta",
         "M: CombiTable1Ds, u = V; CombiTimeTable reads the same layout",
-        "For V < 0 look up |V| and turn the sign of Q and M.  Do not extrapolate (Extrapolation.NoExtrapolation).",
-        "Absolute error with Smoothness.LinearSegments, largest of random points between the nodes:",
-        *(f"error_{name} = {linear_error(table[name]):.3g}{_place(table[name])}" for name in ("Q", "M")),
+        "For V < 0 look up |V| and change the sign of Q and M.  Do not extrapolate (Extrapolation.NoExtrapolation).",
+        "Absolute error with Smoothness.LinearSegments, the largest at random points between the nodes:",
+        *errors,
     ]
-    return ["#1", *(f"# {line}" for line in lines)]
 
 
 def linear_error(field: xr.DataArray) -> float:
-    """The stated error of linear interpolation, which before 1.2 had another name; NaN of an atlas."""
+    """Return the stated error of linear interpolation in a ``field``: NaN of an atlas, which states none.
+
+    Files before 1.2 state it under another name.
+    """
     spline = field.attrs.get("interpolation_error", np.nan) if "V" in field.dims else np.nan
     return float(field.attrs.get("linear_error", spline))
 
 
-def _place(field: xr.DataArray) -> str:
-    """Where the error of linear interpolation is largest, " at V = ..."; "" of tables that do not state it."""
-    at = field.attrs.get("linear_error_at")
-    return f" at {at}" if at else ""
-
-
-def _matrix(name: str, values: Any) -> str:
-    rows = (" ".join(map(repr, row)) for row in values.tolist())
-    return "\n".join([f"double {name}({values.shape[0]},{values.shape[1]})", *rows])
-
-
 def _write_matlab(table: xr.Dataset, path: Path) -> None:
-    """One struct ``viscoroll``, as alpha and beta are functions of MATLAB: breakpoints, tables, their linear error."""
+    """Write a grid ``table`` to ``path`` as one struct ``viscoroll``: breakpoints, tables, their linear errors.
+
+    alpha and beta are functions of MATLAB, so that variables of these names would hide them.
+    """
     from scipy.io import savemat
 
     names = schema.fields_of(table)
@@ -131,59 +143,60 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
         "linear_error": {name: linear_error(table[name]) for name in names},
         "linear_error_at": {name: table[name].attrs.get("linear_error_at", "") for name in names},
         "about": f"viscoroll {__version__}. {table.attrs['title']}. {PAPER}. Breakpoints and tables for n-D lookup; "
-        "dimensions says which breakpoints a table is over. linear_error: absolute, of linear interpolation in all "
-        f"breakpoints; linear_error_at: where it is largest. {table.attrs['comment']}",
-        "given": {name: table.attrs[name] for name in (*_GIVEN, "material") if name in table.attrs},
+        "dimensions names the breakpoints of each table. linear_error: absolute error of linear interpolation in all "
+        f"breakpoints; linear_error_at: the point where it is largest. {table.attrs['comment']}",
+        "given": {name: table.attrs[name] for name in (*_PARAMETERS, "material") if name in table.attrs},
     }
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         savemat(temporary, {"viscoroll": content}, do_compression=True)
 
 
-def _write_header(found: xr.Dataset, path: Path) -> None:
-    """Table and evaluator in one header of C."""
+def _write_header(dataset: xr.Dataset, path: Path) -> None:
+    """Write the ``dataset`` of a law to ``path``: table and evaluator in one header of C."""
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
-    table = law_of(content_of(found), path)
-    octaves = ",\n".join(
-        "{" + ",\n ".join("{" + _numbers(powers) + "}" for powers in octave) + "}" for octave in table.coefficients
-    )
-    limit = ", ".join("{" + _numbers(body) + "}" for body in table.fast_limit)
+    table = law_of(content_of(dataset), path)
+    coefficients, limit = (_braces(array.tolist()) for array in (table.coefficients, table.fast_limit))
     evaluator = files("viscoroll.io.tables").joinpath("c/vr_law.h").read_text(encoding="utf-8")
-    about = "\n".join(f" * {line}".rstrip() for line in found.attrs["material"].splitlines()).replace("*/", "* /")
+    material = "\n".join(f" * {line}".rstrip() for line in dataset.attrs["material"].splitlines()).replace("*/", "* /")
     write_text(
         path,
-        f"""/* {found.attrs["title"].replace("*/", "* /")}
+        f"""/* {dataset.attrs["title"].replace("*/", "* /")}
  *
- * Written by {found.attrs["source"]}; T_ref = {table.T_ref!r} s; {CHECKSUM} {found.attrs[CHECKSUM]}
+ * Written by {dataset.attrs["source"]}; T_ref = {table.T_ref!r} s; {CHECKSUM} {dataset.attrs[CHECKSUM]}
  *
-{about}
+{material}
  */
 {evaluator}
 #ifndef VR_LAW_{name}
 #define VR_LAW_{name}
-static const double {name}_coefficients[{len(table.coefficients)}][VR_TERMS][VR_FUNCTIONS] = {{
-{octaves}}};
+static const double {name}_coefficients[{len(table.coefficients)}][VR_TERMS][VR_FUNCTIONS] = {coefficients};
 static const vr_law {name} = {{
-  {len(table.coefficients)}, {table.e0}, {table.alpha!r}, {{{limit}}}, {name}_coefficients}};
+  {len(table.coefficients)}, {table.e0}, {table.alpha!r}, {limit}, {name}_coefficients}};
 #endif
 """,
     )
 
 
-def _numbers(values: Floats) -> str:
-    """Digits that read back to the same bits."""
-    return ",".join(map(repr, values.tolist()))
+def _braces(values: Any) -> str:
+    """Return nested lists of numbers as an initializer of C; the digits read back to the same bits."""
+    if isinstance(values[0], list):
+        return "{" + ",\n".join(map(_braces, values)) + "}"
+    return "{" + ",".join(map(repr, values)) + "}"
 
 
-def _write_json(found: xr.Dataset, path: Path) -> None:
-    numbers = {str(name): variable.values.tolist() for name, variable in found.variables.items()}
+def _write_json(dataset: xr.Dataset, path: Path) -> None:
+    """Write the ``dataset`` of a law to ``path``: its variables and its main attributes."""
+    numbers = {str(name): variable.values.tolist() for name, variable in dataset.variables.items()}
     about = ("title", "viscoroll_table", "bodies", "material", "comment", "references", "source", "license", CHECKSUM)
-    content = {name: found.attrs[name] for name in about} | {"law_schema": int(found.attrs["law_schema"])} | numbers
+    content = {name: dataset.attrs[name] for name in about} | {"law_schema": int(dataset.attrs["law_schema"])} | numbers
     write_text(path, json.dumps(content, separators=(",", ":")))
 
 
+#: Suffix -> function that writes a law or a grid.
 _EITHER: dict[str, Callable[[xr.Dataset, Path], None]] = {".nc": store.save, ".cdf": _write_netcdf3}
-#: Suffix -> who writes a law, or a grid.
+#: Suffix -> function that writes a law.
 LAW = _EITHER | {".h": _write_header, ".json": _write_json}
+#: Suffix -> function that writes a grid.
 GRID = _EITHER | {".csv": _write_csv, ".txt": _write_modelica, ".mat": _write_matlab}

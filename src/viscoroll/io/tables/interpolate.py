@@ -1,4 +1,4 @@
-"""Values between the nodes of a grid: tensor cubic splines."""
+"""Interpolation between the nodes of a grid, by tensor cubic splines."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import broadcast_shape, checked
-from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
+from ...core.array_types import Floats
+from ...core.checks import broadcast_shape, check_array
+from ...core.errors import OutOfTableError, ParameterError, check_names
 from ...core.results import Values
-from ...core.typed import Floats
 from ...materials.grid_splines import compiled, spline
 from ...materials.law_grid import friction_limit
 from . import schema
@@ -21,49 +21,57 @@ if TYPE_CHECKING:
 
 
 class Interpolant:
-    """A table ready for repeated interpolation; what :func:`interpolate` builds on each call.
+    """A table prepared for repeated interpolation; :func:`interpolate` prepares one in each call.
 
-    Called with fields and points, it returns and raises what :func:`interpolate` does, with the same errors.
+    A call takes fields and points; it returns what :func:`interpolate` does, with the same errors.
 
     Parameters
     ----------
     table : a Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
-        Splines are made once a field, at its first use, from the values of that time.
-    linear : in the axes as they stand, as look-up blocks do.
+        The spline of a field is computed at its first use, from the values at that time.
+    linear : whether to interpolate linearly in the untransformed axes, as look-up blocks do.
 
     Raises
     ------
     FileError
         If it is not a table.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> grid = vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1])
+    >>> look_up = vr.tables.Interpolant(grid)
+    >>> bool(look_up(["Q"], V=0.25, delta=0.01).Q > 0.0)
+    True
     """
 
     def __init__(self, table: xr.Dataset, linear: bool = False) -> None:
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
-        # files before 1.2 state the errors of linear interpolation in V, delta and alpha
+        # Files of versions before 1.2 state the errors of linear interpolation in V, delta and alpha.
         self._linear = linear or table.attrs[schema.KIND] in ("literal", "material")
         self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
-        # bounds that the law keeps, and a spline near the kink at delta_star does not
-        most = friction_limit(table.attrs)
-        self._bounds = {"Q": (-most, most), "Q_over_mu": (-1.0, 1.0), "beta": (0.0, 1.0)}
+        # The law has these bounds; a spline may exceed them near the kink at delta_star.
+        limit = friction_limit(table.attrs)
+        self._bounds = {"Q": (-limit, limit), "Q_over_mu": (-1.0, 1.0), "beta": (0.0, 1.0)}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
-        """Interpolated ``fields`` at ``points``; see :func:`interpolate`."""
+        """Interpolated ``fields`` at ``points``, as of :func:`interpolate`."""
         known = schema.fields_of(self._table)
-        names = refuse_unknown("fields", known if fields is None else fields, known, "a field of this table")
-        places, shape = self._places(points, names)
+        names = check_names("fields", known if fields is None else fields, known, "a field of this table")
+        coordinates, shape = self._map_points(points, names)
         results: dict[str, Any] = {}
         for name in names:
             dims, values = self._spline(name)
             if dims:
-                values = values(np.stack([places[dim] for dim in dims], axis=-1))
+                values = values(np.stack([coordinates[dim] for dim in dims], axis=-1))
             if name in self._bounds:
                 values = np.clip(values, *self._bounds[name])
             results[name] = np.broadcast_to(values, shape).copy() if shape else float(values)
         return Values(results, title="Interpolated")
 
     def jitted(self, field: str) -> tuple[Any, Any]:
-        """A field for numba's jitted functions, and what it takes: ``at(spline, V, delta, alpha)``.
+        """A field for numba's jitted functions: a function ``at(spline, V, delta, alpha)`` and its spline.
 
         Parameters
         ----------
@@ -72,8 +80,8 @@ class Interpolant:
         Returns
         -------
         at : a jitted function of numbers; it returns ``value``, ``dV``, ``ddelta`` and ``dalpha``, clipped as values
-            of this class are, with slopes 0 there, and NaN outside of the axes.  For an axis that the field is not
-            over any number does.
+            of this class are, with slopes 0 there, and NaN outside of the axes.  For an axis that the field does not
+            depend on any number may be given.
         spline : its first argument.
 
         Raises
@@ -91,63 +99,67 @@ class Interpolant:
 
         Notes
         -----
-        Values differ from those of this class by roundings, slopes are those of the spline
+        Values differ from those of this class by rounding, slopes are those of the spline
         (``tests/tables/test_splines.py``).
         """
         from ...kernels.splines.spline import spline_at
 
-        (name,) = refuse_unknown("field", field, schema.fields_of(self._table), "a field of this table")
+        (name,) = check_names("field", field, schema.fields_of(self._table), "a field of this table")
         if self._table.attrs[schema.KIND] == "atlas":
             raise ParameterError("field", name, "of a grid over V and delta")
         dims, found = self._spline(name)
         logs = () if self._linear else ("V", "alpha")
         return spline_at, compiled(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
 
-    def _places(
+    def _map_points(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
     ) -> tuple[dict[str, Floats], tuple[int, ...]]:
-        """Coordinates in which the splines run, of the shape of the answer."""
+        """Return (axis -> coordinates of the splines, broadcast; their shape).
+
+        points: axis -> what a caller gave.  names: fields to interpolate.
+        """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
-        if not needed <= points.keys() or not points.keys() <= set(self._axes):
+        if not needed <= points.keys() <= set(self._axes):
             wanted = ", ".join(axis for axis in self._axes if axis in needed)
             allowed = f"{', '.join(self._axes)} (needed for these fields: {wanted})"
             raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
+        axes = {name: self._table[name] for name in points}
         arrays = {
-            name: checked(name, value, unit=self._table[name].attrs.get("units", "1")) for name, value in points.items()
+            name: check_array(name, value, unit=axes[name].attrs.get("units", "1")) for name, value in points.items()
         }
         shape = broadcast_shape(**arrays)
         for name, array in arrays.items():
-            low, high = self._table[name].values[[0, -1]]
+            low, high = axes[name].values[[0, -1]]
             outside = (array < low) | (array > high)
             if outside.any():
-                raise OutOfTableError(name, array[outside].flat[0] if array.ndim else float(array), low, high)
-        return {name: np.broadcast_to(self._mapped(name, array), shape) for name, array in arrays.items()}, shape
+                raise OutOfTableError(name, float(array[outside].flat[0]), low, high)
+        return {name: np.broadcast_to(self._map_axis(name, array), shape) for name, array in arrays.items()}, shape
 
-    def _mapped(self, name: str, values: Floats) -> Floats:
-        """The coordinate of an axis in which the law is smooth."""
+    def _map_axis(self, name: str, values: Floats) -> Floats:
+        """Return the coordinate in which the law is smooth, at the ``values`` of the axis ``name``."""
         if self._linear or name == "delta":
             return values
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
-        """Axes of a field and the spline over them; an axis of one node has one value, and needs no place."""
+        """Return (axes of more than one node, spline over them; without axes the value) of the field ``name``."""
         if name not in self._splines:
             field = self._table[name].squeeze()
             dims = tuple(map(str, field.dims))
-            axes = [self._mapped(dim, self._table[dim].values) for dim in dims]
+            axes = [self._map_axis(dim, self._table[dim].values) for dim in dims]
             self._splines[name] = dims, spline(field.values, axes, 1 if self._linear else 3)
         return self._splines[name]
 
 
 def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
-    """Fields of a grid between its nodes; nothing is extrapolated.
+    """Fields of a grid between its nodes, without extrapolation.
 
     Parameters
     ----------
     table : Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
     fields : names out of the table's fields; default all.
     **points : ``V``, ``delta`` and, where the table has it, ``alpha``, in the table's units; they broadcast.
-        ``delta`` only where beta or Q is asked for.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
+        ``delta`` only for beta and Q.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
 
     Returns
     -------
@@ -164,11 +176,19 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     FileError
         If ``table`` is not a table.
 
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> grid = vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1])
+    >>> found = vr.tables.interpolate(grid, ["M"], V=[0.15, 0.25])
+    >>> found.M.shape
+    (2,)
+
     Notes
     -----
     Tensor not-a-knot cubic spline in ln V, delta and ln alpha, clipped to |Q| <= mu P and 0 <= beta <= 1; the error at
     random points is stated in ``spline_error`` of each field, which another point may exceed
-    (``tests/tables/test_grids.py``), and its place in ``spline_error_at``.  Tables over
+    (``tests/tables/test_grids.py``), and the point in ``spline_error_at``.  Tables over
     (V, delta) of earlier versions are interpolated linearly, as their files state.  Each call builds the splines anew,
     which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
     (:func:`viscoroll.io.tables.law`, :func:`viscoroll.contact`) has none of these errors.

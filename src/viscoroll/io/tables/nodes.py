@@ -1,4 +1,4 @@
-"""Nodes of the axes of a grid: in equal steps or ratios, and of creep, dense where full slip begins."""
+"""Nodes of the axes of a grid: in equal steps or ratios, and of creepage, dense where full slip begins."""
 
 from __future__ import annotations
 
@@ -7,56 +7,72 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.checks import checked, number, one_name, whole
+from ...core.array_types import Floats
+from ...core.checks import check_array, check_choice, check_integer, check_number
 from ...core.errors import ParameterError
-from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...scene import Scene
 
-#: Most nodes of a grid: 400 MB a field, more than any look-up block reads.
+#: Largest number of nodes of a grid: 400 MB a field, more than any look-up block reads.
 MAX_NODES = 50_000_000
-#: Of the nodes of creep this part lies in equal steps, the rest as densely as delta_star does: of 0.3 to 1 the least
-#: error of Q and beta in the grid of the paper.
-_EVEN_PART = 0.5
-#: Largest creep over the largest delta_star: some nodes beyond, so that the ends of the spline are flat.
-_BEYOND = 1.1
-#: Places at which the density of delta_star is summed up; more move no node by a thousandth of a step.
-_PLACES = 20_001
+#: Fraction of the nodes of creepage that lie in equal steps; the others lie as densely as the values of delta_star.
+#: Of fractions from 0.3 to 1 it has the smallest error of Q and beta in the grid of the paper.
+_EVEN_FRACTION = 0.5
+#: Largest creepage divided by the largest delta_star: some nodes lie beyond, so that the ends of the spline are flat.
+_END_RATIO = 1.1
+#: Points at which the density of delta_star is integrated; more move no node by a thousandth of a step.
+_DENSITY_POINTS = 20_001
 
 
 def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear") -> Floats:
-    """``count`` values from ``low`` to ``high``, both exact, in equal steps or equal ratios.
+    """Numbers in equal steps or equal ratios between two ends, which are exact.
+
+    Parameters
+    ----------
+    low, high : ends.
+    count : of numbers, with the ends.
+    spacing : "linear" or "log".
+
+    Returns
+    -------
+    array of shape (count,)
 
     Raises
     ------
     ParameterError
         An unknown spacing, low >= high, high - low beyond the doubles, count < 2, or "log" with low <= 0.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.spread(0.01, 1.0, 3, "log")
+    array([0.01, 0.1 , 1.  ])
     """
-    one_name("spacing", spacing, "linear", "log")
-    low = number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
-    high = number("high", high)
+    check_choice("spacing", spacing, "linear", "log")
+    low = check_number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
+    high = check_number("high", high)
     if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
     if high - low == np.inf:
         raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
-    return (np.geomspace if spacing == "log" else np.linspace)(low, high, whole("count", count, 2, MAX_NODES))
+    return (np.geomspace if spacing == "log" else np.linspace)(low, high, check_integer("count", count, 2, MAX_NODES))
 
 
 def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: ArrayLike | None = None) -> Floats:
-    """Nodes of creep for a grid, dense where full slip begins at some of its speeds: around +-delta_star(V, alpha).
+    """Nodes of creepage for a grid, dense where full slip begins at some of its speeds: around +-delta_star(V, alpha).
 
     Parameters
     ----------
-    what : a :class:`Scene` or a :class:`Cylinder` of single numbers, as of :func:`build`.
-    V : speeds of the grid, > 0; in m/s of a Cylinder.
+    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`.
+    V : speeds of the grid, > 0; of a Cylinder in m/s.
     count : of nodes, odd, at least 5.
     alpha : those of the grid, in place of that of a scene without a material.
 
     Returns
     -------
     array of shape (count,)
-        Creep ratios, symmetric about 0, which is one of them.  Half of the nodes lie in equal steps, half as densely
-        as the values of delta_star.  The ends lie beyond the largest delta_star, so the contact slips fully there.
+        Creepages, symmetric about 0, which is one of them.  Half of the nodes lie in equal steps, half as densely
+        as the values of delta_star.  The ends lie beyond the largest delta_star: there the whole contact slips.
 
     Raises
     ------
@@ -70,22 +86,26 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     >>> V = vr.tables.spread(1e-5, 4.0, 160, "log")
     >>> grid = vr.tables.build(scene, V, delta=vr.tables.creep_nodes(scene, V, 161))
     """
-    if whole("count", count, 5, MAX_NODES) % 2 == 0:
+    if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
         raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
-    at: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
+    roller: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = increasing("V", V, low=0.0, strict=True)
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
-    star = np.sort(np.ravel(at.contact(speeds, delta=0.0, fields="delta_star").delta_star))
-    places = np.linspace(0.0, _BEYOND * star[-1], _PLACES)
-    below = np.searchsorted(star, places) / star.size
-    share = _EVEN_PART * np.linspace(0.0, 1.0, _PLACES) + (1.0 - _EVEN_PART) * below
-    half = np.interp(np.linspace(0.0, 1.0, count // 2 + 1), share, places)
+    star = np.sort(np.ravel(roller.contact(speeds, delta=0.0, fields="delta_star").delta_star))
+    creep = np.linspace(0.0, _END_RATIO * star[-1], _DENSITY_POINTS)
+    below = np.searchsorted(star, creep) / star.size
+    fraction = _EVEN_FRACTION * np.linspace(0.0, 1.0, _DENSITY_POINTS) + (1.0 - _EVEN_FRACTION) * below
+    half = np.interp(np.linspace(0.0, 1.0, count // 2 + 1), fraction, creep)
     return np.concatenate([-half[:0:-1], half])
 
 
-def increasing(name: str, nodes: Any, **bound: Any) -> Floats:
-    """Nodes of an axis as a vector of its own; raises ParameterError where they are out of range or do not increase."""
-    axis = np.atleast_1d(checked(name, nodes, **bound)).copy()
+def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
+    """Return the nodes of an axis as a new vector.
+
+    name: of the axis.  nodes: what a caller gave.  bounds: as of :func:`.checks.check_array`.  Raises ParameterError
+    for nodes that are out of range or do not increase strictly.
+    """
+    axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
         raise ParameterError(name, f"an array of shape {axis.shape}", "one-dimensional and strictly increasing")
     return axis

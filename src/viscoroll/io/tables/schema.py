@@ -1,4 +1,4 @@
-"""What the file of a grid holds: variables, dimensions, attributes, and the check of them.
+"""The schema of the file of a grid: variables, dimensions, attributes, and their check.
 
 Files follow CF-1.11.  ``schema_version`` is "major.minor": a new minor version only adds,
 a new major version changes the meaning of something and is refused by older readers.
@@ -12,62 +12,68 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import __version__
 from ...core.errors import FileError
-from ...core.scale import si_unit
-from ...core.symbols import PAPER, SYMBOLS, meaning
+from ...core.symbols import PAPER, SYMBOLS, attributes
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Version of the schema that this package writes.
 SCHEMA_VERSION = "1.3"
-#: Global attribute that names the kind of a file: "grid", or of earlier versions "atlas", "literal", "material".
+#: Global attribute with the kind of a file.
 KIND = "viscoroll_table"
+#: Kinds of grids; all but the first are of versions before 1.0.
 KINDS = ("grid", "atlas", "literal", "material")
-#: Fields over (V, alpha) and over (V, delta, alpha).
+#: Fields over V (and alpha): they do not depend on the creepage.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta")
+#: Fields over V and delta (and alpha).
 VOLUME = ("beta", "Q")
+#: Fields of a file of kind "atlas".
 _ATLAS_FIELDS = ("beta", "Q_over_mu", "lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
 
+#: Attribute ``comment`` of a grid.
 COMMENT = (
     "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, delta_star and beta are "
     "even in V; M, its two parts and Q(V, delta) are odd. beta is even in delta, Q odd. beta has a kink at "
-    "|delta| = delta_star(V), beyond which the contact slips fully: beta = 0, |Q| = mu P. epsilon may exceed 1. "
-    "A grid is for plots and for look-up blocks of other programs. Do not use it where the edge of full slip, "
-    "|delta| = delta_star, decides a result: look-up smooths it, and the spline_error and linear_error of Q and beta, "
-    "absolute, are those there. The file of a law (viscoroll tables law) is exact at every V, delta, kappa and mu, in "
-    "a tenth of the size; law.nc of make tables holds every alpha."
+    "|delta| = delta_star(V), beyond which the whole contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. "
+    "A grid is for plots and for look-up blocks of other programs. Do not use it where the onset of full slip, "
+    "|delta| = delta_star, decides a result: look-up smooths the kink, and spline_error and linear_error of Q and "
+    "beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact at every V, delta, "
+    "kappa and mu, and has a tenth of the size; law.nc of make tables holds every alpha."
 )
 
 
 def axes_of(table: xr.Dataset) -> tuple[str, ...]:
-    """Its axes, the first slowest."""
+    """Return the names of the axes of a grid ``table``; the first varies slowest."""
     if table.attrs[KIND] == "atlas":
         return ("alpha", "kappa_V", "s")
     return ("V", "delta", *(("alpha",) if "alpha" in table.dims else ()))
 
 
 def fields_of(table: xr.Dataset) -> tuple[str, ...]:
-    """Variables that can be interpolated."""
+    """Return the names of the fields of a grid ``table``."""
     return _ATLAS_FIELDS if table.attrs[KIND] == "atlas" else (*VOLUME, *(name for name in PLANE if name in table))
 
 
 def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
-    """``values`` over ``dims`` with long_name, units, symbol, range, equation and reference."""
+    """Return a variable with long_name, units, symbol, range, equation and reference.
+
+    name: of the quantity.  dims: its axes.  values: array.  si: whether it is in SI units, else dimensionless.
+    """
     import xarray as xr
 
     symbol = SYMBOLS[name]
-    attributes = {
-        "long_name": meaning(name, si), "units": si_unit(name) if si else "1", "symbol": symbol.latex,
-        "range": symbol.range, "equation": symbol.equation, "reference": PAPER,
-    }  # fmt: skip
-    return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes)
+    about = {"symbol": symbol.latex, "range": symbol.range, "equation": symbol.equation, "reference": PAPER}
+    return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes(name, si) | about)
 
 
 def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
-    """Global attributes of a table made now by ``command`` (default: this process's)."""
+    """Return the global attributes of a grid that is computed now.
+
+    title: of the grid.  grid: its axes in words.  command: that computed it; default: the command line of this process.
+    """
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {
         "Conventions": "CF-1.11",
@@ -85,17 +91,22 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
 
 
 def check(table: Any, path: Any) -> None:
-    """Refuse what is no table of a grid: its kind, version, variables, dimensions, axes and values.
+    """Check kind, version, variables, dimensions, axes and values of a grid.
+
+    Parameters
+    ----------
+    table : dataset.
+    path : of its file, for messages.
 
     Raises
     ------
     FileError
-        Naming ``path`` and the first thing that is wrong.
+        With ``path`` and the first thing that is wrong.
     """
-    attributes = getattr(table, "attrs", {})
-    if attributes.get(KIND) not in KINDS:
-        raise FileError(path, f"is no table of viscoroll: attribute {KIND} is {attributes.get(KIND)!r:.40}")
-    version, major = attributes.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
+    about = getattr(table, "attrs", {})
+    if about.get(KIND) not in KINDS:
+        raise FileError(path, f"is no table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
+    version, major = about.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
         problem = f"is a table of schema {version!s:.20}, and this viscoroll ({__version__}) reads {major}.x"
         raise FileError(path, f"{problem}: build it again, or install the version that wrote it")
@@ -105,11 +116,8 @@ def check(table: Any, path: Any) -> None:
             raise FileError(path, f"is no whole table: variable {name!r} is missing")
         if tuple(dim for dim in axes if dim in table[name].dims) != table[name].dims:
             raise FileError(path, f"variable {name!r} has dimensions {table[name].dims}, out of {axes} in this order")
-        _check_values(name, table[name].values, name in axes, path)
-
-
-def _check_values(name: str, values: NDArray, is_axis: bool, path: Any) -> None:
-    if values.dtype != np.float64 or not np.isfinite(values).all():
-        raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")
-    if is_axis and (not values.size or (np.diff(values) <= 0.0).any()):
-        raise FileError(path, f"coordinate {name!r} must increase strictly")
+        values = table[name].values
+        if values.dtype != np.float64 or not np.isfinite(values).all():
+            raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")
+        if name in axes and (not values.size or (np.diff(values) <= 0.0).any()):
+            raise FileError(path, f"coordinate {name!r} must increase strictly")

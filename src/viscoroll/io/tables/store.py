@@ -1,4 +1,4 @@
-"""Tables on disk: atomic save, and a load that trusts nothing it has not checked."""
+"""Files of tables: atomic save, and a load that checks everything it reads."""
 
 from __future__ import annotations
 
@@ -8,24 +8,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.errors import FileError
-from ...core.files import sealed_content, write_dataset
+from ...core.files import read_sealed, write_dataset
 from ...materials import law_store
 from . import schema
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: No table is larger.
-_MOST_BYTES = 1 << 31
+#: Largest size of a file; no table is larger.
+_MAX_BYTES = 1 << 31
+#: Attribute of a field with an error of interpolation -> its name in :func:`info`.
+_ERROR_NAMES = {"spline_error": "spline", "linear_error": "linear", "interpolation_error": "stated"}
 
 
 def is_law(table: Any) -> bool:
-    """Whether a dataset is the law of a material or of every alpha, and no grid."""
+    """Whether a dataset ``table`` is the law of a material or of every alpha; else it is a grid, or no table."""
     return getattr(table, "attrs", {}).get(schema.KIND) in law_store.KINDS
 
 
 def check(table: Any, path: Any) -> None:
-    """Refuse what is neither a law nor a grid; raises FileError."""
+    """Raise FileError, which names ``path``, if ``table`` is neither a law nor a grid."""
     if is_law(table):
         law_store.check(law_store.content_of(table), path)
     else:
@@ -35,7 +37,7 @@ def check(table: Any, path: Any) -> None:
 def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     """Write a law or a grid as netCDF-4/HDF5: whole and synced, or not at all.
 
-    Behind its end the file carries a SHA-256 over its bytes, which other programs do not see.
+    The file ends with a SHA-256 of its bytes, which other programs do not see.
 
     Parameters
     ----------
@@ -48,15 +50,20 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
         If it cannot be written there; a file of that name is left as it was.
         If ``table`` is neither.
 
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.save(vr.tables.law(11.0), "law.nc")
+
     Notes
     -----
-    :func:`load` gives back the same values, bit for bit (``tests/tables/test_grids.py``, ``tests/tables/test_law.py``).
+    :func:`load` returns the same values, bit for bit (``tests/tables/test_grids.py``, ``tests/tables/test_law.py``).
     """
     check(table, path)
     plain = table.copy()
     for variable in plain.variables.values():
         variable.encoding = {}
-    # the noise of coefficients does not compress
+    # Compression does not make the coefficients of a law smaller: their last digits are noise.
     encoding = {str(name): {"_FillValue": None} for name in plain.variables} if is_law(plain) else None
     write_dataset(plain, path, encoding, sealed=True)
 
@@ -66,8 +73,8 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
 
     Parameters
     ----------
-    path : file written by :func:`save`.  The SHA-256 at its end is compared before anything is parsed; a file that
-        another program has written or edited has none, and is read for what it holds.
+    path : file written by :func:`save`.  The SHA-256 at its end is compared before the file is parsed; a file that
+        another program has written or edited has none, and its content alone is checked.
 
     Returns
     -------
@@ -77,14 +84,20 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
     Raises
     ------
     FileError
-        A file that is missing, cut or damaged, of another major schema version, or no table.
+        A file that is missing, truncated or damaged, of another major schema version, or no table.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.save(vr.tables.law(11.0), "law.nc")
+    >>> table = vr.tables.load("law.nc")
     """
     import xarray as xr
 
-    content = sealed_content(path, _MOST_BYTES, "table of viscoroll", "build it again")
+    content = read_sealed(path, _MAX_BYTES, "table of viscoroll", "build it again")
     try:
         table = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False)
-    except Exception as error:  # libraries raise many kinds
+    except Exception as error:  # libraries raise errors of many kinds
         problem = f"is damaged, or no table of viscoroll ({' '.join(str(error).split()):.120}): build it again"
         raise FileError(path, problem) from error
     check(table, path)
@@ -92,12 +105,22 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
 
 
 def info(path: str | PathLike[str]) -> str:
-    """What the law or the grid at ``path`` holds, its stated errors, who made it with what.
+    """Summary of a law or a grid: its functions or fields, their stated errors, its origin.
+
+    Parameters
+    ----------
+    path : file of a law or a grid.
 
     Raises
     ------
     FileError
         As :func:`load`.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.save(vr.tables.law(11.0), "law.nc")
+    >>> text = vr.tables.info("law.nc")
     """
     table = load(path)
     about, size = table.attrs, Path(path).stat().st_size / 1e3
@@ -108,13 +131,12 @@ def info(path: str | PathLike[str]) -> str:
     else:
         axes = {axis: table[axis].values for axis in schema.axes_of(table)}
         lines += [f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items()]
-        lines += ["", f"  {'field':<26}{'over':<18}error between the nodes"]
-        lines += [_field_line(table[name]) for name in schema.fields_of(table)]
+        lines += ["", f"  {'field':<26}{'axes':<18}error between the nodes"]
+        for name in schema.fields_of(table):
+            field = table[name]
+            errors = ", ".join(
+                f"{word} {field.attrs[key]:.2g}" for key, word in _ERROR_NAMES.items() if key in field.attrs
+            )
+            lines.append(f"  {name:<26}{', '.join(map(str, field.dims)):<18}{errors}")
     keys = ("material", "comment", "source", "history", law_store.CHECKSUM)
     return "\n".join([*lines, "", *(f"{key}: {about[key]}" for key in keys if key in about)])
-
-
-def _field_line(field: xr.DataArray) -> str:
-    names = {"spline_error": "spline", "linear_error": "linear", "interpolation_error": "stated"}
-    errors = ", ".join(f"{word} {field.attrs[key]:.2g}" for key, word in names.items() if key in field.attrs)
-    return f"  {field.name!s:<26}{', '.join(map(str, field.dims)):<18}{errors}"

@@ -241,16 +241,14 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
 
 
 @kernel(allocates=True)
-def look_up_motions(flow, gamma, rest, V0, omega0, t, rows, result, start, stop):
+def look_up_motions(flow, motions, result, start, stop):
     """Look up the motions start..stop and write them into ``result``; a motion outside the map has the status
     NOT_COVERED.
 
-    flow : the map.  gamma : dimensionless time scale.  rest : rest threshold, 0 for none.
-    V0, omega0 : initial speeds, vectors of one or n numbers.  t : output times.
-    rows : output quantities, indices of rows of an output; distance, angle and slip loss are computed only if they
-    are
-    among them.  result : arrays (:class:`viscoroll.motion.flow.FlowResult`).  start, stop : range of motions.
+    flow : the map.  motions : record :class:`.records.Motions`.  result : arrays
+    (:class:`viscoroll.motion.flow.FlowResult`).  start, stop : range of motions.
     """
+    gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j
     level = SPEEDS
     for n in range(rows.size):

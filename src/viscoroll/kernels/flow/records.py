@@ -19,6 +19,22 @@ class Flow(NamedTuple):
     slow_rate: float
 
 
+class Motions(NamedTuple):
+    """Motions to be looked up, dimensionless.
+
+    gamma : time scale of the scene.  rest : rest threshold, 0 for none.  V0, omega0 : initial speeds, vectors of one or
+    n numbers.  t : output times.  rows : output quantities, indices of rows of an output; distance, angle and slip loss
+    are computed only if they are among them.
+    """
+
+    gamma: Any
+    rest: Any
+    V0: Any
+    omega0: Any
+    t: Any
+    rows: Any
+
+
 class Request(NamedTuple):
     """Requested outputs of a motion.
 

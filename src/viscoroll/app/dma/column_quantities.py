@@ -1,0 +1,134 @@
+"""Which columns of a table are frequency, moduli and temperature, and their numbers."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from ...core.errors import FileError, ParameterError
+from ...core.sections import suggestion
+from ...io.measurements import NO_UNIT, Numbers, Table, conversion, find_column, readings
+from .vocabulary import ASSUMED, UNITS, Meaning, meanings
+
+#: degrees; temperatures without a unit that go above it are taken to be kelvins, in which DMA seldom goes below
+_KELVIN = 200.0
+#: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
+_CYCLES = re.compile(r"(?i)hz|rpm|rad|rev|cycle|u/|r/|upm|deg|°")
+#: units of angles
+_ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
+
+
+class Column(NamedTuple):
+    """A column of a known quantity.
+
+    position, heading : index and heading in its table.
+    name : of its quantity, a key of :data:`.vocabulary.UNITS`.
+    mode : of its modulus, "tension", "shear", or "" where the heading does not say.
+    log : whether its numbers are logarithms to base 10.
+    unit : in which its numbers are.
+    stated : whether the file or the user gives the unit, or it is assumed.
+    """
+
+    position: int
+    heading: str
+    name: str
+    mode: str
+    log: bool
+    unit: str
+    stated: bool
+
+    @property
+    def quantity(self) -> str:
+        """What its numbers become: frequency of an angular one, modulus of a compliance, tan delta of a phase angle."""
+        name = self.name.replace("angular ", "").removesuffix(" compliance")
+        return "tan delta" if name == "phase angle" else name
+
+
+def columns_of(
+    table: Table, named: Mapping[str, str], given: Mapping[str, str], default: Mapping[str, str]
+) -> tuple[list[Column], dict[str, str]]:
+    """Find the columns whose quantity is known.
+
+    table : with headings.
+    named : quantity -> heading, of columns that the user named.
+    given : quantity -> unit that overrules the file.
+    default : quantity -> unit where the file gives none.
+    Returns the columns, and headings of the others -> why they are left out ("": no quantity is known of them).
+    Raises ParameterError for a heading that the table does not have.
+    """
+    owners = {_index(table, heading): name for name, heading in named.items()}
+    columns: list[Column] = []
+    others: dict[str, str] = {}
+    for index, (heading, row) in enumerate(zip(table.headings, table.units, strict=True)):
+        found = [each for each in meanings(heading, row) if index in owners or each.name not in named]
+        if index in owners:
+            mode = next((each.mode for each in found if each.mode), "")
+            ordered = sorted(readings(heading, row), key=lambda reading: reading.unit in NO_UNIT)
+            found = [Meaning(owners[index], mode, reading.unit, reading.log) for reading in ordered]
+        faults = [_contradiction(each, given) for each in found]
+        if not table.has_numbers(index):
+            faults = ["no numbers"]
+        if "" in faults:
+            name, mode, unit, log = found[faults.index("")]
+            unit = given.get(name) or ("" if unit in NO_UNIT else unit) or default.get(name, "")
+            columns.append(Column(index, heading, name, mode, log, unit or ASSUMED[name], bool(unit)))
+        else:
+            others[heading or f"column {index}"] = faults[0] if faults else ""
+    return columns, others
+
+
+def _index(table: Table, heading: str) -> int:
+    """Return the index of the column with a heading, with its unit or without; raise ParameterError without one."""
+    found = find_column(table, heading)
+    if found is None:
+        allowed = f"one of {', '.join(map(repr, table.headings))}{suggestion(str(heading), table.headings)}"
+        raise ParameterError("columns", f"{heading!r:.60}", allowed)
+    return found
+
+
+def _contradiction(meaning: Meaning, given: Mapping[str, str]) -> str:
+    """Return why the unit of a heading contradicts the quantity that the heading may name, "" where it does not.
+
+    meaning : the quantity and its unit.
+    given : quantity -> unit that overrules the file.
+    """
+    name, _, unit, _ = meaning
+    if name in given or unit in NO_UNIT:
+        return ""
+    problem = f"unit {unit!r} is none of {name}"
+    try:
+        conversion(unit, UNITS[name])
+    except ParameterError:
+        return problem
+    if "angular" in name and unit.lower().endswith("hz"):
+        return f"an angular frequency in {unit}: rename it, or give units="
+    angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
+    return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
+
+
+def numbers_of(table: Table, column: Column) -> Numbers:
+    """Return the numbers of a column's quantity in rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
+
+    table : of the column.
+    column : of a known quantity.
+    Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed.
+    """
+    name, unit = column.name, column.unit
+    values, half = table.numbers(column.position)
+    # a phase angle of rubber in degrees goes above pi/2
+    open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
+    if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
+        problem = f"column {column.heading!r} has no unit, and goes to {values.max():g}: give units={{{name!r}: ...}}"
+        raise FileError(table.path, problem)
+    if column.log:
+        values = 10.0**values
+        half = values * math.log(10.0) * half
+    factor, offset = conversion(unit, UNITS[name])
+    if column.quantity.endswith("frequency") and "angular" not in name and not _CYCLES.search(unit):
+        factor *= 2.0 * math.pi
+    values, half = factor * values + offset, factor * half
+    return Numbers(np.tan(values), half / np.cos(values) ** 2) if name == "phase angle" else Numbers(values, half)

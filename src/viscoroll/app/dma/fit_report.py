@@ -1,0 +1,121 @@
+"""The lines that ``print`` shows of a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ...core.results import SummaryRow
+from .master_curve import undetermined_shifts
+
+#: range of the median of the Kramers-Kronig ratio of data in which storage and loss go together
+_CONSISTENT = (0.8, 1.25)
+#: Poisson's ratio of the factor that the report gives of shear: the default of material()
+_NU = 0.49
+
+
+def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
+    """Return the title and the lines that ``print(fit)`` shows of a
+    :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """
+    low, high = fit.band
+    of_time = fit.data._fields[0] == "t"
+    span = f"t = {1.0 / high:.3g} to {1.0 / low:.3g} s" if of_time else f"omega = {low:.3g} to {high:.3g} rad/s"
+    return f"Prony series of {fit.prony.E.size} modes for {fit.points} points, {span}", [*_rows(fit)]
+
+
+def _rows(fit: Any) -> Iterator[SummaryRow]:
+    """Yield the lines of a ``fit``, a :class:`viscoroll.app.dma.fit_results.SeriesFit`."""
+    prony, symbol = fit.prony, symbol_of(fit)
+    floor = "" if fit.plateau else "; the least that is allowed: the data do not determine it"
+    yield SummaryRow(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
+    if fit.mode == "shear":
+        factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
+        yield SummaryRow("shear", f"the data are of shear: material(nu=) takes E = 2 (1 + nu) G, {factor}")
+    yield SummaryRow("alpha", f"{prony.alpha:.6g} (instantaneous over long-time modulus)")
+    yield SummaryRow("T_ref", f"{fit.T_ref:.6g} s (the longest time)")
+    if fit.temperature is not None:
+        yield SummaryRow("temperature", f"{fit.temperature:g} C, at which these times are")
+    if fit.points > fit.data[0].size:
+        yield SummaryRow(
+            "thinned", f"the means of {fit.data[0].size} logarithmic bins stand for the points here and below"
+        )
+    yield from fit._rows()
+    yield SummaryRow("outside", _outside(fit))
+    yield SummaryRow("wider", "with a grid of times wider on either side beside these, two a decade, none left out:")
+    for other in fit.wider:
+        ratios = f"{symbol} times {other.E / fit.E:.4g}, alpha times {other.alpha / prony.alpha:.4g}"
+        change = f"M changes by up to {other.M_change:.2%} at speeds inside the data"
+        yield SummaryRow("", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}")
+    yield SummaryRow("modes", f"{symbol}_i/{symbol}      tau_i, s")
+    for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
+        yield SummaryRow("", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}")
+
+
+def symbol_of(fit: Any) -> str:
+    """Return E, or G where the data are of shear."""
+    return "G" if fit.mode == "shear" else "E"
+
+
+def of_dynamic(fit: Any) -> list[SummaryRow]:
+    """Return the lines on misfit, Kramers-Kronig and shifts of a ``fit``, a :class:`viscoroll.Fit`."""
+    symbol = symbol_of(fit)
+    misfit = f"{fit.misfit.storage:.2%} in {symbol}', {fit.misfit.loss:.2%} in {symbol}'' (rms, relative)"
+    rows = [
+        SummaryRow("misfit", misfit + _target(fit)),
+        SummaryRow(f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)),
+    ]
+    if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
+        return rows
+    factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
+    rows.append(SummaryRow("shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"))
+    if shifts.distinct > shifts.temperature.size:
+        text = f"{shifts.distinct} temperatures, within 0.5 K of one another, were taken for {shifts.temperature.size}"
+        rows.append(SummaryRow("", text))
+    if np.isfinite(shifts.mismatch).any():
+        most = np.nanmax(shifts.mismatch)
+        rows.append(SummaryRow("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"))
+    open_ones = (
+        f"the overlap does not fix the shift {pair}: the curves are flat there" for pair in undetermined_shifts(shifts)
+    )
+    return rows + [SummaryRow("", text) for text in open_ones]
+
+
+def of_relaxation(fit: Any) -> list[SummaryRow]:
+    """Return the lines on the misfit of a ``fit``, a :class:`viscoroll.RelaxationFit`."""
+    symbol = symbol_of(fit)
+    misfit = f"{fit.misfit:.2%} in {symbol}(t) (rms, relative){_target(fit)}"
+    return [
+        SummaryRow("misfit", misfit),
+        SummaryRow("", f"{symbol}'' follows from the slope of {symbol}(t), with ten times this error or more"),
+    ]
+
+
+def _target(fit: Any) -> str:
+    """Return the words on the misfit that was requested."""
+    return f"; {fit.target:.2%} was asked for{'' if fit.reached else ' and not reached'}"
+
+
+def _kramers_kronig(median: float, symbol: str) -> str:
+    """Return a sentence on whether storage and loss modulus go together.
+
+    median : of the Kramers-Kronig ratio.
+    symbol : E or G.
+    """
+    if np.isnan(median):
+        return f"cannot be held against {symbol}': too few different frequencies (Kramers-Kronig)"
+    text = f"is {median:.2f} times what the slope of {symbol}' allows (Kramers-Kronig, median)"
+    sound = _CONSISTENT[0] <= median <= _CONSISTENT[1]
+    return text + ("" if sound else ": storage and loss do not go together, or the spectrum is of few narrow modes")
+
+
+def _outside(fit: Any) -> str:
+    """Return a sentence on the modes of a ``fit`` whose times lie outside the data."""
+    range_of = "the data's range of times" if fit.data._fields[0] == "t" else "the data's range of 1/omega"
+    if not (count := int(fit.outside.sum())):
+        return f"no mode lies outside {range_of}"
+    share = float(fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0))
+    which = f"{count} of {fit.prony.E.size} modes, {share:.1%} of the sum of strengths"
+    return f"{which}, lie outside {range_of}"

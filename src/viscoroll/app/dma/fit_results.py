@@ -1,0 +1,272 @@
+"""Results of the fits of measured moduli: :class:`Fit`, :class:`RelaxationFit`, and their base :class:`SeriesFit`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...contact_law.contact import contact
+from ...contact_law.validity.assumptions import Assumption, assess_measured_band, transit_frequency
+from ...core.array_types import Booleans, Floats, Numbers
+from ...core.checks import check_array
+from ...core.errors import ParameterError
+from ...core.plots.measurements import moduli_fit, relaxation_fit
+from ...core.results import Result, SummaryRow
+from ...materials.importers import poisson
+from ...materials.material import Material
+from ...materials.measured import Measured
+from ...materials.prony import Prony
+from .curve import UNITS, Curve, KramersKronig, Relaxation
+from .fit_report import of_dynamic, of_relaxation, summarize_fit
+from .master_curve import Shifts
+from .spectrum import FLOOR, Data, spectrum_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ...cylinder import Cylinder
+
+#: which modulus was measured
+Mode = Literal["tension", "shear"]
+
+
+class Misfit(NamedTuple):
+    """Root mean square of the relative errors of storage and loss modulus."""
+
+    storage: float
+    loss: float
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SeriesFit(Result):
+    """A Prony series fitted to measured moduli: the base of :class:`Fit` and :class:`RelaxationFit`.
+
+    E : long-time modulus, in the unit of the data; of tension or of shear, as ``mode`` says.
+    T_ref : the longest time, s; times of ``prony`` are in units of it.
+    prony : the series, the same for both moduli, since Poisson's ratio is taken constant in time.
+    mode : "tension" (E', E'', E(t)) or "shear" (G', G'', G(t)): the modulus of the data, of E and of
+    :meth:`modulus`.
+    target : the misfit that was requested.
+    reached : whether it is reached.
+    outside : for each mode of ``prony`` whether its time lies outside the data.
+    band : first and last angular frequency of the data, rad/s; of relaxation the reciprocal times.
+    points : number of points that were measured; above 1000 the means of 500 logarithmic bins were fitted, and they
+        are the data and the misfit here.
+    grid : shortest and longest time that the fit was allowed, s.
+    temperature : of the fit, degrees Celsius, None where it is not known.
+    source : of the data, in words.
+    misfit : root mean square of the relative errors, of each modulus.
+    """
+
+    E: float
+    T_ref: float
+    prony: Prony
+    mode: Mode
+    target: float
+    reached: bool
+    outside: Booleans
+    band: tuple[float, float]
+    points: int
+    grid: tuple[float, float]
+    temperature: float | None = None
+    source: str = ""
+
+    misfit: Any = None
+
+    @property
+    def data(self) -> Data:
+        """The data that were fitted."""
+        raise NotImplementedError
+
+    @property
+    def largest_misfit(self) -> float:
+        """The misfit; of storage and loss the larger one."""
+        return float(np.max(self.misfit))
+
+    @property
+    def alpha(self) -> float:
+        """Instantaneous over long-time modulus."""
+        return self.prony.alpha
+
+    @property
+    def plateau(self) -> bool:
+        """Whether the data determine E, which is then above the least that is allowed (1 % of the lowest modulus)."""
+        return self.E > 1.001 * FLOOR * float(self.data.values[0].min())
+
+    @cached_property
+    def wider(self) -> tuple[Any, ...]:
+        """Fits on grids of times one and two decades wider on either side, no time left out.
+
+        For each ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose transit times lie within
+        the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.WiderGrid`).  Computed at the
+        first access.
+        """
+        from .spectrum_sensitivity import with_wider_grid
+
+        return tuple(
+            with_wider_grid(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2)
+        )
+
+    @property
+    def measured(self) -> Measured:
+        """The frequencies of the data, the larger misfit and the source, which a material keeps."""
+        source = self.source or f"{self.points} points"
+        return Measured(*self.band, self.largest_misfit, source)
+
+    def material(
+        self, nu: float = 0.49, *, name: str = "", density: float | None = None, thickness: float | None = None
+    ) -> Material:
+        """The fit as a :class:`viscoroll.Material`, ``measured`` and ``temperature`` with it; of data in Pa.
+
+        A shear modulus becomes Young's by E = 2 (1 + nu) G; ``measured.source`` then says so.
+
+        Parameters
+        ----------
+        nu : Poisson's ratio, constant in time.
+        name, density, thickness : as there; density in kg/m^3, thickness in m.
+
+        Raises
+        ------
+        ParameterError
+            As there.
+        """
+        E, measured = self.E, self.measured
+        if self.mode == "shear":
+            factor = 2.0 * (1.0 + poisson(nu))
+            E *= factor
+            measured = replace(measured, source=f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G")
+        return Material(
+            E, nu, self.prony, self.T_ref, name=name, density=density, thickness=thickness, measured=measured,
+            temperature=self.temperature,
+        )  # fmt: skip
+
+    def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
+        """Return whether the transit frequency of a contact with this material lies within the data, and the fit is
+        near them.
+
+        The transit frequency |V|/(lam l0) must lie within the frequencies of the data; shifted to another
+        temperature (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer
+        with a shorter transit time: modes faster than the transit act there as far as they go.
+
+        Parameters ----------
+        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any
+        temperature.
+        V : speed of the axis, m/s, any sign.
+
+        Returns
+        -------
+        Assumption
+            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``, of the shape of V.
+
+        Raises
+        ------
+        ParameterError
+            A cylinder of another series; NaN or infinite V.
+        """
+        bodies = cylinder.pair.cylinder, cylinder.pair.half_space
+        body = next((body for body in bodies if body.prony == self.prony), None)
+        if body is None:
+            raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
+        speed = check_array("V", V, unit="m s-1")
+        lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
+        seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
+        return assess_measured_band(seen, {"the material": self.measured})
+
+    def _moduli(self, x: ArrayLike) -> Floats:
+        """Return the moduli of the fit, in the unit of the data.
+
+        x : angular frequencies, rad/s, or times, s, of any shape.
+        Returns a row for storage and one for loss, or one for relaxation, each of the shape of x.
+        """
+        given = np.asarray(x, np.float64)
+        data = self.data._replace(**{self.data._fields[0]: given.ravel()})
+        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *given.shape)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Data and fit over omega or t, the series over ``mode``, and the constants as attributes."""
+        import xarray as xr
+
+        x, *names = self.data._fields
+        of_data = zip((*names, *(f"{name}_fit" for name in names)), (*self.data[1:], *self._moduli(self.data[0])))
+        data: dict[str, Any] = {name: (x, values, {"units": "unit of the data"}) for name, values in of_data}
+        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
+        data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
+        about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series", "modulus": self.mode}
+        misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]
+        about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
+        return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
+
+    _summary = summarize_fit
+
+    def _rows(self) -> list[SummaryRow]:
+        """Return the lines of the report on misfit and data."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Fit(SeriesFit):
+    """A Prony series fitted to a master curve, with its misfit and the consistency of the data.
+
+    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`; of shear E, storage and loss are G, G' and G''.
+    misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
+    kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
+        ``.ratio``, ``.median``.
+    shifts : shift factors of curves at several temperatures, else None.
+    omega, storage, loss : the data, sorted and shifted; rad/s and the unit given.
+    """
+
+    misfit: Misfit
+    kramers_kronig: KramersKronig
+    shifts: Shifts | None
+    omega: Floats
+    storage: Floats
+    loss: Floats
+
+    @property
+    def data(self) -> Curve:
+        """The data that were fitted."""
+        return Curve(self.omega, self.storage, self.loss)
+
+    def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
+        """Return storage and loss modulus of the fit in the unit of the data, of the shape of ``omega``.
+
+        omega : angular frequencies, rad/s.
+        They are E' and E'', or G' and G'' where ``mode`` is "shear".
+        """
+        storage, loss = self._moduli(omega)
+        return storage, loss
+
+    _rows, _figure = of_dynamic, moduli_fit
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class RelaxationFit(SeriesFit):
+    """A Prony series fitted to a relaxation modulus: the result of :func:`fit_relaxation`.
+
+    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`.
+    misfit : root mean square of the relative errors.
+    t : times of the data, ascending, s.
+    relaxation : relaxation modulus of the data, in the unit given.
+    """
+
+    misfit: float
+    t: Floats
+    relaxation: Floats
+
+    @property
+    def data(self) -> Relaxation:
+        """The data that were fitted."""
+        return Relaxation(self.t, self.relaxation)
+
+    def modulus(self, t: ArrayLike) -> Floats:
+        """Return the relaxation modulus of the fit, E(t) or of shear G(t), in the unit of the data.
+
+        t : times, s, of any shape, which the result has too.
+        """
+        return self._moduli(t)[0]
+
+    _rows, _figure = of_relaxation, relaxation_fit

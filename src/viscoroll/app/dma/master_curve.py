@@ -1,0 +1,229 @@
+"""Curves at several temperatures as one master curve, by horizontal shifts: :func:`master_curve`."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...core.array_types import Floats
+from ...core.checks import check_array
+from ...core.errors import ModelWarning, ParameterError, caller_level
+from ...materials.shift import USUAL_RANGE, celsius, relative
+from .curve import Curve, curve_of, thinned
+from .temperature_sets import default_reference, listed_factors, nearest, points_of, sets_of
+
+#: least number of points of both curves in their overlap
+_POINTS = 3
+#: least ratio of the overlap to the shorter range of the two curves, in ln omega
+_OVERLAP = 0.15
+#: step in ln a_T of the search: within it the mismatch has one minimum
+_STEP = 0.05
+#: rms mismatch of ln E' and ln E'' above which curves do not overlap: a third of the moduli
+_LARGEST_MISMATCH = 0.3
+#: mean square mismatch that stands for no overlap at all
+_NONE = 1e6
+#: difference of rms mismatches up to which two shifts are equally good: the accuracy of usual DMA
+_EQUALLY_GOOD = 0.01
+#: decades over which all shifts are equally good above which a plateau leaves the shift open: a factor of three either
+#: way
+LARGEST_FREEDOM = 1.0
+
+
+class Shifts(NamedTuple):
+    """Shift factors of the curves.
+
+    temperature : of each curve, ascending, degrees Celsius; the median of those of its points.
+    a_T : ratio of times at this temperature to those at the reference.
+    reference : degrees Celsius; a_T is 1 there.
+    mismatch : between each curve and its warmer neighbour, rms of the difference of ln E' and ln E''; NaN where
+        they do not overlap or the factors were given.
+    freedom : between the same, decades over which the shift may be moved before the mismatch rises by 1 %: large
+    where
+        the curves are flat (a plateau fixes no shift); NaN where the factors were given.
+    distinct : number of different temperatures that were given.
+    """
+
+    temperature: Floats
+    a_T: Floats
+    reference: float
+    mismatch: Floats
+    freedom: Floats
+    distinct: int
+
+
+def master_curve(
+    omega: ArrayLike,
+    storage: ArrayLike,
+    loss: ArrayLike,
+    temperature: ArrayLike,
+    reference: float | None,
+    shift: ArrayLike | Callable[[float], float] | None,
+    on: Literal["both", "storage"] = "both",
+) -> tuple[Curve, Shifts]:
+    """All points at the reference temperature, frequencies times a_T.
+
+    Parameters
+    ----------
+    omega, storage, loss : columns of one length, or lists of curves; rad/s, and one unit of moduli.
+    temperature : degrees Celsius, one of all points, one a point, or one a curve.
+    reference : degrees Celsius; default: where a given shift is 1, else the middle one of the curves.
+    shift : factors in the order of the curves, a function of the temperature, or None: by the overlap of neighbours.
+    on : the moduli by whose overlap shifts are found.
+
+    Raises
+    ------
+    ParameterError
+        As for curves; a temperature for each point or curve is missing; temperatures that cannot be told apart; a
+        reference that the shift says nothing of; neighbouring curves that do not overlap; shift factors that do not
+        fit, or rise with the temperature.
+
+    Warns
+    -----
+    ModelWarning
+        Curves so flat that their overlap does not fix the shift; temperatures that look like kelvin.
+    """
+    point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
+    whole = [
+        check_array(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)
+    ]
+    sets = sets_of(point_temperatures, first)
+    temperatures = sets.temperature
+    celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
+    base = None if reference is None else celsius("reference", reference)
+    mismatch = freedom = np.full(temperatures.size - 1, math.nan)
+    if callable(shift):
+        base = default_reference(temperatures, [getattr(shift, "T0", math.nan)]) if base is None else base
+        factor = np.array([relative(shift, T, base) for T in temperatures.tolist()])
+    elif shift is not None:
+        factor, base = listed_factors(shift, sets, base)
+    else:
+        base = default_reference(temperatures, []) if base is None else base
+        nearest(base, temperatures, "reference")
+        parts = (Curve(*(column[sets.of_point == n] for column in whole)) for n in range(temperatures.size))
+        curves = (thinned(curve_of(*part, fewest=2)) for part in parts)
+        logs, mismatch, freedom = _shifts_by_overlap([_LogCurve(curve, on) for curve in curves], temperatures)
+        factor = np.exp(logs - np.interp(base, temperatures, logs))
+    if shift is not None and factor[-1] > factor[0]:
+        ends = f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at {temperatures[-1]:g} C"
+        allowed = "a_T, times over those at the reference, which fall as it gets warmer, in the order of the curves"
+        raise ParameterError("shift", ends, allowed)
+    shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(point_temperatures).size)
+    if open_shifts := undetermined_shifts(shifts):
+        text = f"overlap does not fix the shift {'; '.join(open_shifts)}: curves on a plateau; give shift="
+        warnings.warn(text + (', or try on="storage"' if on == "both" else ""), ModelWarning, stacklevel=caller_level())
+    return curve_of(whole[0] * factor[sets.of_point], whole[1], whole[2]), shifts
+
+
+def undetermined_shifts(shifts: Shifts) -> list[str]:
+    """Return the pairs of neighbours whose shift the overlap leaves open: both temperatures and the range, in words.
+
+    shifts : of the curves.
+    """
+    pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
+    return [
+        f"from {cold:g} to {warm:g} C (within {free:.1f} decades)"
+        for (cold, warm), free in pairs
+        if free > LARGEST_FREEDOM
+    ]
+
+
+def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[Floats, Floats, Floats]:
+    """Find the shifts of neighbouring curves by their overlap.
+
+    curves : from the coldest on.
+    temperatures : of the curves, degrees Celsius.
+    Returns (ln a_T over the coldest, the mismatch of neighbours,
+    their decades of freedom); raises ParameterError for neighbours that do not overlap.
+    """
+    found = [_align(*pair) for pair in pairwise(curves)]
+    for alignment, pair in zip(found, pairwise(temperatures), strict=True):
+        if not alignment.mismatch <= _LARGEST_MISMATCH:
+            allowed = "those of neighbouring curves that overlap when shifted"
+            raise ParameterError("temperature", "{:g} and {:g}".format(*pair), allowed)
+    steps, mismatch, freedom = np.reshape(found, (-1, 3)).T
+    return np.append(0.0, np.cumsum(steps)), mismatch, freedom
+
+
+class _LogCurve:
+    """Logarithms of moduli over ln omega, with an interpolant.
+
+    x : ln omega, ascending, each once, shape (n,).
+    y : ln E' and, unless the shift is found on the storage modulus alone, ln E''; the mean at repeated frequencies.
+    interpolate : the interpolant of y.
+    """
+
+    def __init__(self, curve: Curve, on: str) -> None:
+        """Average repeated frequencies and interpolate.
+
+        curve : storage and loss modulus.
+        on : "storage" or "both": the moduli that are kept.
+        Raises ParameterError for a single frequency.
+        """
+        from scipy.interpolate import CubicSpline, PchipInterpolator
+
+        self.x, which = np.unique(np.log(curve.omega), return_inverse=True)
+        count = np.bincount(which)
+        columns = curve[1:2] if on == "storage" else curve[1:]
+        self.y = np.stack([np.bincount(which, np.log(column)) / count for column in columns], axis=1)
+        if self.x.size < 2:
+            raise ParameterError("omega", f"{self.x.size} frequency at a temperature", "at least 2 at each")
+        self.interpolate = CubicSpline(self.x, self.y) if self.x.size > 3 else PchipInterpolator(self.x, self.y)
+
+
+class _Alignment(NamedTuple):
+    """The shift that lays the warm curve on the cold one.
+
+    step : of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
+    """
+
+    step: float
+    mismatch: float
+    freedom: float
+
+
+def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
+    """Find the shift of a pair of curves by a search over all shifts that leave an overlap.
+
+    cold, warm : the curves.
+    Returns the alignment, of NaN where no shift leaves an overlap.
+    """
+    from scipy.optimize import minimize_scalar
+
+    low, high = cold.x[0] - warm.x[-1], cold.x[-1] - warm.x[0]
+    steps = np.linspace(low, high, 2 + int((high - low) / _STEP))
+    errors = np.array([_mismatch(step, cold, warm) for step in steps])
+    best = int(np.argmin(errors))
+    if errors[best] >= _NONE:
+        return _Alignment(math.nan, math.nan, math.nan)
+    around = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
+    done = minimize_scalar(_mismatch, bounds=around, args=(cold, warm), method="bounded", options={"xatol": 1e-9})
+    error, step = min((done.fun, done.x), (errors[best], steps[best]))
+    worse = np.flatnonzero(np.sqrt(errors) > math.sqrt(error) + _EQUALLY_GOOD)
+    before, behind = worse[worse < best], worse[worse > best]
+    ends = before[-1] if before.size else 0, behind[0] if behind.size else steps.size - 1
+    return _Alignment(float(step), math.sqrt(error), (steps[ends[1]] - steps[ends[0]]) / math.log(10.0))
+
+
+def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> float:
+    """Return the mean square difference of two curves where they overlap, each at its points.
+
+    step : shift of ln omega of the warm curve.
+    cold, warm : the curves.
+    Returns :data:`_NONE` where they do not overlap enough.
+    """
+    low, high = max(cold.x[0], warm.x[0] + step), min(cold.x[-1], warm.x[-1] + step)
+    if high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0]):
+        return _NONE
+    of_warm, of_cold = (warm.x + step >= low) & (warm.x + step <= high), (cold.x >= low) & (cold.x <= high)
+    if of_warm.sum() + of_cold.sum() < _POINTS:
+        return _NONE
+    at_warm = warm.y[of_warm] - cold.interpolate(warm.x[of_warm] + step)
+    at_cold = cold.y[of_cold] - warm.interpolate(cold.x[of_cold] - step)
+    difference = np.concatenate([at_warm, at_cold])
+    return float(np.mean(difference * difference))

@@ -1,0 +1,138 @@
+"""Fewest modes for a misfit: a grid of times that reaches it, from which modes are left out or merged one by one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import product
+
+import numpy as np
+
+from ...core.array_types import Floats
+from .spectrum import Data, Spectrum, has_plateau, misfits, on_times, refined
+
+#: decades that the grid of times reaches beyond the data, in the order in which they are tried
+MARGINS = (0.5, 1.0)
+#: modes a decade of the grid, in the order in which they are tried
+DENSITIES = (1.0, 2.0)
+#: margin of the slow end in decades, down to which it goes by quarters while no long-time modulus is left
+_LEAST_MARGIN = -0.5
+#: ratio of a misfit to the best one up to which it counts as the best
+_NEAR_BEST = 1.05
+#: calls of the residuals of each refinement while modes are left out
+_CALLS = 40
+#: calls of the residuals of the last refinement
+_LAST_CALLS = 400
+#: number of spectra with one mode less that are refined
+_CANDIDATES = 3
+
+
+def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum, tuple[float, float], bool]:
+    """Find the spectrum of fewest modes that reaches a misfit, or the best one.
+
+    data : the curve.
+    target : largest misfit of each row, dimensionless.
+    modes : number of modes, of which fewer are used only where more have no strength; None: as few as the target
+    needs.
+    Returns (the spectrum, the shortest and the longest time of its grid, whether the target is reached).
+
+    Raises
+    ------
+    ParameterError
+        If no grid of times leaves a long-time modulus.
+    """
+    starts = _starts(data, None if modes else target)
+    if not starts:
+        raise data.fluid
+    limit = _NEAR_BEST * min(_size(data, spectrum) for spectrum, _ in starts)
+    reached = any(_reaches(data, spectrum, target) for spectrum, _ in starts)
+
+    def good(tried: Spectrum) -> bool:
+        return _reaches(data, tried, target) if reached else _size(data, tried) <= limit
+
+    fewest = modes or 1
+    enough = (start for start in starts if (good(start[0]) if modes is None else start[0].tau.size >= modes))
+    spectrum, ends = next(enough, starts[-1])
+    for _ in range(spectrum.tau.size - fewest):
+        fewer = _with_one_less(data, spectrum, ends, good if modes is None else None)
+        if fewer is None or spectrum.tau.size <= fewest:  # one step may leave out several
+            break
+        spectrum = fewer
+    last = refined(data, spectrum, ends, _LAST_CALLS)
+    spectrum = last if modes is not None or good(last) else spectrum
+    return spectrum, ends, _reaches(data, spectrum, target)
+
+
+def _starts(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:
+    """Fit spectra on wider and wider, denser and denser grids of times until one reaches the target.
+
+    data : the curve.
+    target : largest misfit of each row; None: all grids.
+    Returns pairs of a spectrum and the ends of its grid.  The
+    slow end of a grid is shortened until there is a long-time modulus.
+    """
+    starts: list[tuple[Spectrum, tuple[float, float]]] = []
+    low, high = data.band
+    for margin, density in product(MARGINS, DENSITIES):
+        for slow in np.arange(margin, _LEAST_MARGIN - 0.1, -0.25):
+            ends = max(10.0**-margin / high, data.shortest), 10.0**slow / low
+            if ends[1] > ends[0] and has_plateau(data, found := on_times(data, grid_of_times(ends, density))):
+                starts.append((refined(data, found, ends, _CALLS), ends))
+                break
+        if target is not None and starts and _reaches(data, starts[-1][0], target):
+            break
+    return starts
+
+
+def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
+    """Return times from the longest down, both ends among them.
+
+    ends : shortest and longest time.
+    density : times a decade.
+    """
+    decades = math.log10(ends[1] / ends[0])
+    return np.geomspace(ends[1], ends[0], max(2, 1 + round(decades * density)))
+
+
+def _reaches(data: Data, spectrum: Spectrum, target: float) -> bool:
+    """Return whether no row of the data has a misfit above the target."""
+    return max(misfits(data, spectrum)) <= target
+
+
+def _size(data: Data, spectrum: Spectrum) -> float:
+    """Return the norm of the misfits of all rows."""
+    return math.hypot(*misfits(data, spectrum))
+
+
+def _with_one_less(
+    data: Data, spectrum: Spectrum, ends: tuple[float, float], good: Callable[[Spectrum], bool] | None
+) -> Spectrum | None:
+    """Return the best spectrum of one mode less.
+
+    data : the curve.
+    spectrum : from which a mode goes.
+    ends : shortest and longest time that is allowed.
+    good : whether a spectrum is acceptable; None: any is.
+    Returns None if none of the best candidates, refined, is acceptable.
+    """
+    tried = sorted((on_times(data, tau) for tau in _times_with_one_less(spectrum)), key=lambda one: _size(data, one))
+    if good is not None and good(tried[0]):
+        return tried[0]
+    for candidate in tried[:_CANDIDATES]:
+        moved = refined(data, candidate, ends, _CALLS)
+        if good is None or good(moved):
+            return moved
+    return None
+
+
+def _times_with_one_less(spectrum: Spectrum) -> list[Floats]:
+    """Return lists of times with one left out, or with two neighbours at their mean time.
+
+    spectrum : of whose times; the mean is of the logarithms, weighted by strength.
+    """
+    tau, strength = spectrum.tau, spectrum.strength
+    without = [np.delete(tau, n) for n in range(tau.size)]
+    for n in range(tau.size - 1):
+        mean = np.exp(np.average(np.log(tau[n : n + 2]), weights=strength[n : n + 2]))
+        without.append(np.concatenate([tau[:n], [mean], tau[n + 2 :]]))
+    return without

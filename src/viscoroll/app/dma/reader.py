@@ -1,0 +1,262 @@
+"""Storage and loss modulus over frequency from a text file: :func:`read_dma`."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from itertools import product
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
+from ...io.measurements import Numbers, Table, conversion, read_table
+from .column_quantities import Column, columns_of, numbers_of
+from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli
+from .moduli_from_pair import AVERAGED, PAIRS, storage_and_loss
+from .vocabulary import OF_SHEAR, UNITS, meanings
+
+#: relative difference of frequencies in Hz and in rad/s that agree: 6.28 in place of 2 pi is off by 5e-4
+_ROUND_PI = 1e-3
+#: relative difference of frequencies that are one: instruments keep theirs to this
+_ONE_FREQUENCY = 1e-3
+#: ratio of moduli at one frequency and one temperature above which something else was varied
+_REPEATED = 1.25
+
+
+def read_dma(
+    path: str | PathLike[str], *, columns: Mapping[str, str] | None = None,
+    units: tuple[str, str] | Mapping[str, str] | None = None, decimal: str | None = None, encoding: str | None = None,
+) -> DynamicModuli:  # fmt: skip
+    """Read storage and loss modulus over frequency, as instruments and spreadsheets write them.
+
+    The headings say which column is which, in any order: frequency or angular frequency (reduced ones first), and two
+    of storage, loss, tan delta or phase angle, and magnitude of the complex modulus, or the same of compliances.  A
+    third is compared with what the two give.  Units are behind the names or in a row of their own.  Other columns are
+    left out and listed in ``notes``.  Columns are parted by tabs, semicolons, commas or blanks; there may be lines
+    before the headings, and comments that begin with ``#``.
+
+    Parameters
+    ----------
+    path : a text file in UTF-8, UTF-16 or Latin-1.
+    columns : meaning -> heading, as ``{"storage": "Module 1"}``, of columns whose names are not understood; meanings
+        are frequency, angular frequency, storage, loss, tan delta, phase angle, modulus (the magnitude), storage
+        compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
+        file without headings are called "column 0", "column 1" ...; three of them are frequency, storage and loss.
+    units : of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning -> unit,
+        in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in Pa, with a
+        warning.
+    decimal : "." or ","; default: the one that the numbers have.
+    encoding : of the file; default: by its first bytes.
+
+    Returns
+    -------
+    DynamicModuli
+        In the order of the file; ``print`` shows in three lines what was understood.  It unpacks as before:
+        ``omega, storage, loss = read_dma(path)``.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read, columns that are missing, ambiguous or contradict each other, units that are
+        unknown or of another dimension, gaps and separators of thousands; rows of several temperatures without them.
+    ParameterError
+        ``columns``, ``units``, ``decimal`` or ``encoding`` that are none.
+
+    Warns
+    -----
+    ModelWarning
+        Where neither the file nor ``units`` says what a column is in.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
+    """
+    named = dict(columns or {})
+    check_names("columns", named, UNITS, "a quantity")
+    given, default = _units(units)
+    table = read_table(path, lambda cells: _is_heading_line(cells, named), decimal=decimal, encoding=encoding)
+    if table.bare and not named:
+        if len(table.headings) != 3:
+            count = len(table.headings)
+            problem = f"has {count} columns, and no heading that names frequency, storage and loss modulus"
+            raise FileError(path, f"{problem}: give columns=")
+        named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
+    found, others = columns_of(table, named, given, default)
+    notes = [f"{table.parts} tables"] * (table.parts > 1)
+    # as rheometers write; instruments of tension name E
+    beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
+    mode, pair, columns_of_quantity = _choose(table, found, others)
+    if not mode:
+        mode = "shear" if beside else "tension"
+        reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
+        notes.append(f"{mode} is assumed, since {reason}")
+    numbers = {quantity: _agreeing(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()}
+    temperature = numbers.get("temperature")
+    if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
+        temperature = None
+        others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
+    omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
+    table.require(omega > 0.0, "the frequency is not > 0: leave out its row")
+    moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
+    storage, loss = storage_and_loss(table, pair, moduli)
+    taken = [alike[0] for alike in columns_of_quantity.values()]
+    sources = [columns_of_quantity[name][0].name for name in pair]
+    if any(UNITS[name] == "1/Pa" for name in sources):
+        square = storage**2 + loss**2
+        storage, loss = storage / square, loss / square
+    if sources != ["storage", "loss"]:
+        notes.append(f"moduli are from {' and '.join(sources)}")
+    notes += [f"{name} agrees with them" for name in moduli if name not in pair]
+    notes += [f"{column.heading!r} is log10" for column in taken if column.log]
+    listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
+    notes += [f"left aside: {listed}"] * bool(others)
+    _warn_of_assumed_units(table, taken)
+    record = DynamicModuli(
+        omega, storage, loss, temperature and temperature.values, mode, Path(path).name,
+        {column.name: column.heading for column in taken}, {column.name: column.unit for column in taken}, tuple(notes),
+    )  # fmt: skip
+    _refuse_mixed_sweeps(table, record)
+    return record
+
+
+class _Choice(NamedTuple):
+    """The columns that are read.
+
+    mode : "tension", "shear", or "" where no heading says.
+    pair : the two quantities that give the moduli, a key of :data:`.moduli_from_pair.PAIRS`.
+    columns : quantity -> its columns, of this mode or of none, and of moduli where the pair is, or of compliances.
+    """
+
+    mode: str
+    pair: tuple[str, str]
+    columns: dict[str, list[Column]]
+
+
+def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the units by quantity that overrule the file, and those of columns for which the file gives none.
+
+    units : as of :func:`read_dma`.
+    Raises ParameterError for another form, a unit that is unknown or of another dimension.
+    """
+    by_name = isinstance(units, Mapping)
+    allowed = "(frequency, moduli), as ('Hz', 'MPa'), or quantity -> unit"
+    if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
+        raise ParameterError("units", f"{units!r:.60}", allowed)
+    of_two = zip(("rad/s", "Pa"), units or (), strict=False)
+    pairs = dict(units) if by_name else {name: unit for kind, unit in of_two for name in UNITS if UNITS[name] == kind}
+    check_names("units", pairs, UNITS, "a quantity")
+    for name, unit in pairs.items():
+        try:
+            conversion(str(unit), UNITS[name])
+        except ParameterError as error:
+            raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is none of {name}") from error
+    return (pairs, {}) if by_name else ({}, pairs)
+
+
+def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
+    """Return whether cells are headings: two of them name quantities, or one was named by the user.
+
+    cells : of a line.
+    named : quantity -> heading, of columns that the user named.
+    """
+    quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
+    return len(quantities) > 1 or not set(named.values()).isdisjoint(filter(None, cells))
+
+
+def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
+    """Choose the columns that are read.
+
+    table : of the columns, for the message.
+    found : columns of known quantities.
+    others : headings of the other columns, and why they are left out; those of another mode or kind than the pair, and
+        measured frequencies beside reduced ones, are added.
+    Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
+    """
+    modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
+    quantities = {column.quantity for column in found}
+    missing = "frequency" + ": a sweep of temperature is none of frequency" * ("temperature" in quantities)
+    if quantities & {"frequency", "reduced frequency"}:
+        missing = "two of storage, loss, tan delta and modulus"
+        for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
+            columns: dict[str, list[Column]] = {}
+            unused = {}
+            for column in found:
+                if column.mode not in ("", mode) or UNITS[column.name] == excluded:
+                    unused[column.heading] = "not needed"
+                elif column.quantity == "frequency" and "reduced frequency" in quantities:
+                    unused[column.heading] = "the reduced frequency is taken"
+                else:
+                    columns.setdefault(column.quantity, []).append(column)
+            for pair in PAIRS:
+                if columns.keys() >= {*pair}:
+                    others |= unused
+                    return _Choice(mode, pair, columns)
+    problems = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
+    headings = ", ".join(map(repr, filter(None, table.headings)))
+    raise FileError(table.path, f"no column is named {missing}{problems}; headings: {headings}; give columns=")
+
+
+def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
+    """Return the numbers of the first of several columns of one quantity; the others must agree with it.
+
+    table : of the columns.
+    quantity : of which they are.
+    alike : the columns.
+    others : headings of columns that are left out, and why; all but the first are added.
+    Raises FileError with the line where they contradict each other.
+    """
+    first = numbers_of(table, alike[0])
+    for column in alike[1:]:
+        second = numbers_of(table, column)
+        relative = 0.0 if quantity == "temperature" else _ROUND_PI if quantity.endswith("frequency") else AVERAGED
+        allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (quantity == "temperature")
+        agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
+        both = f"{alike[0].heading!r} and {column.heading!r}"
+        table.require(agrees, f"{both} contradict each other: choose by columns={{{quantity!r}: ...}}")
+        others[column.heading] = f"agrees with {alike[0].heading!r}"
+    return first
+
+
+def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
+    """Warn of columns whose unit neither the file nor the user gives.
+
+    table : of the columns.
+    taken : the columns.
+    Raises FileError for a modulus or frequency without a unit beside one that has it.
+    """
+    assumed = []
+    for word, unit in {"frequency": "rad/s", "moduli": "Pa"}.items():
+        alike = [column for column in taken if UNITS[column.name] == unit]
+        without = [column for column in alike if not column.stated]
+        if without and len(without) < len(alike):
+            raise FileError(table.path, f"column {without[0].heading!r} has no unit, but others do: give units=")
+        assumed += [f"{column.unit} ({word})" for column in without[:1]]
+    if assumed:
+        text = f"{table.path}: columns without a unit are taken in {' and '.join(assumed)}"
+        warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=caller_level())
+
+
+def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
+    """Raise FileError for rows of one frequency, and for several sweeps without the temperature of each.
+
+    table : of which the record is.
+    record : the moduli in the order of the rows.
+    """
+    omega, n = record.omega, record.omega.size
+    if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():
+        problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is no frequency sweep"
+        raise FileError(table.path, problem)
+    if record.temperature is None and table.parts > 1:
+        raise FileError(table.path, f"has {table.parts} tables, and no column has their temperature: keep one of them")
+    if record.isothermal:
+        order = np.argsort(omega, kind="stable")
+        same = np.diff(omega[order]) <= _ONE_FREQUENCY * omega[order][1:]
+        repeats = np.abs(np.diff(np.log(np.abs(record.storage[order])))) <= np.log(_REPEATED)
+        holds = np.ones(n, bool)
+        holds[order[1:]] = repeats | ~same
+        problem = "the same frequency has another modulus in a row before"
+        table.require(holds, f"{problem}: rows of several temperatures or strains need a column of temperature")

@@ -1,0 +1,198 @@
+"""Parameters of a cylinder from measurements: :func:`identify`, by searches from several starts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from operator import attrgetter
+
+import numpy as np
+
+from ...core.array_types import Floats
+from ...core.checks import check_bool, check_integer
+from ...core.errors import ParameterError, check_names
+from ...cylinder import Cylinder
+from ...materials.file import SECTIONS
+from .fit import Identification
+from .problem import Minimum, Problem
+from .records import OF_RECORDS, Record
+from .unknowns import Shift, cylinder_of, unknowns_of
+
+#: chi2 above the best below which another minimum is reported: beyond, its likelihood is below 1e-3 of the best
+_ALTERNATIVE = 15.0
+#: relative tolerance of a first search, which finds the valley
+_ROUGH = 1e-4
+#: evaluations of a first search
+_STEPS = 60
+#: chi2 above the best of first searches up to which a search goes on to the minimum
+_PROMISING = 60.0
+#: distance of a coordinate from its start up to which a minimum is taken to be the only one: a factor of 1.8
+_NEAR = 0.6
+#: distance of further starts from a minimum, in the coordinate that changes most: a factor of 20
+_LEAP = 3.0
+#: rise of chi2 between two points of one minimum that is still rounding of the searches
+_RIDGE = 0.5
+#: distance of coordinates up to which two points are one
+_SAME = 1e-2
+
+
+def identify(
+    cylinder: Cylinder, unknown: Mapping[str, tuple[float, float]], data: Sequence[Record], *,
+    prior: Mapping[str, tuple[float, float]] | None = None, shift: Shift | Mapping[str, Shift] | None = None,
+    robust: bool = False, starts: int = 8, seed: int = 0, progress: bool = False,
+) -> Identification:  # fmt: skip
+    """Fit what is unknown of a cylinder and its bearing to measurements, and say what they do not tell.
+
+    Parameters
+    ----------
+    cylinder : what is known, and where the search starts.
+    unknown : range (low, high) of each, SI, by the names of run files: R, m, mu, j, g, load; E, nu, T_ref of the
+        material, E_1, tau_1 of its first, longest mode, over T_ref; the same of another half-space as base_E, base_E_1;
+        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega, both >= 0; V0,
+        omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times:
+        with mu they are the whole job for a material of a DMA.
+    data : :class:`Resistance`, :class:`Traction` and :class:`Coastdown`, all with values, or none: then what would be
+        learnt if the cylinder, without a bearing, were the truth.
+    prior : (value, standard deviation) of what is known beforehand; that of the logarithm, but for brake, drag, nu
+        and unknowns of records.
+    shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function, 1 at the temperature
+        of the cylinder; where its bodies differ {"material": ..., "base": ...}.
+    robust : let outliers count less, as |r| in place of r^2, of data and prior.
+    starts : searches, the first from the cylinder, the others spread over the ranges.
+    seed : of the latter.
+    progress : draw a progress bar if it takes longer than a second.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    ParameterError
+        A name that is none, a range that does not hold the start, more unknowns than points, records without
+        standard deviations where values are missing, records with and without values, two records of one name.
+    """
+    shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else shift or {}
+    data, prior = [data] if isinstance(data, Record) else data, prior or {}
+    for name, value, kind, allowed in (
+        ("cylinder", cylinder, Cylinder, "a Cylinder"), ("unknown", unknown, Mapping, "{name: (low, high)}"),
+        ("data", data, Iterable, "a list of records"), ("shift", shifts, Mapping, "a function, or one for each body"),
+        ("prior", prior, Mapping, "{name: (value, standard deviation)}"),
+    ):  # fmt: skip
+        if not isinstance(value, kind):
+            raise ParameterError(name, f"{value!r:.60}", allowed)
+    check_names("shift", shifts, SECTIONS, "a body")
+    count, seed, records = check_integer("starts", starts, 1), check_integer("seed", seed, 0), _records_by_name(data)
+    for record in records.values():
+        cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
+    unknowns = unknowns_of(cylinder, unknown, records, prior)
+    if not unknowns:
+        raise ParameterError("unknown", "nothing", "at least one name and its range")
+    problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
+    most = problem.points - any(column.estimated for column in problem.columns)
+    if len(unknowns) > most:
+        allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
+        raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
+    planned = not any(record.measured for record in records.values())
+    return Identification(
+        problem, _find_minima(problem, 1 if planned else count, seed, check_bool("progress", progress))
+    )
+
+
+def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
+    """Return the records by name; those without a name get that of their kind.
+
+    data : records.
+    Raises ParameterError for what is no record, two records of one name, and a mixture of data and plans.
+    """
+    found: dict[str, Record] = {}
+    for record in data:
+        if not isinstance(record, Record):
+            raise ParameterError("data", f"{record!r:.60}", "a list of Resistance, Traction and Coastdown")
+        alike = sum(type(other) is type(record) and not other.name for other in found.values())
+        name = record.name or (f"{record.LABEL} {alike + 1}" if alike else record.LABEL)
+        if name in found:
+            raise ParameterError("name", repr(name), "another for each record")
+        if not record.sigma:
+            raise ParameterError(f"{name}: sigma", None, "given where there are no values")
+        found[name] = record
+    if len({bool(record.measured) for record in found.values()}) != 1:
+        allowed = "some with values, or some without: fit the former first, then plan with its cylinder"
+        raise ParameterError("data", f"{len(found)} records", allowed)
+    return found
+
+
+def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Minimum]:
+    """Return all minima near the best one that a ridge of chi2 separates, the best first.
+
+    problem : the least squares.
+    count : number of searches, the first from the start of the problem.
+    seed : of the other starts.
+    progress : whether a progress bar is drawn.
+    """
+    from tqdm import tqdm
+
+    first = problem.estimate_sigma(problem.minimize(problem.start))
+    starts = [*_latin_hypercube(problem, count, seed), *_starts_across_valley(problem, first.u)]
+    others = tqdm(starts, "identify", delay=1.0, leave=False, disable=not progress)
+    rough = [first, *(problem.minimize(u, None, _ROUGH, _STEPS) for u in others)]
+    limit = min(found.chi2 for found in rough) + _PROMISING
+    exact = [problem.minimize(found.u) for found in rough if found.chi2 < limit]
+    minima = [problem.estimate_sigma(min(exact, key=_chi2))]
+    # of sigma as estimated at the best one
+    for found in sorted((Minimum(found.u, problem.cost(found.u)) for found in exact), key=_chi2):
+        if found.chi2 - minima[0].chi2 < _ALTERNATIVE:
+            if not any(_in_one_valley(problem, found, other) for other in minima):
+                minima.append(found)
+    return minima
+
+
+_chi2 = attrgetter("chi2")
+
+
+def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
+    """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
+
+    problem : the least squares.
+    count : number of starts, and one more, from which the first search began.
+    seed : of the hypercube.
+    """
+    from scipy.stats import qmc
+
+    free = [i for i in problem.active if problem.names[i].split(":")[0] not in OF_RECORDS]
+    if count > 1 and free:
+        for point in qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed)).random(count - 1):
+            u = problem.start.copy()
+            u[free] = problem.low[free] + point * (problem.high - problem.low)[free]
+            yield u
+
+
+def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
+    """Return two starts on either side of a minimum far from the start, along the direction that is determined
+    least.
+
+    problem : the least squares.
+    u : coordinates of the minimum.
+    Ridges of a valley lie across that direction.
+    """
+    if np.abs(u - problem.start).max() < _NEAR:
+        return []
+    along = np.linalg.svd(problem.weighted(u)[1][:, problem.active])[2][-1]
+    far = np.zeros(u.size)
+    far[problem.active] = _LEAP * along / np.abs(along).max()
+    return [np.clip(u + step, problem.low, problem.high) for step in (far, -far)]
+
+
+def _in_one_valley(problem: Problem, first: Minimum, second: Minimum) -> bool:
+    """Return whether no ridge lies between two minima.
+
+    problem : the least squares.
+    first, second : the minima.
+    chi2 is minimised at three points between, with the coordinate that differs most fixed and all others free.
+    """
+    difference = second.u - first.u
+    largest = int(np.argmax(np.abs(difference)))
+    if abs(difference[largest]) < _SAME:
+        return True
+    powers, top = np.eye(difference.size)[largest], max(first.chi2, second.chi2) + _RIDGE
+    between = (first.u + part * difference for part in (0.5, 0.25, 0.75))
+    return all(problem.minimize(u, powers, _ROUGH, _STEPS).chi2 < top for u in between)

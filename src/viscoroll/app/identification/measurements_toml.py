@@ -1,0 +1,125 @@
+"""A TOML file of measurements, a cylinder, [unknown], [prior] and [[data]], as arguments of
+:func:`.identify.identify`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from ...core.errors import FileError, ModelWarning, ParameterError, caller_level
+from ...core.sections import as_struct, check_keys, read_toml, section_error
+from ...cylinder import Cylinder
+from ...io.config import read_roller
+from ...io.measurements import column_in_unit, find_column, missing_column, named_table
+from ...materials.file import shifts_of
+from .records import Coastdown, Record, Resistance, Traction
+
+#: section of the file -> its type
+_SECTIONS = {"unknown": dict, "prior": dict, "data": list}
+#: kind of [[data]] -> record
+_KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}
+#: keys of [[data]] that all kinds of record have
+_SECTION: list[Any] = [
+    ("kind", str), ("file", str), ("decimal", str, ""), ("encoding", str, ""),
+    *((name, dict[str, str], msgspec.field(default_factory=dict)) for name in ("columns", "units")),
+]  # fmt: skip
+#: word for an initial speed that is unknown, None in Python
+_UNKNOWN = "unknown"
+
+
+def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
+    """Read the arguments of :func:`.identify.identify` from a file: cylinder, unknown, data, prior, shift.
+
+    path : of the TOML file.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with its line.
+        A file of data that cannot be read, or without a column.
+    """
+    cylinder, content = read_roller(path, tuple(_SECTIONS)), {"prior": {}} | read_toml(path)
+    if not isinstance(cylinder, Cylinder):
+        raise section_error(path, "", "scene", "measurements are in SI units: give [cylinder]")
+    for section, kind in _SECTIONS.items():
+        if not isinstance(content.get(section), kind):
+            raise section_error(
+                path, "", section, f"section {'[[data]]' if kind is list else f'[{section}]'} is missing"
+            )
+    data = [_record(Path(path), section) for section in content["data"]]
+    given = {name: content[name] for name in ("unknown", "prior")}
+    return {"cylinder": cylinder, "data": data, "shift": shifts_of(path, content)} | given
+
+
+def _record(path: Path, given: Any) -> Record:
+    """Return the record of one [[data]].
+
+    path : of the TOML file, from whose folder files of data are found.
+    given : the section.
+    Raises FileError for unknown keys, wrong types, and values that make no record.
+    """
+    named = given.get("kind") if isinstance(given, dict) else None
+    kind = next((kind for name, kind in _KINDS.items() if name == named), None)
+    if kind is None:
+        raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
+    columns = (*kind.COORDINATES, *kind.QUANTITIES)
+    own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
+    section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
+    for name in ("columns", "units"):
+        check_keys(path, f"data.{name}", getattr(section, name), columns)
+    values = {name: getattr(section, name) for name, *_ in own}
+    more: Any = {name: None if value == _UNKNOWN else value for name, value in values.items()}
+    try:
+        return kind(**more, **_columns(path.parent / section.file, kind, section))
+    except ParameterError as error:
+        raise FileError(path, f"[[data]] {section.file}: {error}") from error
+
+
+def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
+    """Read coordinates and quantities from a file of data, in SI units.
+
+    path : of the file.
+    kind : of the record, whose names the columns have where the section names none.
+    section : the [[data]], with ``columns``, ``units``, ``decimal`` and ``encoding``.
+    Returns name -> values.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read; a column that is missing, or of a unit of another dimension; columns that are not
+        understood where none is a quantity.
+
+    Warns
+    -----
+    ModelWarning
+        Columns that are left out.
+    """
+    headings = {name: section.columns.get(name, name) for name in (*kind.COORDINATES, *kind.QUANTITIES)}
+    table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
+    columns = {name: find_column(table, heading) for name, heading in headings.items()}
+    present = [name for name, column in columns.items() if column is not None]
+    for name in (*kind.COORDINATES, *section.columns):
+        if name not in present:
+            raise missing_column(table, headings[name])
+    others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
+    if others and not set(present) & set(kind.QUANTITIES):
+        problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
+        raise FileError(path, f"{problem}; a plan has no other columns")
+    if others:
+        text = f"{path.name}: columns that are left aside: {', '.join(others)}"
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+    found = {}
+    for name in present:
+        unit = kind.unit(name)
+        try:
+            found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
+        except ParameterError as error:
+            per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
+            raise ParameterError(name, f"in {error.value}", f"in a unit of {unit}{per}") from error
+    return found

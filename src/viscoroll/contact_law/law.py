@@ -1,0 +1,216 @@
+"""The contact law of one scene as a function for integrators: :func:`law`."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Literal, overload
+
+import numpy as np
+
+from ..core.array_types import Floats, Numbers
+from ..core.checks import check_array, check_bool
+from ..core.errors import ParameterError
+from ..kernels.rows.loads import Loads, LoadsAndSlopes
+from ..materials.law_grid import LawGrid
+from .contact import contact
+from .contact_table import refuse_overflow
+from .parameters import Roller, refuse_arrays, resolve_model
+from .validity.model_warnings import warn_of_contact
+
+#: Types that the compiled function takes; others go through :func:`contact`.
+_NUMBERS = frozenset({float, int, np.float64})
+#: Makes :class:`Loads` from four numbers, faster than its constructor.
+_loads = partial(tuple.__new__, Loads)
+#: Makes :class:`LoadsAndSlopes` from eight numbers.
+_loads_and_slopes = partial(tuple.__new__, LoadsAndSlopes)
+
+
+class Law:
+    """The law of a scene or a cylinder as a function of V and omega: the result of :func:`law`.
+
+    Attributes
+    ----------
+    roller, scene : the scene or cylinder, and its dimensionless parameters.
+    """
+
+    def __init__(self, roller: Roller) -> None:
+        """Check that ``roller`` is one scene of one material, and compile its law; raises ParameterError."""
+        from ..kernels.rows.c_function import pack_scenes
+        from ..kernels.rows.jitted_law import Jitted
+
+        _, scene, scale = resolve_model(roller, "law")
+        if scene.material_array is not None:
+            allowed = "one material, as material[i]: a law is of one scene"
+            raise ParameterError("material", repr(scene.material), allowed)
+        refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
+        table = scene.table
+        assert table is not None
+        self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])
+        #: whether there are speeds that give a warning
+        self._warns = roller.body_data is not None and roller.body_data.covered_speeds is not None
+        scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
+        self._use(Jitted(scenes, table))
+
+    def _use(self, jitted: Any) -> None:
+        """Keep the compiled function, its two kinds of user data, and the type of its output."""
+        from ..kernels.rows.jitted_law import ResultBuffer
+
+        self._jitted, self._output = jitted, ResultBuffer
+        self._function, self._plain, self._sloped = jitted.function, jitted.plain, jitted.address
+
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[False] = False
+    ) -> Loads[float]: ...
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[True]
+    ) -> LoadsAndSlopes[float]: ...
+    @overload
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[False] = False) -> Loads[Floats]: ...
+    @overload
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Floats]: ...
+    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
+        """Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
+
+        Parameters
+        ----------
+        V, omega : numbers, or arrays that broadcast.
+        slopes : also the derivatives.
+
+        Returns
+        -------
+        Loads or LoadsAndSlopes
+            Q, M, M_half_space, M_cylinder, and with slopes dQ_dV at fixed omega, dQ_domega, dM_half_space_dV,
+            dM_cylinder_dV; in the units of what rolls.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
+        """
+        if slopes is not False:
+            slopes = check_bool("slopes", slopes)
+        if type(V) not in _NUMBERS or type(omega) not in _NUMBERS:
+            return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+        out = self._output()
+        try:
+            status = self._function(V, omega, out, self._sloped if slopes else self._plain)
+        except ctypes.ArgumentError:  # an integer beyond the doubles
+            status = 1
+        if status:
+            self._refuse(check_array("V", V), check_array("omega", omega))
+        if self._warns:
+            warn_of_contact(self.roller, V, (V, V))
+        return _loads_and_slopes(out) if slopes else _loads(out[:4])
+
+    def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
+        """Return the law at arrays ``V`` and ``omega`` as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
+        return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
+
+    def _refuse(self, V: Floats, omega: Floats) -> None:
+        """Raise ParameterError for finite numbers at which the law is not defined."""
+        refuse_overflow(self._kappa, V)
+
+    @property
+    def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
+        """(V, omega) -> :class:`LoadsAndSlopes` for numba's jitted functions, which take it as an argument or from
+        around them.  It returns NaN where the law would raise an error.
+        """
+        return self._jitted
+
+    @property
+    def address(self) -> tuple[int, int]:
+        """The address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of
+        its user data.
+
+        It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
+        error, with NaN, and returns another number.  Any number of threads may call it, while this law exists.  All
+        laws of half-spaces share the function, and all laws of covers another one.
+        """
+        return self._jitted.function_address, self._jitted.address
+
+    @property
+    def ctypes(self) -> tuple[Any, Any]:
+        """Function and user data for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them."""
+        return self._jitted.ctypes
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return law, (self.roller,)
+
+    def __repr__(self) -> str:
+        return f"law of {self.roller!r}"
+
+
+class _LawOfGrid(Law):
+    """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
+
+    def __init__(self, grid: LawGrid) -> None:
+        """Compile the splines of a ``grid``."""
+        from ..kernels.splines.law import jitted_grid
+
+        self.roller: Any = grid
+        self._warns = False
+        (low, high), slowest = grid.delta, grid.V[0]
+        self._use(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+
+    def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
+        """Return the law at arrays, one state after another; see :class:`Law`."""
+        evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
+        return kind(*evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
+
+    def _refuse(self, V: Floats, omega: Floats) -> None:
+        """Raise OutOfTableError for a state outside the axes of the grid."""
+        self.roller.refuse_outside(V, omega)
+
+
+def law(roller: Roller | LawGrid) -> Law:
+    """The contact law of one scene as a function of V and omega, for integrators of one's own: Eqs. (6)-(10),
+    (15)-(18).
+
+    ``law(V, omega)`` is :func:`contact` at a given omega, where only V and omega remain to be checked;
+    ``law.jitted`` and ``law.address`` are the same for numba and C.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, or a :class:`Cylinder`, whose law
+        takes and gives SI units: one number each, one material or two bodies; or the grid of
+        :func:`viscoroll.load_law`, in its units.
+
+    Returns
+    -------
+    Law
+        A function of V and omega.  Creep is delta = (omega - V)/V, and at V = 0 < abs(omega) the contact slips as a
+        whole.  Threads may share it; pickled, it binds its scene anew.
+
+    Raises
+    ------
+    ParameterError
+        What is no scene and no cylinder; arrays for alpha, kappa or mu; a material each.
+
+    Notes
+    -----
+    For numbers the bits are those of :func:`contact`; for arrays :func:`contact` is called
+    (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
+    a corner in V only; the slopes there are those of full slip.  A call without slopes does not compute them.
+
+    Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
+
+    For a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file states
+    (``tests/tables/test_splines.py``): clipped to \\|Q\\| <= mu P; below the slowest speed Q is that at the slowest,
+    and M in proportion to V; beyond both ends of delta \\|Q\\| is mu P where the grid slips fully there.  Other states
+    outside of the axes raise OutOfTableError.  Arrays are looked up one state after another.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> law = vr.law(vr.Scene(alpha=11.0, kappa=10.0, mu=0.3))
+    >>> loads = law(0.5, 0.51)
+    >>> loads.Q > 0.0
+    True
+    """
+    if isinstance(roller, LawGrid):
+        return _LawOfGrid(roller)
+    return Law(roller)

@@ -1,0 +1,273 @@
+"""The assumptions of the model and their limits: :class:`Assumption`, and :class:`Validity`, which lists them all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.results import SummaryRow, as_html, as_text
+from ...materials.law_modes import by_modes
+from ...materials.measured import Measured
+from ...materials.prony import Prony
+
+#: Largest distance from the axis to the far end of the contact, divided by R.  The parabola of the theory lies
+#: (x/R)^2/4 = 1 % below the circle there.
+REACH_LIMIT = 0.2
+#: Largest speed divided by the shear wave speed, dimensionless: below it the load is within 10 % of the static one (the
+#: paper's ref. [31], Table 1).
+WAVE_LIMIT = 0.2
+#: Largest Dundurs' constant, dimensionless.  The normal slope of the surface contains that constant times the shear
+#: traction beside the pressure, and the shear traction is at most mu times the pressure.
+DUNDURS_LIMIT = 0.05
+#: Largest creepage in full slip, dimensionless: the surface speeds of the two bodies differ by this ratio there, and M
+#: is computed with the speed of the axis for both.
+CREEP_LIMIT = 0.3
+#: Largest contact length divided by the thickness of a layer at which the length is within 5 % of that on a half-space
+#: for every Poisson's ratio (measured by pipeline/evidence/prove/layer.py).
+THICK_LIMIT = 2.0 / 3.0
+#: Smallest kappa = R/l0, dimensionless: the contact at rest then ends half a radius from the axis.  Below it contacts
+#: and motions warn.
+LEAST_KAPPA = 1.0
+#: Sentence of the warning for a kappa below :data:`LEAST_KAPPA`.
+NOT_SMALL = (
+    "kappa = R/l0 is below 1: at rest the contact is longer than the radius, and the half-space model does not apply "
+    "(are moduli in Pa and the load in N/m?)"
+)
+#: Largest root mean square of the relative errors of a fit, dimensionless, at which the fitted material counts as the
+#: measured one.
+MISFIT_LIMIT = 0.05
+
+
+class Assumption(NamedTuple):
+    """One assumption of the model.
+
+    Attributes
+    ----------
+    holds : whether it holds, in the shape of V; None where no number here can decide.
+    value : the number that decides, in the shape of V; None likewise.
+    sentence : the largest value, the allowed one, and what to do, in words.
+    """
+
+    holds: Any
+    value: Any
+    sentence: str
+
+    @property
+    def word(self) -> str:
+        """ "yes" if it holds at every V, "no" if not, "?" where no number can decide."""
+        return "?" if self.holds is None else "yes" if np.all(self.holds) else "no"
+
+    def __repr__(self) -> str:
+        return f"{self.word}: {self.sentence}"
+
+
+class Validity(NamedTuple):
+    """All assumptions of the model, each with its value and whether it holds.
+
+    Attributes
+    ----------
+    small_contact : value: distance from the axis to the far end of the contact divided by R,
+        lam (1 + epsilon)/(2 kappa).
+    under_axis : value: epsilon.  Above 1 the whole contact lies ahead of the axis, which the theory allows.
+    quasistatic : value: speed divided by the shear wave speed; needs a density.
+    steady : a :class:`.steadiness.Steadiness`; value: the unsteadiness gamma |N(V)|/(1 + j), where M = M(V) + N V' for
+        slow changes of speed.  It decides whether the law of steady rolling may drive a motion, and down to which
+        speed; contact states and rolling at constant speed do not depend on it.
+    creep : value: |delta|.  In full slip the two bodies pass the contact at different speeds, and the rolling
+        moment is computed with the speed of the axis for both.  Needs omega.
+    bodies : value: Dundurs' constant of the pair, of long times or of the instantaneous moduli, whichever is larger in
+        size; needs the materials.
+    measured : value: :func:`transit_frequency`, 1/s, compared with the frequencies at which each body was measured;
+        needs a material's ``measured``.
+    thick : for a layer of known thickness; value: half the contact length divided by the thickness.  Up to its limit
+        one stick zone in front with slip behind is right.
+    plane : plane strain or plane stress, which V does not decide.
+
+    Examples
+    --------
+    Printed, each line says yes, no or, where no number can decide, "?".
+
+    >>> import viscoroll as vr
+    >>> vr.presets.RUBBER_CYLINDER.validity(2.0).failed
+    ()
+    """
+
+    small_contact: Assumption
+    under_axis: Assumption
+    quasistatic: Assumption
+    steady: Assumption
+    creep: Assumption
+    bodies: Assumption
+    measured: Assumption
+    thick: Assumption
+    plane: Assumption
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Names of the assumptions that fail for at least one V; empty if none is known to fail."""
+        return tuple(name for name, assumption in self._asdict().items() if assumption.word == "no")
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Title and rows of the printed report."""
+        items = self._asdict().items()
+        rows = [SummaryRow(name, f"{assumption.word:<4} {assumption.sentence}") for name, assumption in items]
+        return "What the model assumes, and whether it holds", rows
+
+    def __repr__(self) -> str:
+        return as_text(*self._summary())
+
+    def _repr_html_(self) -> str:
+        return as_html(*self._summary())
+
+
+#: The report where no number can decide; :func:`.validity.validity` replaces what is known.
+UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
+    "", "",
+    "inertia of the deforming bodies is neglected; give density= to compare the speed with the shear wave speed",
+    "whether the law of steady rolling may drive a motion is not known without gamma: give the scene a gamma",
+    "whether both bodies pass the contact at nearly one speed is not known: give omega=",
+    "Dundurs' constant of the two bodies is not known, and must be 0, as it is for like bodies: use a Cylinder",
+    "the frequencies at which the material was measured are not known: give the Material measured=",
+    "thickness not known: the law is that of a half-space, whose contact length is within 5 % of that on a layer where "
+    f"it is up to {THICK_LIMIT:.2g} times the thickness",
+    "the state must be plane strain (a long cylinder, or one between walls) or plane stress (a thin disc)",
+)))  # fmt: skip
+
+#: The assumption ``steady`` of a cover.
+UNKNOWN_OF_COVERS = Assumption(
+    None, None, "whether the law of steady rolling may drive a motion is not known for a layer of finite thickness"
+)
+
+
+def transit_frequency(V: Any, length: Any) -> Any:
+    """Return the rate at which a point passes the contact, |V| divided by the contact length.
+
+    The law is valid where the material is known at angular frequencies of this size.  Near the leading edge every
+    contact has higher rates: modes faster than the transit frequency act there.
+
+    V: speed of the axis, any unit, any shape.
+    length: contact length in the unit of length of V; broadcasts with V.
+    Returns the rate in the unit of time of V, 1/s for SI units.
+    """
+    return np.abs(V) / length
+
+
+def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
+    """Return kappa V at which the transit frequency has two given values (Eq. (6)).
+
+    series: Prony series of the material.
+    low, high: the two transit frequencies, divided by 1/T_ref of the series, dimensionless.
+    Returns (kappa V at ``low``, kappa V at ``high``), dimensionless.
+    """
+    rates = np.array([low, high])
+    h_over_zeta = by_modes(series, 0.5 / rates).values[1]
+    low, high = (rates / np.sqrt(1.0 + 2.0 * h_over_zeta)).tolist()  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
+    return low, high
+
+
+def _largest(values: Any) -> float:
+    """Return the largest of ``values``, any shape; 0 of none."""
+    return float(np.max(values, initial=0.0))
+
+
+def assess_small_contact(reach: Any) -> Assumption:
+    """Compare the far end of the contact with :data:`REACH_LIMIT`.
+
+    reach: distance from the axis to the far end of the contact divided by R, any shape.
+    Returns the assumption ``small_contact``.
+    """
+    far = _largest(reach)
+    return Assumption(
+        reach <= REACH_LIMIT, reach,
+        f"the contact reaches {far:.2g} R from the axis, where the parabola in place of the circle has an error of "
+        f"{25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) is allowed"
+        + "; reduce the load, or take a stiffer material" * (far > REACH_LIMIT),
+    )  # fmt: skip
+
+
+def assess_position(epsilon: Any) -> Assumption:
+    """Say whether the axis is above the contact, which the theory does not require.
+
+    epsilon: shift of the contact towards the leading edge in half contact lengths, any shape.
+    Returns the assumption ``under_axis``.
+    """
+    ahead = _largest(epsilon)
+    where = (
+        "the whole contact lies ahead of the axis, which is allowed" if ahead > 1.0 else "the axis is above the contact"
+    )
+    return Assumption(epsilon <= 1.0, epsilon, f"epsilon = {ahead:.2g}: {where}")
+
+
+def assess_creep(delta: Any, full_slip: Any) -> Assumption:
+    """Compare the creepage in full slip with :data:`CREEP_LIMIT`.
+
+    delta: creepage, dimensionless, any shape.
+    full_slip: whether the contact slips fully; broadcasts with delta.
+    Returns the assumption ``creep``.
+    """
+    size, full_slip = np.broadcast_arrays(np.abs(delta), full_slip)
+    most = float(np.max(size, initial=0.0, where=full_slip))
+    return Assumption(
+        ~full_slip | (size <= CREEP_LIMIT), size,
+        f"in full slip the surface speeds of the two bodies differ by {100.0 * most:.2g} % of V; up to "
+        f"{100.0 * CREEP_LIMIT:g} % is allowed, since the rolling moment is computed with the speed of the axis"
+        if most > 0.0
+        else "both bodies pass the contact at nearly one speed: there is no full slip",
+    )  # fmt: skip
+
+
+def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
+    """Compare the speed with the shear wave speed.
+
+    wave_ratio: speed divided by the shear wave speed, any shape; None where no density is known.
+    unknown: names of the bodies without a density.
+    Returns the assumption ``quasistatic``.
+    """
+    if wave_ratio is None:
+        return UNKNOWN.quasistatic
+    return Assumption(
+        wave_ratio <= WAVE_LIMIT, wave_ratio,
+        f"the speed is {100.0 * _largest(wave_ratio):.2g} % of the shear wave speed; up to "
+        f"{100.0 * WAVE_LIMIT:g} % is allowed, where the load is within 10 % of the static one"
+        + "".join(f"; the density of {body} is not known" for body in unknown),
+    )  # fmt: skip
+
+
+def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
+    """Compare Dundurs' constant of two bodies with :data:`DUNDURS_LIMIT`.
+
+    long, instant: the constant by the long-time and by the instantaneous moduli, dimensionless.
+    like: whether the bodies are alike, so that the constant is 0 at all times.
+    Returns the assumption ``bodies``.
+    """
+    worst = max(long, instant, key=abs)
+    if like:
+        return Assumption(True, 0.0, "cylinder and half-space are alike: Dundurs' constant is 0")
+    if worst == 0.0:
+        return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not change the pressure")
+    return Assumption(
+        abs(worst) <= DUNDURS_LIMIT, worst,
+        f"Dundurs' constant is {long:.2g} for long times, {instant:.2g} at once; up to {DUNDURS_LIMIT} in size is "
+        "allowed: the theory neglects the part of the pressure that shear causes",
+    )  # fmt: skip
+
+
+def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Assumption:
+    """Compare the transit frequency with the frequencies at which each body was measured.
+
+    frequency: transit frequency, 1/s, any shape.
+    records: name of a body -> what was measured of it, for the bodies that have data.
+    Returns the assumption ``measured``; it holds where the frequency lies in the band of every body, and every fit
+    meets its data to :data:`MISFIT_LIMIT`.
+    """
+    if not records:
+        return UNKNOWN.measured
+    ends = dict.fromkeys(f"{end:.2g}" for end in (np.min(frequency, initial=np.inf), np.max(frequency, initial=0.0)))
+    sentence = f"the transit frequency of the contact is {' to '.join(ends)} 1/s, at its leading edge higher"
+    holds = np.full(np.shape(frequency), True)[()]
+    for body, data in records.items():
+        holds = holds & (data.low <= frequency) & (frequency <= data.high) & (data.misfit <= MISFIT_LIMIT)
+        sentence += f"; {body} was measured from {data}"
+    return Assumption(holds, frequency, sentence)

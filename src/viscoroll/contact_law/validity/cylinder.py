@@ -1,0 +1,205 @@
+"""Data of the bodies of a cylinder in SI units, and the assumptions that need them: :class:`BodyData`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.checks import check_number
+from ...core.scale import SI
+from ...materials.law_table import law_table
+from ...materials.material import Material
+from ...materials.measured import Measured
+from ...materials.pair import Pair
+from ..contact_table import pure_rolling_fields
+from ..parameters import Parameters
+from .assumptions import (
+    LEAST_KAPPA,
+    MISFIT_LIMIT,
+    Assumption,
+    Validity,
+    assess_coupling,
+    assess_inertia,
+    assess_measured_band,
+    transit_frequency,
+    transit_speeds,
+)  # fmt: skip
+
+#: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness matter.
+_LEAST_SHARE = 0.01
+#: (Lowest, highest) speed, m/s, of data that hold at no speed.
+NO_SPEEDS = math.inf, 0.0
+#: log2 of kappa V at which the contact length of a cover is evaluated: interpolation between them has an error below
+#: 1 %.
+_OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
+
+
+class WaveRatio(NamedTuple):
+    """A speed compared with the slowest shear wave.
+
+    ratio : speed divided by the shear wave speed, in the shape of the speed; None where no density is known.
+    unknown : names of the bodies whose density is not known.
+    """
+
+    ratio: Any
+    unknown: list[str]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyData:
+    """Data of the bodies of one cylinder or of several that share their materials.
+
+    Attributes
+    ----------
+    pair : both bodies; None where both are of the paper's material.
+    G : shear modulus of the paper's material, Pa; None with a pair.
+    R, l0 : radius and contact length at rest, m, numbers or (n,).
+    T_ref : unit of time of the scene, s.
+    plane : "strain" or "stress".
+    scene : the dimensionless scene.
+    """
+
+    pair: Pair | None
+    G: Any
+    R: Any
+    l0: Any
+    T_ref: float
+    plane: str
+    scene: Parameters
+
+    @cached_property
+    def records(self) -> dict[str, Measured]:
+        """What was measured of each different body whose share of the compliance counts, by the name of the body."""
+        pair = self.pair
+        bodies: dict[str, tuple[Material, float]] = {}
+        if pair is not None and pair.like:
+            bodies = {"the material": (pair.half_space, 1.0)}
+        elif pair is not None:
+            bodies = {"the cylinder": (pair.cylinder, pair.share), "the base": (pair.half_space, 1.0 - pair.share)}
+        return {
+            name: body.measured
+            for name, (body, share) in bodies.items()
+            if share >= _LEAST_SHARE and body.measured is not None
+        }
+
+    @cached_property
+    def measured_rates(self) -> tuple[float, float] | None:
+        """(Lowest, highest) |V|/l0, 1/s, at which the transit frequency is in the data of all bodies.
+
+        None where nothing was measured.
+        """
+        records, series = self.records.values(), self.scene.series
+        if not records or series is None:
+            return None
+        ends = max(data.low for data in records), min(data.high for data in records)
+        low, high = (rate * self.T_ref for rate in ends)
+        if self.scene.cover is not None:
+            u = np.exp2(_OCTAVES_OF_SPEED)
+            (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
+            low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
+        else:
+            low, high = transit_speeds(series, low, high)
+        return low / self.T_ref, high / self.T_ref
+
+    @cached_property
+    def measured_speeds(self) -> tuple[float, float] | None:
+        """(Lowest, highest) |V|, m/s, at which every cylinder is inside the data; None where nothing was measured.
+
+        :data:`NO_SPEEDS` for a fit that misses its data.
+        """
+        if self.measured_rates is None:
+            return None
+        if any(data.misfit > MISFIT_LIMIT for data in self.records.values()):
+            return NO_SPEEDS
+        return self.measured_rates[0] * float(np.max(self.l0)), self.measured_rates[1] * float(np.min(self.l0))
+
+    @cached_property
+    def small_at_rest(self) -> bool:
+        """Whether no contact at rest is longer than the radius."""
+        return float(np.min(self.scene.kappa, initial=math.inf)) >= LEAST_KAPPA
+
+    @cached_property
+    def covered_speeds(self) -> tuple[float, float] | None:
+        """(Lowest, highest) |V|, m/s, without a warning of contacts; None where no speed gives one."""
+        bands = [band for band in (self.measured_speeds, None if self.small_at_rest else NO_SPEEDS) if band is not None]
+        return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
+
+    @cached_property
+    def wave_speed(self) -> float | None:
+        """Speed of the slowest shear wave in any of the cylinders, m/s; None where no density is known."""
+        slowness = self.wave_ratio(np.ones(()), None).ratio
+        return None if slowness is None else 1.0 / float(np.max(slowness))
+
+    def relative_length(self, rate: Any) -> Any:
+        """Return the contact length divided by l0, for one material.
+
+        rate: |V|/l0, 1/s, any shape.
+        Returns lam, dimensionless, in one dimension at least.
+        """
+        material, unit = self.scene.in_own_time()
+        (lam,) = pure_rolling_fields(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
+        return lam
+
+    def wave_ratio(self, speed: Any, density: float | None) -> WaveRatio:
+        """Return the ratio of a speed to the slowest shear wave of both bodies, by their long-time shear moduli.
+
+        speed: m/s, any shape.
+        density: of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
+        """
+        bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, density)]
+        if self.pair is not None:
+            first, second = self.pair.cylinder, self.pair.half_space
+            own = first.density if density is None else density
+            bodies = [("the cylinder", first.G, own), ("the base", second.G, second.density)]
+            if self.pair.like:
+                bodies = [("the material", first.G, second.density if own is None else own)]
+        # In this order of factors V = 0 gives 0 for every density.
+        with np.errstate(over="ignore"):
+            ratios = [speed * np.sqrt(1.0 / G) * math.sqrt(rho) for _, G, rho in bodies if rho is not None]
+        unknown = [name for name, G, rho in bodies if rho is None and not np.all(np.isinf(G))]
+        return WaveRatio(np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None, unknown)
+
+    def extend_validity(self, report: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
+        """Add the assumptions that need quantities in SI units to the report of a state.
+
+        report: of the dimensionless scene.
+        lam: contact length divided by l0, dimensionless.
+        V, omega: speeds, m/s and rad/s; omega may be None.
+        density: as of :func:`.validity.validity`.
+        Returns the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
+        """
+        if density is not None:
+            density = check_number("density", density, unit=SI, low=0.0, strict=True)
+        fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
+        pair, length = self.pair, lam * self.l0
+        kind = (
+            "plane strain: a long cylinder, or one between walls"
+            if self.plane == "strain"
+            else "plane stress: a thin disc"
+        )
+        return report._replace(
+            quasistatic=assess_inertia(*self.wave_ratio(fastest, density)),
+            bodies=assess_coupling(*(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like),
+            measured=assess_measured_band(transit_frequency(V, length), self.records),
+            plane=Assumption(None, None, f"the state is taken as {kind}"),
+        )
+
+
+def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
+    """Say whether speeds leave a band of |V|; rest is passed over, since M = 0 there.
+
+    extent: (smallest, largest) of the speeds, signed.
+    band: (lowest, highest) |V|, in the same unit.
+    """
+    slowest, fastest = max(extent[0], -extent[1], 0.0), max(extent[1], -extent[0])
+    return fastest > band[1] or 0.0 < slowest < band[0]
+
+
+def extent_of(values: Any) -> tuple[float, float]:
+    """Return (smallest, largest) of an array of any shape, without its NaN; (0, 0) if nothing is left."""
+    ends = (end.reduce(values, axis=None, initial=np.nan) for end in (np.fmin, np.fmax))
+    return tuple(0.0 if np.isnan(end) else float(end) for end in ends)  # type: ignore[return-value]

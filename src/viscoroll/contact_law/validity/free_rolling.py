@@ -1,0 +1,218 @@
+"""Free rolling by the law of steady rolling, and where it is accurate: by the next term of M = M(V) + N(V) V'.
+
+N acts as an added mass.  Divided by the mass it is the unsteadiness g |N(V)| with g = gamma/(1 + j), which is about the
+relative error of V in a motion where it was no larger before (docs/validity.md).
+Free rolling depends on u = kappa V, on g and on the material:
+u' = -g kappa M(u); the distance is the integral of u du/(g kappa M), in units of l0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.array_types import Floats, Integers
+from ...core.scale import Scale
+from ...materials.bodies import one_series
+from ...materials.law_table import law_table
+from ...materials.prony import Prony
+from ..contact_table import pure_rolling_fields
+from ..parameters import Parameters, refuse_cover, series_in_own_time
+from .free_rolling_curve import Curve, curve_of
+
+#: kappa |V| from which on every contact is in its limit of fast rolling, dimensionless.
+_FASTEST = 1e300
+#: Part of the energy, dimensionless, below which the lost distance is computed as proportional to the lost energy.
+_SMALL_LOSS = 1e-7
+
+
+class ContactLengths(NamedTuple):
+    """Lengths of the contact at a speed, dimensionless.
+
+    reach : distance from the axis to the far end of the contact divided by R, lam (1 + epsilon)/(2 kappa).
+    epsilon : shift towards the leading edge in half contact lengths.
+    lam : contact length divided by l0.
+    """
+
+    reach: Any
+    epsilon: Any
+    lam: Any
+
+    @classmethod
+    def of(cls, lam: Any, epsilon: Any, kappa: Any) -> ContactLengths:
+        """Return the lengths of contacts of given lam, epsilon and kappa."""
+        return cls(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
+
+
+class Reach(NamedTuple):
+    """The part of free rolling in which the error of V is below a level.
+
+    Attributes
+    ----------
+    speed : the part ends at this speed; 0: at rest.  Where the error is above the level already at V, the next higher
+        speed from which on it is below.
+    time, way : time and distance from V to there; an infinite time: to rest.  0 where the error is above the level
+        at V.
+    left : distance from there to rest.
+    """
+
+    speed: Any
+    time: Any
+    way: Any
+    left: Any
+
+
+class Start(NamedTuple):
+    """Losses of a start at V after a long standstill, compared with a start from steady contact.
+
+    Attributes
+    ----------
+    speed, way : lost speed and lost distance; all of V where the cylinder stays in its indentation.
+    """
+
+    speed: Any
+    way: Any
+
+
+@dataclass(frozen=True, eq=False)
+class FreeRolling:
+    """Initial states of free rolling, each with one of several materials.
+
+    Attributes
+    ----------
+    materials : alphas or series in their own times.
+    index : of the material of each state, in the shape of u.
+    u : kappa |V| in the material's own time, dimensionless, any shape.
+    g : gamma/(1 + j) in the material's own time.
+    speed, time, length : 1 of u, of the own time and of l0, in the units of the caller.
+    units : names of these units; empty for dimensionless ones.
+    """
+
+    materials: Sequence[float | Prony]
+    index: Integers
+    u: Floats
+    g: Floats
+    speed: Any
+    time: Any
+    length: Any
+    units: tuple[str, str, str] = ("", "", "")
+
+    @classmethod
+    def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
+        """Return the states of a scene at speeds V, dimensionless, any shape; raises ParameterError for a cover."""
+        refuse_cover(scene, "how it rolls freely from rest needs N, which is not known")
+        materials: Any
+        unit: Any
+        if scene.material_array is None:
+            material, unit = scene.in_own_time()
+            materials, index = (
+                np.unique(material, return_inverse=True) if np.ndim(material) else ([material], np.zeros((), int))
+            )
+        else:
+            pairs = (series_in_own_time(one_series(one)) for one in scene.material_array)
+            materials, unit = zip(*pairs, strict=True)
+            unit = np.array(unit, np.float64)
+            index = np.arange(unit.size)
+        gamma = np.nan if scene.gamma is None else scene.gamma
+        with np.errstate(over="ignore"):
+            u = np.asarray(scene.kappa * np.abs(V) * unit + 0.0 * index)
+            g = gamma * unit * unit / (1.0 + np.asarray(scene.j))
+        u, index = np.broadcast_arrays(u, index, g)[:2]
+        return cls(materials, index, u, g, 1.0 / (scene.kappa * unit), unit, 1.0 / scene.kappa)
+
+    def scaled(self, scale: Scale) -> FreeRolling:
+        """Return the same states with the units of a cylinder's scale."""
+        if not scale.si:
+            return self
+        speed, time, length = self.speed * scale["V"], self.time * scale["t"], self.length * scale["x"]
+        return replace(self, speed=speed, time=time, length=length, units=("m/s", "s", "m"))
+
+    def take(self, index: tuple[Any, ...]) -> FreeRolling:
+        """Return the states at an index of numpy into u."""
+        arrays = ("index", "u", "g", "speed", "time", "length")
+        return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays})
+
+    def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
+        """Yield each material that occurs, and the flat index of its states."""
+        if len(self.materials) == 1:
+            yield self.materials[0], slice(None)
+            return
+        order = np.argsort(self.index, axis=None, kind="stable")
+        ends = np.searchsorted(self.index.ravel()[order], np.arange(len(self.materials) + 1))
+        for material, (first, last) in zip(self.materials, pairwise(ends), strict=True):
+            if last > first:
+                yield material, order[first:last]
+
+    def contact_lengths(self, kappa: Any) -> ContactLengths:
+        """Return the lengths of the contacts of the states; ``kappa`` of the scene, broadcasts with u."""
+        out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
+        for material, part in self._groups():
+            out[:, part] = pure_rolling_fields(law_table(material), u[part], "lam", "epsilon")
+        lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
+        return ContactLengths.of(lam, epsilon, kappa)
+
+    def _evaluate(
+        self, function: Callable[..., Sequence[Floats]], elastic: Sequence[float], *more: Any
+    ) -> list[Floats]:
+        """Evaluate a function of the curve of each material at its states.
+
+        function: takes a curve, u, g and ``more`` of some states, (n,), and returns several arrays (n,).
+        elastic: its values for an elastic material, which has no curve.
+        more: further arguments, broadcast to u.
+        Returns the arrays in the shape of u.
+        """
+        out = np.empty((len(elastic), self.u.size))
+        arrays = [np.broadcast_to(array, self.u.shape).ravel() for array in (self.u, self.g, *more)]
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            for material, part in self._groups():
+                curve = curve_of(material)
+                values: Any = elastic if curve is None else function(curve, *(array[part] for array in arrays))
+                for row, value in zip(out, values, strict=True):
+                    row[part] = value
+        return [row.reshape(self.u.shape)[()] for row in out]
+
+    @cached_property
+    def unsteadiness(self) -> Any:
+        """g |N|, dimensionless, in the shape of u; 0 at rest."""
+        return self._evaluate(lambda curve, u, g: [np.where(u > 0.0, g * np.abs(curve.N(u)), 0.0)], [0.0])[0]
+
+    def distance(self) -> Any:
+        """Return the distance to rest by the law of steady rolling, in the unit of the caller."""
+        return self._evaluate(lambda curve, u, g: [curve.distance(u) / g], [np.inf])[0] * self.length
+
+    def reach(self, level: float) -> Reach:
+        """Return the part of free rolling in which the unsteadiness is below a level, dimensionless."""
+
+        def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
+            end, below = np.empty(u.size), np.empty(u.size, bool)
+            levels, group = np.unique(g, return_inverse=True)
+            for n, value in enumerate(levels):
+                part = group == n if levels.size > 1 else slice(None)
+                end[part], below[part] = curve.limit_speed(u[part], level / value)
+            start, left = np.where(below, end, u), curve.distance(np.where(below, end, u))
+            time = np.where(start > 0.0, curve.time(u) - curve.time(start), np.inf)
+            way = np.where(below, curve.distance(u) - left, 0.0)
+            return [end, np.where(below, time, 0.0) / g, way / g, left / g]
+
+        end, time, way, left = self._evaluate(evaluate, [0.0, np.inf, np.inf, 0.0])
+        return Reach(end * self.speed, time * self.time, way * self.length, left * self.length)
+
+    def start(self, rested: float = math.inf) -> Start:
+        """Return the losses of a start after a standstill; ``rested``: its time, in the unit of the caller."""
+
+        def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
+            way = curve.distance(u)
+            W = curve.work(u, way / g, rested)
+            part = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)
+            kept = np.sqrt(1.0 - part)
+            lost = np.where(part > _SMALL_LOSS, (way - curve.distance(u * kept)) / g, 0.25 * W / curve.M(u))
+            return [u * part / (1.0 + kept), np.where(u > 0.0, lost, 0.0)]
+
+        speed, way = self._evaluate(evaluate, [0.0, 0.0], rested / self.time)
+        return Start(speed * self.speed, way * self.length)

@@ -1,0 +1,124 @@
+"""Free rolling of one material as splines over speed: :class:`Curve`."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from ...core.array_types import Booleans, Floats
+from ...materials.bodies import one_series
+from ...materials.law_modes import by_modes
+from ...materials.prony import Prony
+
+#: Points of a curve in an octave of u: the splines then have errors below 1e-6.
+_PER_OCTAVE = 16
+#: Octaves of 1/u beyond the shortest and the longest time of a material, where N and M are in their limits to 1e-6.
+_MARGIN = 20
+#: Length in half contact lengths at rest over which a mode remembers the indentation, divided by 2 u T of the mode;
+#: measured with a transient solver (docs/validity.md).
+_MEMORY = 0.681
+#: Largest such length divided by twice the coasting distance; measured likewise.
+_SHORT = 4.84
+#: Smallest distance, half contact lengths at rest, that limits the memory: as far as the contact climbs; measured
+#: likewise.
+_CLIMB = 20.0
+
+
+class Curve:
+    """Free rolling of one material as splines over ln u, for g = 1: N, M, time and distance."""
+
+    def __init__(self, material: float | Prony) -> None:
+        """Compute the splines.
+
+        material: alpha, or a series in its own time; not elastic.
+        """
+        from scipy.interpolate import CubicSpline
+
+        series = one_series(material)
+        self.modes, self.alpha = (series.J, series.T), series.alpha
+        shortest, longest = series.tau[-1], series.T[0]
+        octaves = math.ceil(math.log2(longest / shortest * math.sqrt(self.alpha))) + 2 * _MARGIN
+        points = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
+        # The formulas of the modes at 1/(2 zeta) need no kernel of contacts, which a warning need not compile.
+        half_rates = 0.5 * np.exp(_MARGIN * math.log(2.0) - points)
+        (_, h_over_zeta, half_space, cylinder), _, N = by_modes(material, half_rates)
+        self.ln_u = points - _MARGIN * math.log(2.0) - 0.5 * np.log1p(2.0 * h_over_zeta)
+        u = np.exp(self.ln_u)
+        M = u * (half_space + cylinder)
+        self._low, self._high, self._M_high = float(u[0]), float(u[-1]), float(M[-1])
+        self._N, self._u2_over_M = CubicSpline(self.ln_u, N), CubicSpline(self.ln_u, u * u / M)
+        self._time, self._distance = CubicSpline(self.ln_u, u / M).antiderivative(), self._u2_over_M.antiderivative()
+        self._N_slope = self._N(self.ln_u[0], 1)
+        self._first_distance = u[0] ** 2 / M[0]  # from u[0] to rest, where M is proportional to u
+
+    def _locate(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return (ln u, limited to the curve; u divided by the end of the curve that it is beyond, else 1)."""
+        inside = np.clip(u, self._low, self._high)
+        return np.log(inside), u / inside
+
+    def N(self, u: Floats) -> Floats:
+        """Return N at u, any shape; below the curve linear in u, above it proportional to u^-2."""
+        ln_u, beyond = self._locate(u)
+        return (self._N(ln_u) + self._N_slope * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(beyond, 1.0) ** 2
+
+    def M(self, u: Floats) -> Floats:
+        """Return kappa M at u, any shape."""
+        ln_u, beyond = self._locate(u)
+        return np.exp(2.0 * ln_u) / self._u2_over_M(ln_u) * np.where(beyond < 1.0, beyond, 1.0 / beyond)
+
+    def time(self, u: Floats) -> Floats:
+        """Return the time from u, any shape, to a fixed speed below the curve."""
+        ln_u, beyond = self._locate(u)
+        return self._time(ln_u) + 0.5 * self._high / self._M_high * (np.maximum(beyond, 1.0) ** 2 - 1.0)
+
+    def distance(self, u: Floats) -> Floats:
+        """Return the distance from u, any shape, to rest, in units of l0."""
+        ln_u, beyond = self._locate(u)
+        above = self._high**2 / (3.0 * self._M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
+        return (self._first_distance + self._distance(ln_u)) * np.minimum(beyond, 1.0) + above
+
+    def limit_speed(self, u: Floats, level: float) -> tuple[Floats, Booleans]:
+        """Return the speed at which |N| reaches a level in free rolling.
+
+        u: kappa V at the start, any shape.
+        level: of |N|, > 0.
+        Returns (u at which |N| first reaches the level, 0 if never; where |N| is above it at the start already, the
+        next higher u from which on it is below; whether |N| is below the level at the start).
+        """
+        roots = np.sort(np.concatenate([self._N.solve(value, extrapolate=False) for value in (level, -level)]))
+        falls = roots[self._N(roots) * self._N(roots, 1) < 0.0]
+        last = float(np.abs(self._N(self.ln_u[-1])))
+        behind = [self._high * math.sqrt(last / level)] if last >= level else []  # where N falls as u^-2
+        ends = np.concatenate([[0.0], np.exp(falls), behind, [np.inf]])
+        below = np.abs(self.N(u)) < level
+        index = np.searchsorted(ends, u, side="right")
+        return ends[np.where(below, index - 1, np.minimum(index, ends.size - 1))], below
+
+    def work(self, u: Floats, distance: Floats, rested: Floats) -> Floats:
+        """Return the work W of leaving the indentation of a standstill; in SI units it is P l0^2 W/(4 R).
+
+        The last term is what the contact gains as it shrinks.  Under a load P the elastic energy and the height of a
+        contact of half length a and compliance C hold C ln(1/a), so that they differ between rest and fast rolling,
+        both of the instantaneous compliance 1/alpha, by ln(a_rest/a_fast)/(4 alpha).  After a long rest that is
+        sqrt(alpha): ln(alpha)/(8 alpha); without a rest the contact starts as short as it rolls, and it is 0.  Between
+        the two the slowest mode rules how much of it there is; the term is below 0.05 for every alpha.
+
+        u: kappa V at the start, (n,).
+        distance: to rest, in units of l0, (n,).
+        rested: time of the standstill in the material's own time, (n,).
+        Returns W, dimensionless, (n,).
+        """
+        longest, W = _SHORT * np.maximum(2.0 * distance, _CLIMB), np.zeros(u.shape)
+        for J, T in zip(*self.modes, strict=True):
+            L, fresh = np.minimum(2.0 * u * T, longest), np.exp(-rested / T)
+            W += 0.5 * J * ((1.0 - fresh) * np.log(np.hypot(1.0, _MEMORY * L)) - fresh / (1.0 + 2.0 / L))
+        grown = -np.expm1(-rested / self.modes[1][0])
+        return np.maximum(W - grown * math.log(self.alpha) / (8.0 * self.alpha), 0.0)
+
+
+@lru_cache(maxsize=256)  # as many as the validity of an ensemble examines; 0.1 MB each
+def curve_of(material: float | Prony) -> Curve | None:
+    """Return the curve of a material in its own time; None for an elastic one, which rolls for ever."""
+    return Curve(material) if one_series(material).alpha > 1.0 else None

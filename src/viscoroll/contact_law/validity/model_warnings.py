@@ -1,0 +1,257 @@
+"""Warnings of states and motions that the model does not describe: all :class:`ModelWarning` are given here.
+
+Worker processes never warn.  The texts of faults contain no numbers, so that Python shows the same one once for each
+line of a program.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from bisect import bisect
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ...core.errors import ModelWarning, caller_level
+from ...kernels.compile.notice import is_worker
+from ...materials.bodies import Bodies
+from ...materials.cover import Cover
+from ...materials.measured import Measured
+from ...materials.prony import Prony
+from ..parameters import PARAMETERS, Parameters, Roller
+from .assumptions import LEAST_KAPPA, NOT_SMALL, WAVE_LIMIT, assess_measured_band, transit_frequency
+from .cylinder import NO_SPEEDS, BodyData, extent_of, is_outside
+from .free_rolling import FreeRolling
+from .free_rolling_curve import curve_of
+from .steadiness import STEADY_LIMIT
+
+#: Creepage from which on a start in full slip has M in doubt, dimensionless: the surface speeds then differ by V.
+_CREEP = 1.0
+#: Smallest M divided by mu, dimensionless, at which an M in doubt matters for a motion in full slip.
+_LEAST_M_OVER_MU = 0.1
+#: Largest kappa M divided by 1 - 1/alpha at any speed, dimensionless, of one relaxation time, to a fifth
+#: (docs/theory.md).
+_LARGEST_M = 0.25
+#: Part of the distance of free rolling, dimensionless, that may lie at speeds where the error of V exceeds 10 %.  It is
+#: the whole distance where the motion starts below that speed.
+_SLOW_PART = 0.1
+#: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, from which on that part is below _SLOW_PART for
+#: every material: (kappa V)^2 |N| is at most 1.35/16 of 1 - 1/alpha (docs/validity.md), and the distance grows at least
+#: in proportion to V.
+_FAST = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
+#: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
+_EXAMINED = 256
+#: Data of materials for which this process has warned already.
+_warned_records: set[Measured] = set()
+
+
+def _warn(text: str) -> None:
+    """Give a ModelWarning at the caller's line outside the package, except in workers.
+
+    text: the message.
+    """
+    if not is_worker():
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+
+
+def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
+    """Give one warning of several faults; none for an empty list.
+
+    faults: sentences without numbers.
+    subject: "motion" or "contact".
+    report: the call that reports each assumption.
+    """
+    if faults:
+        _warn(f"the model does not hold for this {subject}: {'; '.join(faults)}.  {report} reports each assumption")
+
+
+def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None = None, *, motion: bool = False) -> None:
+    """Warn of contacts longer than the radius, and of those outside the measured band of a material.
+
+    Only the extreme speeds are examined; rest is passed over, since M = 0 there.
+
+    roller: scene or cylinder; a scene has no data to compare with.
+    V: speeds, m/s, any shape; None for prescribed ones that are not known.
+    extent: (smallest, largest) of them, m/s, where the caller knows them.
+    motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined.
+    """
+    data = roller.body_data
+    if data is None or data.covered_speeds is None or V is None:
+        return
+    ends = extent or extent_of(V)
+    if not is_outside(ends, data.covered_speeds):
+        return
+    if not (data.small_at_rest or motion):
+        _warn_of_faults([NOT_SMALL], "contact", "validity(V).small_contact")
+    if data.measured_speeds is not None and is_outside(ends, data.measured_speeds):
+        _warn_of_band(data, V)
+
+
+def _warn_of_band(data: BodyData, V: Any) -> None:
+    """Warn of transit frequencies outside the measured band, once for each material in a process.
+
+    data: of a cylinder with measured bodies.
+    V: speeds, m/s, any shape.
+    """
+    records = data.records.values()
+    if is_worker() or _warned_records.issuperset(records):
+        return
+    assert data.measured_rates is not None
+    # The extreme speeds and the extreme l0 may belong to different cylinders.
+    l0 = np.reshape(data.l0, np.shape(data.l0) + (1,) * (np.ndim(V) - np.ndim(data.l0)))
+    rates = extent_of(np.abs(V) / l0)
+    if data.measured_speeds != NO_SPEEDS and not is_outside(rates, data.measured_rates):
+        return
+    _warned_records.update(records)
+    ends = np.array(rates)
+    sentence = assess_measured_band(transit_frequency(ends, data.relative_length(ends)), data.records).sentence
+    _warn(
+        f"M and the contact length are extrapolated beyond the measurements: {sentence}; validity(V).measured tells "
+        "which V are inside"
+    )
+
+
+def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
+    """Warn of motions of a run that start outside the measured band of a material.
+
+    share: their share of all motions, 0 to 1; 0 gives no warning.
+    records: what was measured of the bodies; contacts do not warn of them again.
+    Returns whether a warning was given.
+    """
+    data = list(records)
+    if share <= 0.0 or is_worker() or _warned_records.issuperset(data):
+        return False
+    _warned_records.update(data)
+    _warn(
+        f"{share:.1%} of the motions start outside the frequencies at which the material was measured (at the medians "
+        f"of the inputs it was measured from {'; '.join(map(str, data))}): M is extrapolated there"
+    )
+    return True
+
+
+def warn_of_speeds(roller: Roller, V0: Any, V: Any) -> None:
+    """Warn where the fastest speed of a motion, or of each of several, is outside the measured band of a material.
+
+    roller: scene or cylinder.
+    V0: start speeds, m/s; None for prescribed ones.
+    V: speeds at the output times, m/s, (times) or (n, times); None where they were not computed.
+    """
+    data = roller.body_data
+    if data is None or data.covered_speeds is None:
+        return
+    fastest = np.abs(0.0 if V0 is None else V0)
+    if V is not None:
+        fastest = np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1))
+    warn_of_contact(roller, fastest, motion=True)
+
+
+def warn_of_start(
+    roller: Roller, scene: Parameters, start: tuple[Any, Any], V0: Any, omega0: Any, driven: bool
+) -> None:
+    """Warn of motions for which the model fails grossly, judged by their start.
+
+    One motion from two floats costs one or two microseconds; of many some, evenly spaced, are examined.
+
+    roller: scene or cylinder, on its slope.
+    scene: its dimensionless parameters.
+    start: the start speeds as the caller gave them, m/s and rad/s for a cylinder; None for prescribed ones.
+    V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
+    driven: whether something drives the motions, or they are rolled with the added mass N.
+    """
+    wave_speed = None if roller.body_data is None else roller.body_data.wave_speed
+    if wave_speed is not None:
+        V, omega = (0.0 if speed is None else np.abs(speed) for speed in start)
+        if float(np.max(np.maximum(V, omega * roller.body_data.R), initial=0.0)) > wave_speed:
+            fault = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
+            _warn_of_faults([fault], "motion", "validity() of cylinder or result")
+    if type(V0) is type(omega0) is float and not scene.shape:
+        material = scene.alpha if scene.material is None else scene.material
+        faults = _start_faults(material, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, driven)
+    else:
+        faults = _worst_start_faults(scene, V0, omega0, driven)
+    _warn_of_faults(faults, "motion", "validity() of scene or result")
+
+
+def _start_faults(
+    material: Any, kappa: float, mu: float, gamma: float, j: float, V0: float, omega0: float, driven: bool
+) -> list[str]:
+    """Return the faults of the model for one motion.
+
+    material: its alpha, Prony series or bodies.
+    kappa, mu, gamma, j: parameters of the scene, dimensionless.
+    V0, omega0: start speeds, dimensionless.
+    driven: as of :func:`warn_of_start`.
+    Returns sentences without numbers.
+    """
+    faults: list[str] = []
+    one_time = type(material) is float
+    part = 1.0 - 1.0 / (material if one_time else material.alpha)
+    if kappa < LEAST_KAPPA:
+        faults.append(NOT_SMALL)
+    if abs(omega0 - V0) >= _CREEP * abs(V0) and _LARGEST_M * part > _LEAST_M_OVER_MU * mu * kappa:
+        fastest = max(abs(V0), abs(omega0))
+        if fastest > 0.0 and (not one_time or part * fastest > _LEAST_M_OVER_MU * mu):
+            faults.append(
+                "it starts in full slip at a creepage of order 1, where the surface speeds of cylinder and half-space "
+                "differ and the rolling moment is computed with one speed for both"
+            )
+    # the speed at the start, or that at which it begins to roll
+    u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
+    if not driven and type(material) is not Cover and u > 0.0 and u * u * (1.0 + j) < _FAST * gamma * part:
+        lower_ends, slow = _slow_starts(material, gamma, j)
+        if slow[max(bisect(lower_ends, u) - 1, 0)]:
+            faults.append(
+                "it is too slow for the law of steady rolling: the error of V exceeds 10 % over more than a tenth of "
+                "the distance"
+            )
+    return faults
+
+
+def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
+    """Return the faults of the three motions of an ensemble that are worst by bounds of each fault.
+
+    scene: parameters, numbers or arrays (n,).
+    V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
+    driven: as of :func:`warn_of_start`.
+    Returns different sentences without numbers.
+    """
+    arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
+    count = math.prod(np.broadcast_shapes(*(array.shape for array in arrays)))
+    examined = np.linspace(0, count - 1, min(count, _EXAMINED)).astype(np.int64)
+    columns = np.array([np.broadcast_to(array, (count,))[examined] for array in arrays])
+    if not examined.size:
+        return []
+    alpha, kappa, mu, gamma, j, V0, omega0 = columns
+    part = 1.0 - 1.0 / alpha
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        u = kappa * np.maximum(np.abs(V0), np.abs(V0 + j * omega0) / (1.0 + j))
+        unsteady = np.where(u > 0.0, gamma * part / (1.0 + j) / u**2, 0.0)
+        slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)
+    faults: list[str] = []
+    for worst in {int(np.argmax(measure)) for measure in (-kappa, slips, unsteady)}:
+        material: Any = scene.material if scene.material_array is None else scene.material_array[examined[worst]]
+        alpha, *others = columns[:, worst].tolist()
+        arguments: list[Any] = [alpha if material is None else material, *others, driven]
+        faults += _start_faults(*arguments)
+    return list(dict.fromkeys(faults))
+
+
+@lru_cache(maxsize=64)
+def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tuple[list[float], list[bool]]:
+    """Tabulate over kappa V whether a free motion from there is too slow for the law of steady rolling.
+
+    material: alpha, Prony series or bodies, not elastic.
+    gamma, j: parameters of the scene, dimensionless.
+    Returns (kappa V, ascending; whether more than :data:`_SLOW_PART` of the distance has an error of V above 10 %).
+    """
+    given = {"alpha": material} if isinstance(material, float) else {"material": material}
+    free = FreeRolling.of_scene(Parameters(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given), 0.0)
+    curve = curve_of(free.materials[0])
+    assert curve is not None  # an elastic one is never slow
+    free = replace(free, u=np.exp(curve.ln_u))
+    slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.distance()
+    return (free.u * free.speed).tolist(), slow.tolist()

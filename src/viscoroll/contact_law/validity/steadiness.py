@@ -1,0 +1,165 @@
+"""Whether the law of steady rolling may drive a motion, and down to which speed: :class:`Steadiness`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .assumptions import Assumption
+from .free_rolling import FreeRolling, Reach, Start
+
+#: Largest unsteadiness, dimensionless, at which the error of V is below some 10 %: measured with a transient solver of
+#: many modes (docs/validity.md).
+STEADY_LIMIT = 0.1
+#: Largest part of its speed that a start from rest may lose, dimensionless (seven tenths of its energy): a cylinder
+#: that loses more stays in its indentation.
+LARGEST_LOSS = 0.45
+#: Speed in units of u that stands for rest where a motion ended, dimensionless: the lower end of the start speeds.
+_REST = 1e-300
+
+
+class Steadiness(Assumption):
+    """Whether the law of steady rolling may drive a motion, and how far; all quantities in the units of the call.
+
+    ``value`` is the unsteadiness gamma |N(V)|/(1 + j), for a motion the largest so far; up to 0.1 is allowed, where the
+    error of V is below some 10 %.  The attributes describe free rolling from each V by the law of steady rolling.
+
+    Attributes
+    ----------
+    one_percent, ten_percent : the :class:`Reach` within which the error of V is below about 1 % and 10 %.
+    start : the losses of a :class:`Start` after a long standstill.
+    whole : the distance to rest.
+    share : part of that distance, or of the distance of a motion, at which the error of V exceeds 10 %; None where it
+        is not known.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> steady = vr.presets.RUBBER_CYLINDER.validity(2.0).steady
+    >>> bool(steady.holds), float(steady.whole) > 50.0  # m
+    (True, True)
+    """
+
+    #: the states, in the units of the call
+    free: FreeRolling
+    #: ``share`` of a motion; None for single states
+    motion_share: Any = None
+
+    @classmethod
+    def of(cls, free: FreeRolling) -> Assumption:
+        """Return the assumption ``steady`` of states from which the cylinder rolls freely."""
+        if free.u.size and not free.u.any():
+            return Assumption(None, None, "at rest the assumption is not checked: give a speed")
+        return cls._create(free.unsteadiness, free)
+
+    @classmethod
+    def along(cls, free: FreeRolling, rolls: Any, x: Any, *, ends: bool) -> Steadiness:
+        """Return the assumption ``steady`` of motions.
+
+        free: states at the output times, (times, ...).
+        rolls: where they are not in full slip, which friction rules; in the shape of u.
+        x: distances travelled in the unit of the caller, in the shape of u; NaN where they are not known.
+        ends: whether ``value`` is that of each motion as a whole, else at each time.
+        """
+        free = replace(free, u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0))
+        value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
+        fastest = free.take((np.argmax(free.u, axis=0), *np.indices(free.u.shape[1:])))
+        to_rest, steps = free.distance(), np.abs(np.diff(x, axis=0))
+        slow = np.where(fastest.unsteadiness > STEADY_LIMIT, np.inf, fastest.reach(STEADY_LIMIT).left)
+        # the part of each step that lies below that speed, as in free rolling
+        with np.errstate(invalid="ignore"):
+            below, whole = (np.abs(np.diff(left, axis=0)) for left in (np.minimum(to_rest, slow), to_rest))
+        part = np.divide(below, whole, out=1.0 * (to_rest[1:] < slow), where=(0.0 < whole) & (whole < np.inf))
+        share = (steps * rolls[1:] * part).sum(axis=0) / np.maximum(steps.sum(axis=0), _REST)
+        return cls._create(value[-1] if ends else value, fastest, share)
+
+    @classmethod
+    def _create(cls, value: Any, free: FreeRolling, motion_share: Any = None) -> Steadiness:
+        """Return the assumption with its sentence, which describes the state of the largest unsteadiness.
+
+        value: unsteadiness, dimensionless.
+        free: the states, of motions the fastest one of each.
+        motion_share: the share of motions, else None.
+        """
+        sentence = "there is no motion"
+        if np.size(value):
+            most = float(np.max(value))
+            worst = free.take(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
+            described = motion_share is not None
+            sentence = (
+                _describe_motion(worst, most, float(np.mean(motion_share))) if described else _describe_free(worst)
+            )
+        created = cls(value <= STEADY_LIMIT, value, sentence)
+        created.free, created.motion_share = free, motion_share
+        return created
+
+    @cached_property
+    def one_percent(self) -> Reach:
+        """Part of free rolling with an error of V below 1 %."""
+        return self.free.reach(0.1 * STEADY_LIMIT)
+
+    @cached_property
+    def ten_percent(self) -> Reach:
+        """Part of free rolling with an error of V below 10 %."""
+        return self.free.reach(STEADY_LIMIT)
+
+    @cached_property
+    def start(self) -> Start:
+        """Losses of a start after a long standstill."""
+        return self.free.start()
+
+    @cached_property
+    def whole(self) -> Any:
+        """Distance to rest."""
+        return self.free.distance()
+
+    @cached_property
+    def share(self) -> Any:
+        """Part of the distance at which the error of V exceeds 10 %."""
+        if self.motion_share is not None:
+            return self.motion_share
+        left, whole = np.asarray(self.ten_percent.left), np.asarray(self.whole)
+        return np.divide(left, whole, out=np.asarray(self.value > STEADY_LIMIT, np.float64), where=left < whole)[()]
+
+
+def _describe_free(free: FreeRolling) -> str:
+    """Describe free rolling from one state: distance, speeds at which errors are reached, loss of a start from rest."""
+    speed, time, length = (f" {unit}".rstrip() for unit in free.units)
+    value, most, whole = float(free.unsteadiness), free.reach(STEADY_LIMIT), free.distance()
+    text = f"unsteadiness {value:.2g} (up to {STEADY_LIMIT} is allowed): "
+    if value > STEADY_LIMIT:
+        return text + (
+            "too slow for the law of steady rolling to drive a motion (contact states and constant speeds are valid); "
+            f"the error of V is below 10 % above {most.speed:.2g}{speed}"
+        )
+    if not np.isfinite(whole):
+        return text + "an elastic cylinder rolls freely for ever"
+    fine, start = free.reach(0.1 * STEADY_LIMIT), free.start()
+    text += f"free rolling by the law of steady rolling ends after {whole:.4g}{length}; the error of V is below "
+    if fine.time:
+        text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
+    if fine.speed:
+        end = f"down to {most.speed:.2g}{speed}, after {most.time:.3g}{time} and {most.left:.2g}{length} before the end"
+        text += f"10 % {end if most.speed else 'to the end'}"
+    if start.speed > LARGEST_LOSS * float(free.u * free.speed):
+        return text + "; after a long standstill the cylinder would stay in its indentation"
+    return text + f"; a start after a long standstill loses {start.speed:.2g}{speed} and {start.way:.2g}{length}"
+
+
+def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
+    """Describe the error of a motion, or of the worst of several.
+
+    free: its fastest state.
+    most: its largest unsteadiness.
+    share: part of its distance with an error above 10 %, NaN where it is not known.
+    """
+    text = f"unsteadiness up to {most:.2g} (up to {STEADY_LIMIT} is allowed): "
+    text += "by the law of steady rolling the error of V is below 10 % "
+    if most <= STEADY_LIMIT:
+        return text + "throughout"
+    speed = f"{free.reach(STEADY_LIMIT).speed:.2g} {free.units[0]}".rstrip()
+    below = "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is below that speed"
+    return f"{text}down to {speed}{below}"

@@ -1,0 +1,108 @@
+"""Figures of measurements: a material, the fit of a series, and an identification."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import ParameterError
+from .style import LINES, axis_label, new_figure, plot_measured_range, small_legend, spaced_by_factors, zero_line
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: Decades that are shown beyond the shortest and the longest time of a material.
+_MARGIN = 2.0
+#: Points of a curve.
+_POINTS = 400
+
+
+def master_curve(material: Any) -> Figure:
+    """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right.
+
+    material: a :class:`Material`.  Raises ParameterError for a rigid body, which has no curves.
+    """
+    if material.is_rigid:
+        raise ParameterError("material", "rigid", "one of a finite modulus")
+    times = material.T_ref * np.concatenate([material.prony.T, material.prony.tau, [1.0][: not material.prony.E.size]])
+    ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
+    t = np.logspace(*ends, _POINTS)
+    omega = 1.0 / t[::-1]
+    title = (material.name or "Material") + ("; dashed: beyond what was measured" if material.measured else "")
+    figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
+    band = material.measured and (material.measured.low, material.measured.high)
+    lines = plot_measured_range(left, omega, material.storage(omega), band, **LINES[0], label="E'")[:1]
+    left.set(xscale="log", yscale="log")
+    if material.prony.E.size:  # the loss modulus of an elastic material is 0, which has no logarithm
+        lines += plot_measured_range(left, omega, material.loss(omega), band, **LINES[1], label="E''")[:1]
+        factor = left.twinx()
+        lines += plot_measured_range(factor, omega, material.tan_delta(omega), band, **LINES[2], label="tan delta")[:1]
+        factor.set(ylabel="loss factor tan delta", ylim=(0.0, None))
+    left.set(xlabel="angular frequency, rad/s", ylabel="storage and loss modulus, Pa")
+    small_legend(left, handles=lines, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    plot_measured_range(right, t, material.relaxation(t), band and (1.0 / band[1], 1.0 / band[0]), **LINES[0])
+    right.set(xlabel="time, s", ylabel="relaxation modulus E(t), Pa", xscale="log", yscale="log")
+    return figure
+
+
+def moduli_fit(fit: Any) -> Figure:
+    """Draw storage and loss modulus of ``fit``, a :class:`viscoroll.Fit`: data and curves of the series."""
+    symbol = "G" if fit.mode == "shear" else "E"
+    misfit = f"misfit {fit.misfit.storage:.1%} in {symbol}', {fit.misfit.loss:.1%} in {symbol}''"
+    columns = {f"{symbol}'": fit.storage, f"{symbol}''": fit.loss}
+    return _series_fit(fit, misfit, fit.omega, columns, fit.modulus, "angular frequency, rad/s")
+
+
+def relaxation_fit(fit: Any) -> Figure:
+    """Draw the relaxation modulus of ``fit``, a :class:`viscoroll.RelaxationFit`: data and curve of the series."""
+    columns = {"G(t)" if fit.mode == "shear" else "E(t)": fit.relaxation}
+    return _series_fit(fit, f"misfit {fit.misfit:.1%}", fit.t, columns, lambda t: (fit.modulus(t),), "time, s")
+
+
+def _series_fit(fit: Any, misfit: str, x: Any, columns: dict[str, Any], moduli: Any, label: str) -> Figure:
+    """Draw data and the curves of a series.
+
+    fit: result of the fit.  misfit: words of the title.  x: frequencies or times.  columns: name of a modulus -> data
+    at x.  moduli: function of x that returns a tuple of curves, one for each column.  label: of the axis of x.
+    """
+    fine = np.geomspace(x[0], x[-1], _POINTS)
+    figure, axes = new_figure(f"Prony series of {fit.prony.E.size} modes: {misfit}")
+    for (name, values), curve, line in zip(columns.items(), moduli(fine), LINES, strict=False):
+        axes.loglog(x, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=name)
+        axes.loglog(fine, curve, **line, label=f"{name} of the fit")
+    axes.set(xlabel=label, ylabel="modulus, unit of the data")
+    small_legend(axes, ncols=2)
+    return figure
+
+
+def identification(fit: Any) -> Figure:
+    """Draw a column for each quantity of a record: data and prediction band on top, normalized residuals below.
+
+    fit: a :class:`viscoroll.app.identification.fit.Identification`.
+    """
+    shown = fit._problem.columns
+    figure, grid = new_figure(
+        f"Identification of {', '.join(fit.values)}", 2, len(shown), (3.6 * len(shown) + 1.2, 4.8), squeeze=False,
+        sharex="col", height_ratios=(2.5, 1.0),
+    )  # fmt: skip
+    for column, (top, bottom) in zip(shown, grid.T, strict=True):
+        record, band = fit.records[column.record], getattr(fit.predicted[column.record], column.quantity)
+        *others, variable = record.COORDINATES
+        curves = bool(others)  # of several speeds, which one line cannot connect
+        order = np.argsort(np.ravel(getattr(record, variable)), kind="stable")
+        arrays = getattr(record, variable), fit.sigma[str(column)], *band
+        x, sigma, value, low, high = (np.ravel(array)[order] for array in arrays)
+        (top.vlines if curves else top.fill_between)(x, low, high, color="0.7" if curves else "0.85")
+        top.plot(x, value, "_" if curves else "-", color=LINES[1]["color"], label="fit")
+        if not fit.planned:
+            y = np.ravel(getattr(record, column.quantity))[order]
+            top.plot(x, y, ".", color="black", markersize=3, label="data")
+            bottom.plot(x, (value - y) / sigma, ".", color="black", markersize=3)
+        zero_line(bottom)
+        if spaced_by_factors(x):
+            bottom.set_xscale("log")
+        top.set(ylabel=axis_label(column.quantity, record.unit(column.quantity)), title=column.record)
+        small_legend(top)
+        bottom.set(xlabel=axis_label(variable, record.unit(variable)), ylabel="residual/sigma")
+    return figure

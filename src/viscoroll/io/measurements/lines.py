@@ -1,0 +1,111 @@
+"""A text file as lines, and lines as cells: encodings, separators, comments."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from contextlib import suppress
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+from ...core.errors import FileError, ParameterError
+from .numbers import is_row_of_numbers
+
+#: separators of cells and their names in messages, those that are least often part of a cell first
+SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
+#: mark of a comment at the beginning of a line; none is a first cell of a mark alone: "%" is a unit, "#" a point number
+_COMMENT = r"^[^\S{0}]*(?:[#%!]+|//)[^\S{0}]*(?=[^\s{0}]|$)"
+#: lines of a file by which its separator is found: enough to outvote a preamble
+_SAMPLE = 2000
+#: first bytes of a file and the encoding that they show: byte order marks, or a null beside a letter
+_ENCODINGS = {rb"\xff\xfe|\xfe\xff": "utf-16", rb"(?s).\0": "utf-16-le", rb"\0": "utf-16-be"}
+#: encodings that are tried without such bytes: that of today, that of Windows, and one that has all bytes
+_USUAL = ("utf-8-sig", "cp1252", "latin-1")
+#: first bytes of Excel's workbooks, of today and of before 2007
+_WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+
+
+class Line(NamedTuple):
+    """A line that is not blank.
+
+    number : of the line in the file, from 1; text : without the mark of a comment; cells : of the line.
+    comment : whether it has such a mark; numeric : whether it is a row of numbers.
+    """
+
+    number: int
+    text: str
+    cells: list[str]
+    comment: bool
+    numeric: bool
+
+
+def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
+    """Return the lines of a text file.
+
+    path : of the file.
+    encoding : as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and Latin-1 that fits.
+    Raises FileError for workbooks and other binary files, ParameterError for an encoding that Python does not know.
+    """
+    try:
+        raw = Path(path).read_bytes()
+    except OSError as error:
+        raise FileError(path, f"cannot be read ({error.strerror or error})") from error
+    if raw.startswith(_WORKBOOKS):
+        raise FileError(path, "is a workbook or an archive, no text: save its sheet as CSV")
+    shown = next((name for first, name in _ENCODINGS.items() if re.match(first, raw)), None)
+    given = encoding or shown
+    for name in (given,) if given else _USUAL:
+        try:
+            text = raw.decode(name).removeprefix("\ufeff").replace("\u2212", "-")
+        except LookupError:
+            raise ParameterError("encoding", f"{name!r:.40}", "an encoding that Python knows, as 'utf-8'") from None
+        except UnicodeError as error:
+            problem = f"cannot be read in {name} ({error})"
+            continue
+        if "\0" in text:
+            raise FileError(path, "is no text: it has null bytes")
+        first, *others = re.split(r"\r\n|\r|\n", text)
+        return ["" if re.fullmatch(r"(?i)sep=.\s*", first) else first, *others]  # Excel's own line on the separator
+    raise FileError(path, problem)
+
+
+def cut_lines(text: list[str], separator: str) -> list[Line]:
+    """Cut lines into cells, and leave out blank ones; quoted cells may go on over several lines.
+
+    text : lines of a file.
+    separator : a key of :data:`SEPARATORS`.
+    Returns the lines with their cells up to the first that Python's csv cannot cut.  (pandas would ask that all lines
+    of a file, its preamble too, are as wide as its table.)
+    """
+    mark = re.compile(_COMMENT.format(separator.strip(" ")))
+    plain, found = [mark.sub("", line) for line in text], []
+    reader = csv.reader((line + "\n" for line in plain), delimiter=separator, skipinitialspace=separator != "\t")
+    by_csv = ((reader.line_num, [" ".join(cell.split()) for cell in row]) for row in reader)
+    with suppress(csv.Error):
+        for number, cells in enumerate(map(cut_by_blanks, plain), 1) if separator == " " else by_csv:
+            line = plain[number - 1]
+            comment = line != text[number - 1]
+            if any(cells):
+                found.append(Line(number, line.strip(), cells, comment, not comment and is_row_of_numbers(cells)))
+    return found
+
+
+def cut_by_blanks(text: str) -> list[str]:
+    """Cut a text at blanks that are not in quotes."""
+    return [quoted or plain for quoted, plain in re.findall(r'"([^"]*)"|(\S+)', text)]
+
+
+def separator_of(text: list[str], decimal: str | None) -> str:
+    """Return the separator that cuts most lines into rows of numbers of one width, of two cells and more.
+
+    text : lines of a file.
+    decimal : the decimal mark, which is no separator then; None: not given.
+    """
+
+    def count(separator: str) -> int:
+        rows = (line.cells for line in cut_lines(text[:_SAMPLE], separator) if line.numeric)
+        return max(Counter(len(cells) for cells in rows if len(cells) > 1).values(), default=0)
+
+    return max((separator for separator in SEPARATORS if separator != decimal), key=count)

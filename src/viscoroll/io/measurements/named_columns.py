@@ -1,0 +1,92 @@
+"""Columns of a table by the name that the user gives: :func:`named_table`, :func:`column_in_unit`."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from os import PathLike
+
+from ...core.array_types import Floats
+from ...core.errors import FileError
+from ...core.sections import suggestion
+from .headings import NO_UNIT, conversion, readings
+from .table import Table, read_table
+
+
+def named_table(
+    path: str | PathLike[str], names: Collection[str], decimal: str | None = None, encoding: str | None = None
+) -> Table:
+    """Read a table whose headings are the line that has one of the given names, with a unit or without.
+
+    path, decimal, encoding : as of :func:`read_table`.
+    names : of columns.
+    Returns the table; raises the errors of :func:`read_table`.
+    """
+    return read_table(
+        path, lambda cells: any(_is_named(cell, name) for name in names for cell in cells if cell),
+        decimal=decimal, encoding=encoding,
+    )  # fmt: skip
+
+
+def _is_named(heading: str, name: str) -> bool:
+    """Return whether a heading is a name, or that name with a unit."""
+    return name == heading or any(not each.log and each.name == name for each in readings(heading))
+
+
+def find_column(table: Table, name: str) -> int | None:
+    """Return the index of the column with a name, None where there is none.
+
+    table : with headings.
+    name : a heading as the file has it, which goes first, or a heading without its unit.
+
+    Raises
+    ------
+    FileError
+        Several columns have that name.
+    """
+    exact = [n for n, heading in enumerate(table.headings) if heading == name]
+    found = exact or [n for n, heading in enumerate(table.headings) if _is_named(heading, name)]
+    if len(found) > 1:
+        headings = " and ".join(repr(table.headings[n]) for n in found)
+        raise FileError(table.path, f"columns {headings} are both named {name!r}: name one of them with its unit")
+    return found[0] if found else None
+
+
+def missing_column(table: Table, name: str) -> FileError:
+    """Return the error where no column of a table has a name; it lists the headings of the table."""
+    return FileError(
+        table.path, f"has no column {name!r}, but {', '.join(table.headings)}{suggestion(name, table.headings)}"
+    )
+
+
+def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
+    """Return the numbers of the column with a name, converted to a unit.
+
+    Parameters
+    ----------
+    table : a table with headings.
+    name : of the column, with its unit or without.
+    wanted : unit of the result in pint's spelling, "1" of a ratio.
+    unit : of the numbers in the file, in place of the one that the file gives; "": that of the file, and without one
+        the numbers are taken to be in ``wanted``.
+
+    Returns
+    -------
+    values, shape (n,)
+
+    Raises
+    ------
+    FileError
+        No such column, several tables in the file, cells that are no numbers.
+    ParameterError
+        A unit that is unknown or of another dimension.
+    """
+    index = find_column(table, name)
+    if index is None:
+        raise missing_column(table, name)
+    if table.parts > 1:
+        raise FileError(table.path, f"has {table.parts} tables: keep one of them")
+    found = readings(table.headings[index], table.units[index])
+    named = [each for each in found if each.name == name]
+    unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
+    factor, offset = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
+    return factor * table.numbers(index).values + offset

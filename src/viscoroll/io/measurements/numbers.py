@@ -1,0 +1,91 @@
+"""Cells of a table: which are numbers, gaps or texts, and the numbers of a column."""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from typing import NamedTuple
+
+import numpy as np
+
+from ...core.array_types import Floats
+
+#: a number with a decimal point or comma, perhaps with an exponent of Python (e) or Fortran (d)
+_NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d{1,3})?")
+#: a number with separators of thousands, as "1,234.5" and "1.234.567"; "1.234" may be one, or have three decimals
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:[,.'\u202f’]\d{3})+(?:[.,]\d*)?")
+#: marks that instruments and spreadsheets write in place of a number that was not measured
+_GAP = re.compile(r"(?i)-*|nan|n/?a|null|none|\*+|#n/?a|#wert!|#value!|[+-]?inf(inity)?|\?+")
+#: words, dates and times, which may stand in a row of numbers
+_TEXT = re.compile(r".*[^\W\d_].*|\d+[-:./]\d+[-:./]\d+.*|\d+:\d+.*")
+#: decimal mark and exponent as Python reads them
+_PYTHON = str.maketrans(",dD", ".ee")
+#: largest power of ten of a last digit: doubles end at 1e308
+_MOST = 300
+
+
+class Numbers(NamedTuple):
+    """Numbers of a column.
+
+    values : as written, shape (n,).
+    half : half a unit of the last digit that each was written with, by which it may be off, shape (n,).
+    """
+
+    values: Floats
+    half: Floats
+
+
+def is_number(cell: str) -> bool:
+    """Return whether a cell is a number, perhaps with separators of thousands."""
+    return bool(_NUMBER.fullmatch(cell) or _THOUSANDS.fullmatch(cell))
+
+
+def are_numbers(cells: list[str]) -> bool:
+    """Return whether the cells that are not empty are two numbers or more, without words between them."""
+    filled = [cell for cell in cells if cell]
+    return len(filled) > 1 and all(map(_NUMBER.fullmatch, filled))
+
+
+def is_row_of_numbers(cells: list[str]) -> bool:
+    """Return whether cells are a row of numbers: at least as many numbers as words, dates and times, and gaps."""
+    others = [cell for cell in cells if not (is_number(cell) or _GAP.fullmatch(cell))]
+    return 0 < sum(map(is_number, cells)) >= len(others) and all(map(_TEXT.fullmatch, others))
+
+
+def decimal_mark(cells: list[str], doubtful: str) -> str:
+    """Return the decimal mark of cells, "" where the marks may be separators of thousands.
+
+    They may be where both marks occur, or where three digits stand behind each, as in "1,234".
+
+    cells : of a table or a column.
+    doubtful : marks of which the second rule is true: the comma where commas separate cells, both beside "567".
+    """
+    marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]
+    marks = set("".join(marked)) & set(",.")
+    if len(marks) > 1 or (marks & set(doubtful) and all(map(_THOUSANDS.fullmatch, marked))):
+        return ""
+    return marks.pop() if marks else "."
+
+
+def fault_of(cell: str, decimal: str) -> str:
+    """Return why a cell cannot be read as a number, "" if it can.
+
+    cell : its text.
+    decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
+    """
+    if _GAP.fullmatch(cell):
+        return "is a gap: leave out its row"
+    if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
+        return ""
+    if _THOUSANDS.fullmatch(cell) or not decimal:
+        return (
+            "may have a separator of thousands, as both marks occur or all have three digits: write decimal marks only"
+        )
+    return f"is no number with a decimal {'comma' if decimal == ',' else 'point'}"
+
+
+def numbers_of(cells: list[str]) -> Numbers:
+    """Return the numbers of cells without a fault (:func:`fault_of`)."""
+    exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
+    half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]
+    return Numbers(np.array(exact, np.float64), np.array(half))

@@ -1,0 +1,224 @@
+"""The table in a text file: its headings, its row of units and its rows of numbers: :func:`read_table`."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from ...core.errors import FileError, ParameterError
+from ...core.units import is_unit
+from .headings import NO_UNIT, may_be_unit
+from .lines import SEPARATORS, Line, cut_by_blanks, cut_lines, read_lines, separator_of
+from .numbers import Numbers, are_numbers, decimal_mark, fault_of, is_number, numbers_of
+
+#: blanks between words of one heading, where blanks separate headings
+_PHRASE = re.compile(
+    r"(?i)\s+(?=[\[(])|(?<=\bstorage)\s+|(?<=\bloss)\s+|(?<=\bangular)\s+|(?<=\bcomplex)\s+|(?<=\btan)\s+(?=d)"
+    r"|(?<=\bphase)\s+|(?<=\breduced)\s+|(?<=\belastic)\s+|(?<=\bviscous)\s+|(?<=\bpoint)\s+(?=no)"
+)
+#: characters of a line that a message quotes
+_QUOTED = 60
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of a text file.
+
+    path : of the file.
+    headings : one a column; "column 0" and so on where the file has none.
+    units : the cell of a row of units below each heading, "" without.
+    rows : the lines of numbers, of which all cells beyond the headings are empty.
+    parts : number of tables of the file that these rows are from.
+    bare : whether the file has no headings.
+    decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
+    """
+
+    path: str | PathLike[str]
+    headings: list[str]
+    units: list[str]
+    rows: list[Line]
+    parts: int
+    bare: bool
+    decimal: str
+
+    def has_numbers(self, column: int) -> bool:
+        """Return whether any cell of the column with an index is a number."""
+        return any(is_number(row.cells[column]) for row in self.rows)
+
+    def numbers(self, column: int) -> Numbers:
+        """Return the numbers of the column with an index.
+
+        Raises FileError, with its line, for a gap, a text, a separator of thousands, or the other decimal mark.
+        """
+        cells = [row.cells[column] for row in self.rows]
+        threes = any(len(cell) == 3 and cell.isdigit() for cell in cells)
+        decimal = self.decimal if decimal_mark(cells, ",." * threes) else ""
+        for row, cell in zip(self.rows, cells, strict=True):
+            if fault := fault_of(cell, decimal):
+                raise FileError(self.path, f"line {row.number}, column {self.headings[column]!r}: {cell!r} {fault}")
+        return numbers_of(cells)
+
+    def require(self, holds: Any, problem: str) -> None:
+        """Raise FileError with the line of the first row for which a condition does not hold.
+
+        holds : the condition for each row, shape (n,).
+        problem : what is wrong where it does not hold.
+        """
+        if not holds.all():
+            raise FileError(self.path, f"line {self.rows[int(np.argmin(holds))].number}: {problem}")
+
+
+def read_table(
+    path: str | PathLike[str], is_heading_line: Callable[[list[str]], bool], *,
+    decimal: str | None = None, encoding: str | None = None,
+) -> Table:  # fmt: skip
+    """Read the table of a text file, which may have a preamble, comments, and several tables with the same headings.
+
+    The separator is that by which most lines are rows of numbers.  Headings are the last line before the numbers that
+    ``is_heading_line``, else the line above the first row.
+
+    Parameters
+    ----------
+    path : a text file in UTF-8, UTF-16 or Latin-1.
+    is_heading_line : a function that returns whether the cells of a line are headings.
+    decimal : "." or ","; default: the mark that is there, both are refused.
+    encoding : as Python calls it; default: by the first bytes.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read, that is no text, or has no table; rows or headings of unlike numbers of cells.
+    ParameterError
+        A decimal mark that is neither; an encoding that Python does not know.
+    """
+    if decimal not in (None, ".", ","):
+        raise ParameterError("decimal", f"{decimal!r:.20}", "'.' or ','")
+    text = read_lines(path, encoding)
+    separator = separator_of(text, decimal)
+    lines = cut_lines(text, separator)
+    layout = _Layout(path, lines, separator, is_heading_line)
+    heads = layout.heads()
+    parts = [layout.part(*ends) for ends in zip(heads, [*heads[1:], len(lines)], strict=True)]
+    names, units, (first, *_) = parts[0]
+    if any(part[:2] != (names, units) for part in parts):
+        starts = ", ".join(str(rows[0].number) for *_, rows in parts)
+        raise FileError(path, f"has {len(parts)} tables with unlike headings (from lines {starts}): keep one of them")
+    rows = [row for *_, rows in parts for row in rows]
+    mark = decimal or decimal_mark([cell for row in rows for cell in row.cells], "," if separator == "," else "")
+    return Table(path, names, units, rows, len(parts), lines[heads[0]].number == first.number, mark)
+
+
+@dataclass
+class _Layout:
+    """Where the tables of a file are.
+
+    path : of the file.
+    lines : its lines with their cells.
+    separator : of the cells.
+    is_heading_line : as of :func:`read_table`.
+    """
+
+    path: str | PathLike[str]
+    lines: list[Line]
+    separator: str
+    is_heading_line: Callable[[list[str]], bool]
+
+    def __post_init__(self) -> None:
+        """Find the width, the most frequent number of cells of rows of numbers; raise FileError where none is."""
+        widths = Counter(len(line.cells) for line in self.lines if line.numeric)
+        if not widths:
+            raise FileError(self.path, "has no row of numbers")
+        self.width = widths.most_common(1)[0][0]
+        self.cut = f"cut by {SEPARATORS[self.separator]}"
+
+    def fault(self, line: Line, problem: str) -> FileError:
+        """Return the error that names a line and quotes it."""
+        return FileError(self.path, f"line {line.number} {problem}: {line.text[:_QUOTED]!r}")
+
+    def is_row(self, line: Line) -> bool:
+        """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone."""
+        return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
+
+    def heads(self) -> list[int]:
+        """Return the index of the line of headings of each table; a file without gets a line of "column 0" and so on.
+
+        Raises FileError for a line of headings that is cut by other separators, and for numbers above the headings.
+        """
+        lines, width = self.lines, self.width
+        heads = [n for n, line in enumerate(lines) if not line.numeric and self.is_heading_line(self.headings(line))]
+        # of several lines of headings above the same numbers the last one counts
+        ends = zip(heads, [*heads, len(lines)][1:])
+        heads = [head for head, end in ends if any(line.numeric for line in lines[head:end])]
+        if heads:
+            for line in lines[: heads[0]]:
+                if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
+                    raise self.fault(line, "has numbers above the headings, keep one table of the file")
+            return heads
+        first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
+        above = [n for n, line in enumerate(lines[:first]) if not (line.comment or line.numeric)]
+        if above:
+            return above[-1:]
+        for line in lines:
+            if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
+                raise self.fault(line, f"names columns, but is not {self.cut} into {width} as the rows")
+        names = [f"column {n}" for n in range(width)]
+        lines[:first] = [Line(lines[first].number, str(names), names, False, False)]
+        return [0]
+
+    def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
+        """Read a table.
+
+        head, end : indices of its line of headings, and of that of the next table or the end of the file.
+        Returns (headings, units, rows); raises FileError for a line among the rows that is none, and for rows of
+        another number of cells.
+        """
+        line, *body = self.lines[head:end]
+        names, first = self.headings(line), [each.numeric for each in body].index(True)
+        while not names[-1]:
+            names.pop()
+        rows = [row for row in body[first:] if not row.comment]
+        while end < len(self.lines) and not self.is_row(rows[-1]):  # titles of the next table
+            rows.pop()
+        for row in rows:
+            if not row.numeric:
+                raise self.fault(row, "is no row of numbers, remove it or begin it with #")
+            if any(row.cells[len(names) :]) or len(row.cells) < len(names):
+                problem = f"has {len(row.cells)} columns, but line {line.number} has {len(names)}, {self.cut}"
+                raise self.fault(row, problem)
+        return names, self.units(body[:first], len(names)), rows
+
+    def headings(self, line: Line) -> list[str]:
+        """Return the cells of a line of headings; where blanks separate, words of one name go together if that fits."""
+        if self.separator != " " or len(line.cells) == self.width:
+            return [*line.cells]
+        text = re.sub(r"[\[(][^\])]*[\])]", lambda found: found[0].replace(" ", "·"), line.text)
+        cuts = [cut_by_blanks(_PHRASE.sub("", text)), re.split(r"\s{2,}|\t", text)]
+        return next((cells for cells in cuts if len(cells) == self.width), cuts[0])
+
+    def units(self, between: list[Line], width: int) -> list[str]:
+        """Return the row of units, of whose texts at least half are units; "" for each column without one.
+
+        between : lines between headings and numbers.
+        width : number of columns.
+        """
+        found = [""] * width
+        for line in between:
+            cells = self.headings(line)
+            texts = [cell.strip("[](){}<> ") for cell in cells if cell]
+            units = [text for text in texts if text in NO_UNIT or (may_be_unit(text) and is_unit(text))]
+            fits = len(cells) == width or (self.separator != " " and not any(cells[width:]))
+            if fits and 2 * len(units) >= len(texts) and not any(found):
+                found = (cells + found)[:width]
+            elif not line.comment:
+                raise self.fault(line, f"is neither units nor numbers, {self.cut}")
+        return found

@@ -1,0 +1,100 @@
+"""What drives motions, as the caller gives it: :class:`Drive`; the loads and speeds of a result by name."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.array_types import Floats
+from ..core.checks import check_array
+from ..core.drive import Feedback, Schedule, make_dimensionless
+from ..core.labels import Labels, strip_labels
+from ..core.scale import HasUnits, Scale
+
+#: Rows of the kernel's output that describe the state.
+STATES = ("V", "omega", "x", "angle", "delta", "regime")
+#: Rows of energies lost in the contact.
+LOSSES = ("slip_loss", "rolling_loss")
+#: Rows that are 0 without a drive.
+ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
+#: Rows of the kernel's output.
+ROWS = STATES + ACTING + LOSSES
+
+
+class Drive(NamedTuple):
+    """What a caller gave to drive one motion or many; None: nothing."""
+
+    force: Any = None
+    torque: Any = None
+    slope: Any = None
+    brake: Any = None
+    drag: Any = None
+    omega: Any = None
+    V: Any = None
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """What is given, by name."""
+        return {name: value for name, value in self._asdict().items() if value is not None}
+
+    @property
+    def numbers(self) -> dict[str, Floats]:
+        """What is given as a number, or as one of each motion, by name."""
+        others = Feedback | Schedule
+        return {n: check_array(n, x) for n, x in self.given.items() if not (callable(x) or isinstance(x, others))}
+
+    @property
+    def has_callable(self) -> bool:
+        """Whether one of them is a function of t, by itself or in a feedback."""
+        return any(callable(x.value if isinstance(x, Feedback) else x) for x in self.given.values())
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything is given."""
+        return not (self.force is self.torque is self.slope is self.brake is self.drag is self.omega is self.V is None)
+
+    def without_zeros(self) -> Drive:
+        """Return the same without a force, torque, slope, brake or drag that is 0 at all times."""
+        loads = {name: value for name, value in self.given.items() if name not in ("omega", "V")}
+        return self._replace(**{name: None for name, value in loads.items() if _is_zero(name, value)})
+
+    def over(self, scale: Scale) -> Drive:
+        """Return the same without dimension."""
+        return (
+            Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
+            if scale.si and self.acts
+            else self
+        )
+
+
+def _is_zero(name: str, value: Any) -> bool:
+    """Say whether a load is 0 at all times; a callable never counts as 0.
+
+    name: of the argument, for refusals.
+    value: as given.
+    Raises ParameterError for what is no number and no function of time.
+    """
+    if isinstance(value, Feedback):
+        return not (np.any(value.V) or np.any(value.omega)) and _is_zero(name, value.value)
+    return not (callable(value) or np.any(value.values if isinstance(value, Schedule) else check_array(name, value)))
+
+
+class PlainArguments(NamedTuple):
+    """Start speeds and drive without units and labels of xarray and pandas, and these labels."""
+
+    start: tuple[Any, Any]
+    drive: Drive
+    labels: Labels | None
+
+
+def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainArguments:
+    """Return start speeds and drive in the units of a roller, as plain numbers.
+
+    start: V0 and omega0 as given.
+    drive: as given.
+    units: of the roller.
+    Raises ParameterError for a unit of another dimension.
+    """
+    plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
+    return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)

@@ -1,0 +1,298 @@
+"""Fit of a callable of time by polynomials: a piece is halved until its fit is good, and joined to the previous one.
+
+A fit is good where it agrees with the callable between its nodes, and at samples spread over the whole time, which find
+narrow pulses: a thousand, or as many as ``resolve`` requires.
+
+It may differ by a part of the largest value so far, or by a small part of the largest value at all: a callable that
+rises from nearly nothing, as a Gauss pulse does, would otherwise never be fitted.  Before it has risen to that level
+the fit is 0, since an error of the wrong sign would start a motion from rest in the wrong direction.
+
+Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined they are one to the left and one to the
+right, which meet in it.  A jump is located between two neighbouring doubles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
+
+from ..core.array_types import Floats
+from ..core.checks import check_array, check_number
+from ..core.errors import ParameterError
+from ..kernels.numerics.interpolation import powers_of_chebyshev
+
+#: Terms of a polynomial.
+TERMS = 14
+#: Samples of a callable over the whole time, without ``resolve``: a pulse of a thousandth of the motion is seen.
+SAMPLES = 1000
+#: Largest number of values taken of a callable: some tenths of a second for a cheap one.
+MOST = 500_000
+#: Error allowed to a fit, divided by rtol of the motion: small beside the error of the integrator.
+_SHARE = 0.1
+#: Level below which errors are not compared with values so far, divided by the largest value of all.
+_FOOT = 1e-9
+#: Level up to which a callable that has not risen yet counts as 0, divided by the error allowed there.
+_ZERO_LEVEL = 1e3
+#: Part of a piece within which a callable that rises from 0 must have risen: else the piece is cut where it rises.
+_RISE = 1e-5
+#: Roundings of the largest value that a fit may show.
+_ROUNDINGS = 8.0
+#: Roundings of the time whose effect on the values a fit may show.
+_TIME_ROUNDINGS = 8.0
+#: Smallest length of a piece that is halved, in spacings of doubles.
+_LEAST_SPACINGS = 64
+#: Ratio of the neighbours' lengths to that of a piece at which the piece is taken to contain a corner.
+_SHORTER = 50.0
+#: Nodes of a piece in [-1, 1], its ends among them so that pieces meet, and points between them to compare at.
+_POINTS = -np.cos(np.pi * np.arange(2 * TERMS - 1) / (2 * TERMS - 2))
+_POINTS[TERMS - 1] = 0.0
+#: Matrix from values at the nodes to Chebyshev coefficients, by the orthogonality of the polynomials at the nodes.
+_TO_SERIES = chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
+_TO_SERIES[[0, -1]] *= 0.5
+_TO_SERIES[:, [0, -1]] *= 0.5
+#: Matrix from Chebyshev coefficients to those of powers.
+_TO_TERMS = powers_of_chebyshev(TERMS, 0.0, 1.0)
+#: Spacing of doubles at 1.
+_EPSILON = float(np.finfo(float).eps)
+
+#: Neighbouring doubles between which a piece is cut.
+Cut = tuple[float, float]
+
+
+class Piece(NamedTuple):
+    """A polynomial of x = -1 ... 1 from ``start`` to ``stop``, in T_ref.
+
+    terms : coefficients of powers of x, (TERMS,).
+    largest : largest value in the piece.
+    error : largest difference seen.
+    so_far : largest value before the piece.
+    """
+
+    start: float
+    stop: float
+    terms: Floats
+    largest: float
+    error: float
+    so_far: float
+
+    def value(self, t: float) -> float:
+        """Return the polynomial at time t."""
+        return float(polyval((2.0 * t - self.start - self.stop) / (self.stop - self.start), self.terms))
+
+
+class _Sampled:
+    """A callable with its samples over the whole time."""
+
+    def __init__(
+        self, name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, samples: int
+    ) -> None:
+        """Sample a callable.
+
+        name: of the argument, for refusals.
+        function: takes t in T_ref, returns a number.
+        end: last time, in T_ref.
+        rtol: relative tolerance of the motion.
+        low: smallest value allowed.
+        samples: their number.
+        """
+        self.name, self.function, self.low, self.taken = name, function, low, 0
+        self.share = _SHARE * rtol
+        self.times = end * (np.arange(samples) + 0.5) / samples
+        self.samples = self.values(self.times)
+        self.largest = float(np.abs(self.samples).max())
+
+    def values(self, t: Floats) -> Floats:
+        """Return the values at times (n,); raises ParameterError for what is no finite number or too small."""
+        self.taken += t.size
+        values = check_array(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
+        if values.shape != t.shape:
+            raise ParameterError(f"{self.name}(t)", f"array of shape {values.shape[1:]}", "a number")
+        return values
+
+    def value(self, t: float) -> float:
+        """Return the value at a time."""
+        return float(self.values(np.array([t]))[0])
+
+    def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
+        """Fit a piece.
+
+        start, stop: its ends, in T_ref.
+        so_far: largest value before it.
+        Returns (the piece, None if its fit is not good; where to cut it, None for its middle).
+        """
+        middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
+        t = middle + half * _POINTS
+        t[0], t[-1] = start, stop
+        t = np.append(t, start + _RISE * (stop - start)) if so_far == 0.0 else t
+        values, part = self.values(t), slice(*np.searchsorted(self.times, [start, stop]))
+        nodes = values[: _POINTS.size : 2]
+        t, values = np.append(t, self.times[part]), np.append(values, self.samples[part])
+        order = np.argsort(t, kind="stable")
+        t, values = t[order], values[order]
+        largest = float(np.abs(values).max())
+        self.largest = max(self.largest, largest)
+        least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
+        zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
+        if largest <= zero:
+            return Piece(start, stop, np.zeros(TERMS), 0.0, largest, so_far), None
+        if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
+            n = int(np.argmax(np.abs(values) > zero))
+            return None, _bisect(t[n - 1], t[n], lambda time: abs(self.value(time)) <= zero)
+        allowed = np.maximum(self.share * np.maximum(np.maximum.accumulate(np.abs(values)), so_far), least)
+        # The effect of the rounding of t on the values is no error of the fit.
+        rounding = float(np.spacing(stop))
+        allowed += _TIME_ROUNDINGS * rounding / max(half, rounding) * np.ptp(values)
+        # Values are fitted about the first one: terms are large and of both signs, and would magnify its rounding.
+        terms = _product(_product((nodes - nodes[0])[None], _TO_SERIES), _TO_TERMS)[0]
+        terms[0] += nodes[0]
+        error = np.abs(polyval((t - middle) / (half or 1.0), terms) - values)
+        if (error <= allowed).all():
+            return Piece(start, stop, terms, largest, float(error.max()), so_far), None
+        return None, self._locate_jump(t, values, float(allowed[-1]))
+
+    def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
+        """Return the neighbouring doubles between which the callable jumps.
+
+        t, values: ascending times of a piece and the values there, (n,).
+        allowed: error allowed to a fit at its end.
+        Returns None unless one jump is most of the variation.
+        """
+        change = np.abs(np.diff(values))
+        n = int(change.argmax())
+        if change[n] <= allowed or 2.0 * change[n] <= change.sum():
+            return None
+        ends = values[n : n + 2].tolist()
+
+        def is_before(time: float) -> bool:
+            value = self.value(time)
+            before = abs(value - ends[0]) < abs(ends[1] - value)
+            ends[0 if before else 1] = value
+            return before
+
+        cut = _bisect(t[n], t[n + 1], is_before)
+        return cut if 2.0 * abs(ends[1] - ends[0]) > change[n] else None
+
+
+def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
+    """Return the neighbouring doubles between which a condition of time becomes false.
+
+    low, high: times between which it does, in T_ref.
+    is_before: the condition.
+    """
+    low, high = float(low), float(high)
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if is_before(middle) else (low, middle)
+    return low, high
+
+
+def fit_callable(
+    name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, resolve: float | None = None
+) -> tuple[Floats, Floats, float]:
+    """Fit a callable by piecewise polynomials.
+
+    name, function: the argument and the callable.
+    end: last time, in T_ref.
+    rtol: relative tolerance of the motion.
+    low: smallest value allowed.
+    resolve: largest spacing of the samples, in T_ref; None: ``end`` divided by :data:`SAMPLES`.
+    Returns (starts of the pieces (k,), terms (k, TERMS), largest difference seen).
+    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that is not above 0 or
+    requires more than :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough.
+    """
+    samples = SAMPLES
+    if resolve is not None:
+        spacing = check_number("resolve", resolve, low=0.0, strict=True)
+        if spacing * MOST < end:
+            allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
+            raise ParameterError("resolve", spacing, allowed)
+        samples = max(math.ceil(end / spacing), SAMPLES)
+    sampled = _Sampled(name, function, end, rtol, low, samples)
+    pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
+    starts = np.array([piece.start for piece in pieces])
+    starts[0] = 0.0  # a jump there leaves one value before it
+    return starts, np.stack([piece.terms for piece in pieces]), max(piece.error for piece in pieces)
+
+
+def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
+    """Return good pieces of which no two neighbours could be one.
+
+    sampled: the callable.
+    end: last time, in T_ref.
+    Raises ParameterError where polynomials do not follow the callable.
+    """
+    pieces: list[Piece] = []
+    failed: set[tuple[float, float]] = set()
+    open_intervals, so_far = [(0.0, end)], 0.0
+    while open_intervals:
+        start, stop = open_intervals.pop()
+        piece, cut = sampled.fit(start, stop, so_far)
+        if piece is not None:
+            if pieces and (pieces[-1].start, stop) not in failed:
+                joined, _ = sampled.fit(pieces[-1].start, stop, pieces[-1].so_far)
+                if joined is not None:
+                    piece, _ = joined, pieces.pop()
+            pieces.append(piece)
+            so_far = max(so_far, piece.largest)
+            continue
+        failed.add((start, stop))
+        short = stop - start <= _LEAST_SPACINGS * np.spacing(stop)
+        if sampled.taken - sampled.times.size > MOST or (cut is None and short):
+            found = (
+                f"a callable that no polynomials follow near t = {start:.6g} ({sampled.taken} values of it were taken)"
+            )
+            raise ParameterError(sampled.name, found, "smooth but for jumps and corners; give it as a Schedule")
+        left, right = cut or (0.5 * (start + stop),) * 2
+        open_intervals += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
+    return pieces
+
+
+def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
+    """Return the pieces without the short ones that contain a corner: their neighbours then meet in it.
+
+    pieces: consecutive.
+    sampled: the callable.
+    """
+    merged: list[Piece] = []
+    rest = pieces[::-1]
+    while rest:
+        piece = rest.pop()
+        if merged and rest:
+            before, behind = merged[-1], rest[-1]
+            if _SHORTER * (piece.stop - piece.start) < min(before.stop - before.start, behind.stop - behind.start):
+                corner = _intersection(before, behind, piece)
+                left, _ = sampled.fit(before.start, corner, before.so_far)
+                right, _ = sampled.fit(corner, behind.stop, piece.so_far)
+                if left and right:
+                    merged[-1], rest[-1] = left, right
+                    continue
+        merged.append(piece)
+    return merged
+
+
+def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
+    """Return the time, within a piece, at which the polynomials of its neighbours are equal; else its middle.
+
+    before, behind: the neighbours.
+    between: the piece.
+    """
+
+    def is_above(t: float) -> bool:
+        return before.value(t) > behind.value(t)
+
+    low, high = between.start, between.stop
+    above_at_end = is_above(high)
+    if is_above(low) == above_at_end:
+        return 0.5 * (low + high)
+    return _bisect(low, high, lambda t: is_above(t) != above_at_end)[1]
+
+
+def _product(first: NDArray[Any], second: NDArray[Any]) -> Floats:
+    """Return the product of two matrices; its bits do not depend on numpy's library of linear algebra."""
+    product: Floats = np.einsum("ij,jk->ik", first, second)
+    return product

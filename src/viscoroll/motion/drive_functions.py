@@ -1,0 +1,258 @@
+"""A drive as checked functions of time without dimension, and its layout for the kernels: :class:`DriveFunctions`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.array_types import Floats
+from ..core.checks import broadcast_shape, check_array
+from ..core.drive import Feedback, slope_tan_cos
+from ..core.errors import ParameterError, exactly_one_error
+from ..kernels.motion.records import (
+    COL_COEFFICIENTS,
+    N_DRIVE_FUNCTIONS,
+    NOT_PRESCRIBED,
+    PRESCRIBED_OMEGA,
+    PRESCRIBED_V,
+)
+from .checks import start_speeds
+from .drive import Drive
+from .drive_fit import TERMS
+from .piecewise import (
+    Piecewise,
+    TimeFunction,
+    check_function,
+    count_corners,
+    count_motions,
+    differentiate,
+    pack_pieces,
+    piecewise,
+    take_motions,
+    values_at_start,
+)  # fmt: skip
+
+#: Bytes of pieces that are packed at a time where motions have functions of their own: little beside the schedules,
+#: and yet many motions at once where these are short.
+_BLOCK_BYTES = 1 << 18
+#: Largest difference between a given and the prescribed start, divided by the largest prescribed speed.
+_START = 1e-9
+#: (argument, prescribed speed beside which it must not be given, reason).
+_BESIDE = (
+    ("torque", "omega", "it is what the prescribed omega needs"), ("force", "V", "it is what the prescribed V needs"),
+    ("brake", "omega", "omega is prescribed"), ("drag", "omega", "omega is prescribed"),
+)  # fmt: skip
+#: Names of the gains in the order of the kernel's.
+_GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
+
+#: Code in the kernels of the prescribed speed, by its name; "" for none.
+_PRESCRIBED_CODES = {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}
+
+#: (pieces (1 or m, k, columns); gains (4, 1 or m); code of the prescribed speed), as the kernels take a drive.
+KernelDrive = tuple[Floats, Floats, int]
+
+
+@dataclass(frozen=True, eq=False)
+class DriveFunctions:
+    """The functions of time that drive motions, dimensionless, each the same for all motions or one for each.
+
+    Attributes
+    ----------
+    functions : force, torque, brake and prescribed speed by name, where there are any.
+    tangent : of the slope, which adds to the force, () or (m,).
+    prescribed : name of the prescribed speed, "omega", "V" or "".
+    gains : of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
+    end : last time, in T_ref.
+    """
+
+    functions: dict[str, TimeFunction]
+    tangent: Floats
+    prescribed: str
+    gains: Floats
+    end: float
+
+    @cached_property
+    def _function_motions(self) -> int:
+        """Number of motions that have functions of their own; 1 if all are alike; raises ParameterError if unequal."""
+        counts = {name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()}
+        shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
+        return shape[0] if shape else 1
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """(Number of motions with functions of their own, with gains of their own); 1 if all are driven alike."""
+        return self._function_motions, self.gains.shape[1]
+
+    @property
+    def corners(self) -> int:
+        """Number of corners of a motion's schedules, and of pieces of its callables."""
+        return sum(map(count_corners, self.functions.values()))
+
+    @property
+    def error(self) -> float:
+        """Largest difference seen between a callable and its fit, dimensionless."""
+        return max(getattr(function, "error", 0.0) for function in self.functions.values())
+
+    def block(self, most: int) -> int:
+        """Return the number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""
+        if self._function_motions == 1:
+            return most
+        columns = 2 + 5 * (TERMS if any(isinstance(f, Piecewise) for f in self.functions.values()) else 2)
+        return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
+
+    def _blocks(self, count: int) -> list[slice]:
+        """Return slices of ``count`` motions, each of one block."""
+        step = self.block(max(count, 1))
+        return [slice(first, first + step) for first in range(0, max(count, 1), step)]
+
+    def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
+        """Return (value at t = 0, largest size) of a prescribed speed, of every motion that has its own.
+
+        name: of the speed.
+        Raises ParameterError where it jumps.
+        """
+        speed, firsts, sizes = self.functions[name], [], []
+        for part in self._blocks(count_motions(speed)):
+            curve = piecewise(take_motions(speed, part))
+            differentiate(name, curve)
+            firsts.append(values_at_start(curve.terms[:, 0]))
+            sizes.append(np.abs(curve.terms).sum(axis=-1).max(axis=1, initial=0.0))
+        return np.concatenate(firsts), np.concatenate(sizes)
+
+    @cached_property
+    def pieces(self) -> Floats:
+        """All functions over common pieces, in the layout of the kernels, (1 or m, k, columns)."""
+        zero, name = piecewise(np.zeros(())), self.prescribed
+        force, torque, brake, speed = (
+            piecewise(self.functions[f]) if f in self.functions else zero for f in ("force", "torque", "brake", name)
+        )
+        tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
+        tilt[:, 0, 0] = self.tangent
+        rate = differentiate(name, speed) if name else speed
+        return pack_pieces((force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end)
+
+    def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
+        """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
+        pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
+        gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
+        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
+
+    def _take(self, index: Any) -> DriveFunctions:
+        """Return the functions of some motions; ``index`` of numpy."""
+        functions = {name: take_motions(f, index) for name, f in self.functions.items()}
+        return replace(
+            self, functions=functions, tangent=self.tangent[index] if self.tangent.size > 1 else self.tangent
+        )
+
+    @property
+    def acts_at_end(self) -> bool:
+        """Whether anything still acts at the end, on any motion."""
+        if self.prescribed or self.gains.any():
+            return True
+        return any(self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self._function_motions))
+
+
+@cache
+def undriven() -> KernelDrive:
+    """Return the kernel's drive of free motions."""
+    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
+
+
+class DrivenStart(NamedTuple):
+    """The functions that drive motions, None of free ones, and the start speeds, dimensionless."""
+
+    functions: DriveFunctions | None
+    V0: Any
+    omega0: Any
+
+
+def prepare_drive(
+    drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None
+) -> DrivenStart:
+    """Check a drive and the start speeds.
+
+    drive: dimensionless.
+    V0, omega0: start speeds, dimensionless; None where they are prescribed.
+    end: last time, in T_ref.
+    rtol, resolve: as of :func:`viscoroll.roll`.
+    Raises ParameterError for what is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what follows
+    from them given as well; a start that is not the prescribed one; ``resolve`` without a callable.
+    """
+    if resolve is not None and not drive.has_callable:
+        sentence = f"resolve = {resolve!s:.60} is given, but nothing that drives is a function of t: leave it out"
+        raise ParameterError("resolve", resolve, "left out", sentence)
+    if not drive.acts:
+        return DrivenStart(None, *start_speeds(V0, omega0))
+    tangent = np.asarray(slope_tan_cos(drive.slope)[0])
+    _refuse_both(drive)
+    prescribed = next((name for name in ("omega", "V") if getattr(drive, name) is not None), "")
+    names = ["force", "torque", "brake", *([prescribed] if prescribed else [])]
+    functions = {
+        name: check_function(
+            name, getattr(drive, name), end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
+        )
+        for name in names
+    }
+    checked_drive = DriveFunctions(functions, tangent, prescribed, _gains(drive), end)
+    starts = {"V": V0, "omega": omega0}
+    if prescribed:
+        start = starts[prescribed], checked_drive, getattr(drive, prescribed)
+        starts[prescribed] = _prescribed_start(prescribed, *start)
+    for name, start in starts.items():
+        if start is None:
+            raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")
+    return DrivenStart(checked_drive, *start_speeds(*starts.values()))
+
+
+def _refuse_both(drive: Drive) -> None:
+    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given."""
+    if drive.V is not None and drive.omega is not None:
+        raise exactly_one_error("V", "omega", both=True)
+    for name, speed, why in _BESIDE:
+        if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
+            raise ParameterError(name, value, "left out", f"{name} is given beside {speed}=: leave it out, {why}")
+
+
+def _prescribed_start(name: str, given: Any, functions: DriveFunctions, speed: Any) -> Any:
+    """Return the start that is prescribed: a number where it is the same for all, else one for each motion.
+
+    name: "V" or "omega".
+    given: the start that the caller gave; None without.
+    functions: with the prescribed speed.
+    speed: the prescribed speed as the caller gave it.
+    Raises ParameterError where ``given`` is another start, or where the speed jumps.
+    """
+    if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
+        raise ParameterError(name, "an empty array", "a number, one a motion, or a function of t")
+    start, scale = functions.speed_at_start(name)
+    if callable(speed):  # its fit has rounding errors, and may be of the other sign
+        start = np.array([float(speed(0.0))])
+    if given is not None and not (np.abs(check_array(f"{name}0", given) - start) <= _START * scale).all():
+        raise ParameterError(f"{name}0", given, f"None, or {float(start[0]):.12g} as prescribed")
+    if start.size > 1:
+        return start
+    return float(start[0]) if np.ndim(given) == 0 else np.full(np.shape(given), start[0])
+
+
+def _gains(drive: Drive) -> Floats:
+    """Return the gains of a drive, with the drag in that of the torque on omega, (4, 1 or m)."""
+    pairs = [(x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0) for x in (drive.force, drive.torque)]
+    rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
+    rows[3] = rows[3] - check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
+    count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
+    return np.array([np.broadcast_to(row, count) for row in rows])
+
+
+def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
+    """Raise ParameterError where a motion is to end at rest while something drives it to the end.
+
+    rest: threshold, dimensionless; 0 for none.  Where nothing drives, speeds below it stay below.
+    functions: that drive.
+    """
+    if rest > 0.0 and functions is not None and functions.acts_at_end:
+        sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
+        sentence += " (what a brake stops and holds is at rest in finite time: switches say when)"
+        raise ParameterError("rest", rest, "None", sentence)

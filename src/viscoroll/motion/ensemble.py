@@ -1,0 +1,182 @@
+"""Many motions at once: :func:`ensemble`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact_law.parameters import Roller, scale_of
+from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
+from ..core.array_types import Numbers
+from ..core.blocks import broadcast_vector, thread_count
+from ..core.checks import broadcast_shape, check_bool, check_choice, check_number
+from ..core.drive import Feedback, Schedule, make_dimensionless
+from ..core.errors import ParameterError, check_names
+from .batch import Batch, Solution, solve_batch
+from .checks import in_words, output_times
+from .drive import ACTING, ROWS, Drive, strip_units
+from .ensemble_result import Ensemble
+from .problem import MotionProblem, SolverOptions, make_problem
+
+#: A function of time of each motion.
+Function = Numbers | Schedule | Callable[[float], float]
+#: Fields that an ensemble may keep.
+FIELDS = ROWS
+
+
+def ensemble(
+    roller: Roller,
+    V0: Numbers | None,
+    omega0: Numbers | None,
+    t: Numbers,
+    *,
+    force: Function | Feedback | None = None,
+    torque: Function | Feedback | None = None,
+    slope: Numbers | None = None,
+    brake: Function | None = None,
+    drag: Numbers | None = None,
+    omega: Function | None = None,
+    V: Function | None = None,
+    method: Literal["auto", "flow", "integrate"] = "auto",
+    rtol: float = 1e-8,
+    rest: float | None = None,
+    unsteady: bool = False,
+    rested: bool | float = False,
+    fields: Iterable[str] = ("V", "omega", "x"),
+    max_steps: int = 100_000,
+    resolve: float | None = None,
+    speed: float | None = None,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Ensemble:
+    """Motions of n cylinders or n starts; the result has the same bits for any number of threads.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, or a :class:`Cylinder` in SI units; its numbers may be arrays of n too: every motion can
+        have a scene of its own.
+    V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
+    t : output times, ascending, common to all; one number: the final state only.
+    force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`; numbers may be
+    arrays
+        (n,), times and values of a :class:`Schedule` of shape (n, k).
+    method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
+        error of ``rtol`` at an alpha each.  "flow": look the
+        motions up in the flow map of their one scene, which is built if it is not on disk
+        yet.  "auto": "flow" for 4096 motions or more of one scene.  The map is used only
+        where its stated error is at most ``rtol``, and only for the motions that it contains;
+        all others are integrated.  The result says which, and the map's error.  Driven motions, and
+        those of bodies that differ, are integrated: "flow" is refused.
+    rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of the result are
+        those after the cost of a standstill.  With a material each an unsteady motion takes some milliseconds more,
+        for its N.
+    fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
+        work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
+        some rtol of the energy that moves.
+    speed : highest speed that the flow map is made for; default the largest of the starts.
+        Where a large ensemble is computed in several calls, one number for all makes the
+        bits independent of how it is divided.
+    threads : threads to use; default ``$VISCOROLL_THREADS`` or the cores available.
+    progress : draw a progress bar if the call takes longer than a second.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
+        unknown fields or method; method "flow" with parameters that differ between motions.
+
+    Examples
+    --------
+    >>> import numpy as np, viscoroll as vr
+    >>> V0 = np.linspace(1.0, 2.0, 5)
+    >>> result = vr.ensemble(vr.presets.RUBBER_CYLINDER, V0, V0 / 0.1, [0.5, 1.0])
+    >>> result.V.shape
+    (5, 2)
+
+    Notes
+    -----
+    The flow map has no entry for scenes in which full slip returns or rolling resistance can
+    hold the sliding cylinder (mu below about M/2), for alpha = 1, and for motions that stick
+    at speeds 10^6 times below the highest (``tests/motion/test_flow.py``).
+
+    Nothing is raised where a motion cannot be rolled to the end: its ``status`` says so, its outputs from
+    there on are NaN, and :meth:`Ensemble.messages` counts such motions.
+
+    Beside float64 input and its result a call takes a few megabytes, whatever the number of
+    motions (``tests/test_invariance.py``).
+    """
+    units = scale_of(roller)
+    times, names = output_times(t, units), check_names("fields", fields, FIELDS, "a field")
+    check_choice("method", method, "auto", "flow", "integrate")
+    start, drive, labels = strip_units((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
+    progress = check_bool("progress", progress)
+    if speed is not None:
+        speed = check_number("speed", speed, unit=units, low=0.0, strict=True)
+    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
+    problem = make_problem(roller, start, drive, times[-1], options)
+    inputs, count = _broadcast_inputs(problem, drive.numbers)
+    warn_of_start(problem.roller, problem.scene, start, problem.V0, problem.omega0, problem.driven)
+    scale = problem.roller.scale
+    batch = Batch(
+        problem, inputs, np.broadcast_to(problem.immobile, (count,)), times / scale["t"],
+        names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
+        thread_count(threads), "motions" if progress else None,
+    )  # fmt: skip
+    try:
+        solution = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
+    except ParameterError as error:
+        raise in_words(error, scale) from error
+    columns: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
+    columns |= _in_units(batch, solution)
+    result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **columns)
+    warn_of_speeds(problem.roller, start[0], result.V)
+    return result
+
+
+def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
+    """Return the parameters and start speeds of an ensemble, and the number of its motions.
+
+    problem: its motions.
+    drives: numbers that drive them, by name.
+    Returns (arrays of one or n values by name; n).
+    Raises ParameterError where they do not broadcast to (n,).
+    """
+    arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
+    arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
+    counts = (1, 1) if problem.functions is None else problem.functions.counts
+    own = {name: np.zeros(n) for name, n in zip(("pieces", "gains"), counts, strict=True) if n > 1}
+    shape = broadcast_shape(**arrays, **drives, **own)
+    if len(shape) > 1:
+        raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
+    count = shape[0] if shape else 1
+    return {name: broadcast_vector(array, (count,)) for name, array in arrays.items()}, count
+
+
+def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
+    """Return the fields of an :class:`Ensemble` in the units of its roller, by name.
+
+    batch: its motions.
+    solution: dimensionless.
+    """
+    found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
+    rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))
+    times = {
+        "onset_time": found.onset,
+        "rest_time": found.rest,
+        "V0": batch.inputs["V0"],
+        "omega0": batch.inputs["omega0"],
+    }
+    if scale.si:
+        for name, row in rows.items():
+            np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
+        times = {name: value * scale[name] for name, value in times.items()}
+    times = {name: np.broadcast_to(value, shape) for name, value in times.items()}
+    notes = {"status": found.status, "switches": found.switches, "drive_error": batch.problem.drive_error}
+    return rows | times | notes | solution.about

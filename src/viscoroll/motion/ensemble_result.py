@@ -1,0 +1,168 @@
+"""The result of many motions: :class:`Ensemble`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.validity import validity
+from ..core.array_types import Booleans, Floats, Integers
+from ..core.checks import check_array
+from ..core.errors import MotionStatus, ParameterError, describe_value
+from ..core.labels import Labels
+from ..core.results import SummaryRow
+from .result import RollResult
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Largest number of motions that ``validity`` examines: some tenths of a second.
+_EXAMINED = 256
+
+
+class Fastest(NamedTuple):
+    """Motions of an ensemble and their highest speeds.
+
+    motion : indices of the motions, (m,).
+    V, omega : highest speeds that each starts with or reaches, (m,); omega < 0 where the start speeds have opposite
+        signs.
+    """
+
+    motion: Integers
+    V: Floats
+    omega: Floats
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ensemble(RollResult):
+    """Motions 0 ... n - 1 at common output times, in the units of the roller, as of a :class:`Motion`.
+
+    Attributes
+    ----------
+    roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
+    t : output times.
+    V, omega, x, angle, delta, regime : shape (n, len(t)); those not requested are None.
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_epsilon)^2 or in J/m: the
+    integrals of
+        gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
+        (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
+    force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
+    onset_time : (n,), first change from full to partial slip; NaN if there is none.
+    rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
+    success, status : (n,), whether each came to its end, and its :class:`MotionStatus`; outputs a motion did not reach
+        are NaN.
+    switches, steps : (n,), changes of regime, and integration steps taken.
+    flow : (n,), whether the motion is from the flow map; the others were integrated.
+    flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
+        ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
+        relative to the energy at the start if larger; NaN without a map.
+    flow_problem : why a map that was tried could not be used, or "".
+    drive_error : as of a :class:`Motion`.
+    drive : loads and prescribed speeds as they were given.
+    labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> result = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+    >>> len(result), bool(result.success.all())
+    (2, True)
+    """
+
+    V0: Floats
+    omega0: Floats
+    flow: Booleans
+    flow_error: float
+    flow_problem: str
+    labels: Labels | None = None
+
+    def __len__(self) -> int:
+        return self.status.size
+
+    @property
+    def message(self) -> str:
+        """How the motions ended, in words."""
+        return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
+
+    def messages(self) -> dict[str, int]:
+        """How many motions ended in which way, in words."""
+        codes, counts = np.unique(self.status, return_counts=True)
+        return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
+
+    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
+        """Moments, quantiles and histograms over the motions, per output time, named as those of a run's store.
+
+        Parameters
+        ----------
+        quantiles : in [0, 1].
+
+        Returns
+        -------
+        xarray.Dataset
+            Of every field kept but the regime, of onset_time and rest_time: ``NAME_counted`` (motions that have a
+            value: outputs that one did not reach do not count), ``_mean``, ``_std``, ``_min``, ``_max``, ``_quantiles``
+            over (quantile, t), which are exact, those of a run to their bin (``comment``), and ``_histogram`` over
+            ``_bin_low``, ``_bin_high``.  ``ended``: how many motions ended in which way.
+
+        Raises
+        ------
+        ParameterError
+            If there are no motions, or quantiles are none.
+        """
+        from .summaries import summary_of
+
+        given: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
+        levels = check_array("quantiles", given, low=0.0, high=1.0)
+        if levels.ndim != 1:
+            raise ParameterError("quantiles", describe_value(quantiles), "a list of numbers")
+        return summary_of(self, tuple(levels.tolist()))
+
+    def validity(self) -> Validity:
+        """Report which assumptions of the model the motions violate, at the highest speeds of each.
+
+        ``steady`` examines all speeds of a motion.  See :func:`viscoroll.validity`; arrays over the motions, for more
+        than 256 over that many of them, evenly spaced.
+        """
+        index, V, omega = self.fastest()
+        roller = self.roller.take(index, len(self))
+        report = validity(roller, V, omega=omega)
+        if self.V is None or not index.size or roller.scene().cover is not None:
+            return report
+        speeds = np.vstack([self.V0[index], self.V[index].T])
+        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(speeds)
+        x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(index.size), self.x[index].T])
+        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
+
+    def fastest(self) -> Fastest:
+        """Return the motions that :meth:`validity` examines, with their highest speeds."""
+        speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
+        for name, start in speeds.items():
+            if (values := getattr(self, name)) is not None:
+                speeds[name] = np.fmax(start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
+        index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
+        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Title and rows of the printed report."""
+        ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
+        rows = [self._row_of_times()]
+        for name in ("V", "omega", "x"):
+            if (values := getattr(self, name)) is not None and values.size:
+                last = values[:, -1][np.isfinite(values[:, -1])]
+                low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
+                text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
+                rows.append(SummaryRow(name, text, self._unit(name)))
+        rows.append(SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
+        if self.flow.any():
+            rows.append(SummaryRow("by the flow map", f"{self.flow.sum()}, stated error {self.flow_error:.2g}"))
+        return f"Ensemble of {len(self)} motions", rows + ends
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over (motion, t) with starts, outputs, onset and status."""
+        from .export import ensemble_dataset
+
+        return ensemble_dataset(self)

@@ -1,0 +1,145 @@
+"""The boundary layers of a flow map behind the onset of partial slip: :func:`fill_layers`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+
+from ..core.array_types import Floats
+from ..kernels.flow import layout
+from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION
+from ..materials.law_build import paired
+from .flow_manifold import SlowManifold
+from .flow_problem import SPEEDS, STICK_ENDS, FlowProblem
+from .flow_rows import NODES, Nodes, Rows, octaves
+
+#: Nodes of the coordinates of a layer.
+_COARSE = Nodes(layout.LAYER_TERMS)
+#: Octaves of the layer coordinate u.
+_LAYER = octaves(layout.LAYER_LOW, layout.LAYER_HIGH)
+#: Number of these octaves before the split.
+_OCTAVES_BEFORE_SPLIT = -layout.LAYER_LOW
+#: Lower end of u.
+_LOWEST_U = 2.0**layout.LAYER_LOW
+#: E behind the split at which a motion has reached the slow manifold, dimensionless.
+_JOIN_E = 2.0**layout.LAYER_HIGH - 1.0
+#: Time before the onset of partial slip at which a motion of the layer starts, divided by the time to the split: the
+#: change of state in it is near the rounding of the integrator.
+_LEAD = 1e-6
+#: Values of E between which a zero of delta is searched; beyond them the kink of the law is below rounding.
+_CROSSINGS = np.linspace(0.0, 14.0, 71)[1:]
+#: Nodes of an octave of kappa V at onset for the polynomial of the split, which is smooth.
+_SPLIT_NODES = Nodes(6)
+
+
+def fill_layers(
+    problem: FlowProblem, sign: float, first: int, slow: SlowManifold, asymptote: Floats, layer: Floats
+) -> None:
+    """Fill the tables of the boundary layers and asymptotes of one family.
+
+    problem : the scene.  sign : sign of omega - V at onset.  first : lowest octave of kappa V at onset.
+    slow : the slow manifold.  asymptote, layer : views of the tables, written.
+    """
+    kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
+    V0 = onsets.node_positions(_COARSE) / kappa
+    k0 = _stiff_rate(problem, V0)
+    split_powers = _split_powers(problem, sign, onsets)
+    split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
+    V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
+    # over (octave, V, octave of u, u)
+    width = np.where(np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT, split[..., None] / (1.0 - _LOWEST_U), 1.0)
+    half, V_ratio = width * _LAYER.half, V / V0[..., None, None]
+    loss = delta * V_ratio * problem.contact_states(V, delta)[TRACTION] / (V0 * k0)[..., None, None]
+    slopes = V_ratio - 1.0, V_ratio * (1.0 + delta) - 1.0, loss
+    columns = [np.log(V_ratio), delta, *(_COARSE.integrals(slope, half) for slope in slopes)]
+    for column, values in enumerate(columns):
+        powers = _COARSE.powers(np.moveaxis(_COARSE.powers(values), 1, -1))
+        layer[:, :, column] = powers.reshape(*layer.shape[:2], -1)
+    # the motion on the slow manifold that they have reached at the end of the layer
+    E = split + _JOIN_E
+    x, angle, lost = (_COARSE.end(slope, half) for slope in slopes)
+    end = SPEEDS.value(slow.slow_log, kappa * V_end)
+    span = problem.slow_rate * E / k0
+    slow_log = end + span
+    slow_x, slow_angle = slow.path_between(slow_log, span, problem.slow_rate)
+    x, angle = V0 / k0 * (E + x) - slow_x, V0 / k0 * (E + angle) - slow_angle
+    lost = V0 * V0 * lost - (slow.rows.value(slow.loss, slow_log) - slow.rows.value(slow.loss, end))
+    slow_log_at_V = slow.slow_log[first - layout.LOW :][: layout.OCTAVES]
+    above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
+    rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
+    excess = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
+    asymptote[:] = np.concatenate(
+        [paired(slow_log_at_V + _padded(above), rates), _padded(split_powers), paired(*excess[:2]), excess[2]], axis=-1
+    )
+
+
+def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
+    """k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes."""
+    return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V, np.zeros(V.shape))[STIFFNESS] / V
+
+
+def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Floats) -> tuple[Floats, Floats]:
+    """(V, delta) in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip at V."""
+    _, _, mu, j = problem.parameters
+    state = problem.contact_states(V, np.zeros(V.shape))
+    push, half_moment, tau = sign * mu, 0.5 * state[MOMENT], _LEAD * gamma
+    before = V - tau * (push - half_moment)
+    return before, (V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / j) / before - 1.0
+
+
+def _layer_motions(
+    problem: FlowProblem, sign: float, V0: Floats, k0: Floats, split: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Motions of a boundary layer at the nodes of its tables.
+
+    problem : the scene.  sign : sign of omega - V at onset.  V0 : speeds at onset, (octaves, nodes).
+    k0 : relaxation rates there.  split : splits there.
+
+    Returns V and delta, (octave, node of V, octave of u, node of u), and V at the end of the layer, (octave, node of
+    V).
+    """
+    u, gamma = _LAYER.node_positions(_COARSE), (split / k0).ravel()
+    starts = _state_before_onset(problem, sign, V0.ravel(), gamma)
+    before = _LEAD + np.append((u[:_OCTAVES_BEFORE_SPLIT] - _LOWEST_U) / (1.0 - _LOWEST_U), 1.0)
+    V, delta = problem.integrate(*starts, gamma, before, STICK_ENDS)
+    V_on, delta_on = problem.integrate(
+        V[:, -1], delta[:, -1], 1.0 / k0.ravel(), np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E), STICK_ENDS
+    )
+    shape = (*V0.shape, _LAYER.half.size, _COARSE.t.size)
+    V_whole, delta_whole = (
+        np.concatenate([a[:, :-1], b[:, :-1]], axis=1).reshape(shape) for a, b in ((V, V_on), (delta, delta_on))
+    )
+    return V_whole, delta_whole, V_on[:, -1].reshape(V0.shape)
+
+
+def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
+    """Coefficients, over kappa V at onset, of the value of E near which delta passes 0; 1 where it does not.
+
+    problem : the scene.  sign : sign of omega - V at onset.  onsets : octaves of kappa V at onset.
+
+    Returns (octaves, powers).
+    """
+    powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
+    powers[:, 0] = 1.0
+    if sign != np.sign(1.0 - problem.parameters[3]):
+        return powers
+    V = (onsets.node_positions(_SPLIT_NODES) / problem.parameters[1]).ravel()
+    gamma = 1.0 / _stiff_rate(problem, V)
+    _, delta = problem.integrate(*_state_before_onset(problem, sign, V, gamma), gamma, _LEAD + _CROSSINGS, STICK_ENDS)
+    passed = sign * delta < 0.0
+    index = np.clip(passed.argmax(axis=1), 2, _CROSSINGS.size - 2)[:, None] + np.arange(-2, 2)
+    E, delta = _CROSSINGS[index], np.take_along_axis(delta, index, axis=1)
+    # the inverse of a cubic
+    split = np.zeros(V.size)
+    for n in range(4):
+        others = [delta[:, m] / (delta[:, m] - delta[:, n]) for m in range(4) if m != n]
+        split += E[:, n] * np.prod(others, axis=0)
+    split = split.reshape(powers.shape)
+    turns = np.all(passed.any(axis=1).reshape(powers.shape), axis=1)
+    powers[turns] = _SPLIT_NODES.powers(split[turns])
+    return powers
+
+
+def _padded(powers: Floats) -> Floats:
+    """Coefficients, padded with zeros to the number of powers of functions of one variable."""
+    return np.pad(powers, [(0, 0), (0, NODES.t.size - powers.shape[-1])])

@@ -1,0 +1,108 @@
+"""The slow manifold of a flow map: :func:`fill_manifold`."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.array_types import Floats
+from ..kernels.flow import layout
+from ..kernels.flow.layout import FlowTables
+from ..kernels.flow.states import MOMENT, TRACTION
+from ..kernels.numerics.interpolation import gauss
+from ..materials.law_build import paired
+from .flow_problem import FULL_SLIP_RETURNS, OUT_OF_RANGE, SPEEDS, FlowProblem, NoFlowMap
+from .flow_rows import NODES, Rows
+
+#: 5-point Gauss-Legendre rule on [0, 1], (nodes, weights), as in :mod:`..kernels.flow.lookup`.
+_GAUSS = gauss(5)
+#: Edges of the rows over the slow logarithm, dimensionless.
+_SLOW_LOG_EDGES = np.concatenate(
+    [layout.SLOW_WIDTH * np.arange(-layout.SLOW_BINS, 0), np.ldexp(1.0, np.arange(layout.SLOW_OCTAVES + 1)) - 1.0]
+)
+#: Octaves of V above the tables at which the motion along the slow manifold starts, to approach the manifold.
+_RUN_IN_OCTAVES = 3
+#: kappa V, dimensionless, below whose first step of the slow motion the slow logarithm is 0.
+_SLOW_LOG_ORIGIN = 0.25
+
+
+class SlowManifold(NamedTuple):
+    """The slow manifold: coefficients over the slow logarithm, and of the slow logarithm over kappa V.
+
+    rows : octaves of the slow logarithm.  speeds : V and delta.  path : remaining distance and angle to rest.
+    loss : remaining slip loss.  slow_log : slow logarithm over kappa V.
+    """
+
+    rows: Rows
+    speeds: tuple[Floats, Floats]
+    path: tuple[Floats, Floats]
+    loss: Floats
+    slow_log: Floats
+
+    def path_between(self, start: Floats, span: Floats, rate: float) -> tuple[Floats, Floats]:
+        """Distance and angle along the manifold, as ``manifold_path`` of :mod:`..kernels.flow.lookup`.
+
+        start : slow logarithms at the beginning.  span : their decrease.  rate : decrease in unit time.
+        """
+        end, value = start - span, self.rows.value
+        x, angle = (value(powers, start) - value(powers, end) for powers in self.path)
+        V, delta = (value(powers, end[..., None] + span[..., None] * _GAUSS[0]) for powers in self.speeds)
+        near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
+        direct = [(_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))]
+        return np.where(near, direct[0], x), np.where(near, direct[1], angle)
+
+
+def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
+    """Fill the tables of the slow manifold, and return it.
+
+    problem : the scene.  parts : views of the tables.
+
+    One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and loss are
+    integrals from V -> 0 upward.
+    """
+    rows, V, delta = _integrate_manifold(problem)
+    slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]
+    to_go = []
+    for slope, n in zip(slopes, (1, 1, 3), strict=True):  # V falls like exp(lambda)
+        below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
+        to_go.append(NODES.powers(NODES.integrals(slope, rows.half, below) / problem.slow_rate))
+    speeds = NODES.powers(V), NODES.powers(delta)
+    slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.parameters[1])
+    slow = SlowManifold(rows, speeds, (to_go[0], to_go[1]), to_go[2], NODES.powers(slow_log))
+    parts.slow[: len(V)] = np.concatenate([paired(*speeds), paired(*slow.path), slow.loss], axis=-1)
+    parts.manifold[:] = paired(slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log)))
+    return slow
+
+
+def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
+    """Integrate the motion along the slow manifold of ``problem``.
+
+    Returns (rows over the slow logarithm, V and delta at their nodes).  The motion is integrated from one state to
+    the next of half its speed: the remaining time to the last state then keeps its digits.  The slow logarithm is 0
+    at the last state.
+    """
+    kappa, j, rate = problem.parameters[1], problem.parameters[3], problem.slow_rate
+    V, delta, gamma = np.array([2.0 ** (layout.HIGH + _RUN_IN_OCTAVES) / kappa]), np.zeros(1), np.ones(1)
+    halves, steps = [], []
+    while kappa * V[0] > _SLOW_LOG_ORIGIN:
+        between = 0.75 * V
+        step = math.log(2.0) * (1.0 + j) * between / problem.contact_states(between, np.zeros(1))[MOMENT]
+        (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
+        if not V[0] < between[0]:
+            raise NoFlowMap(OUT_OF_RANGE)
+        halves.append((V, delta))
+        steps.append(rate * step[0])
+    starts = np.append(np.cumsum(steps[:0:-1])[::-1], 0.0)
+    rows = Rows(_SLOW_LOG_EDGES[: np.searchsorted(_SLOW_LOG_EDGES, starts[0])])
+    nodes = rows.x.ravel()[::-1]
+    states = np.empty((2, nodes.size))
+    for (V, delta), start, end in zip(halves, starts, [*starts[1:], -np.inf], strict=True):
+        inside = np.flatnonzero((nodes <= start) & (nodes > end))
+        if inside.size:
+            (states[0, inside],), (states[1, inside],) = problem.integrate(
+                V, delta, gamma, (start - nodes[inside]) / rate, FULL_SLIP_RETURNS
+            )
+    V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
+    return rows, V, delta

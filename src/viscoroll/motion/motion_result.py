@@ -1,0 +1,276 @@
+"""The result of one motion: :class:`Motion`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..contact_law.contact import contact
+from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.validity import validity
+from ..core.array_types import Floats
+from ..core.errors import MotionStatus, ParameterError
+from ..core.results import SummaryRow, Values
+from .checks import SPEED_RANGE, output_times
+from .drive import ROWS
+from .problem import NO_NOTES, MotionProblem, integrate_one
+from .result import RollResult
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+#: Changes of regime that are kept.
+_SWITCHES_KEPT = 1000
+#: Times of a figure, beside the ends of steps: lines between them are straight.
+_DRAWN = 201
+#: Steps, beside twice those of the motion, for which the ends are kept and which a repeated integration may take.
+_MORE_STEPS = 1000
+#: Names of the regimes by their codes.
+REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
+
+
+class Switch(NamedTuple):
+    """A change of regime.
+
+    t : when, in the unit of the roller.
+    regime : the new regime, a name of ``REGIMES``.
+    """
+
+    t: float
+    regime: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(RollResult):
+    """One motion, in the units of its roller: dimensionless for a scene, for a cylinder SI units per m of length.
+
+    Attributes
+    ----------
+    roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
+    drive : loads and prescribed speeds as they were given.
+    t, V, omega : output times and speeds; s, m/s, rad/s.
+    x, angle : distance travelled, divided by R or in m, and angle turned in radians, both 0 at t = 0.
+    delta : creepage (infinite where V = 0 while sliding).
+    regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by a brake, or by a
+        prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing stops: a driven motion counts as
+        at rest where V has decayed below the smallest double.
+    switches : every change of regime, located to rounding; under a drive to a small part of ``rtol``.
+    reversals : times at which V changes its sign under a drive.
+    force, torque : divided by P and P R, or N/m and N m/m: the loads with the pull of a slope, or the loads that a
+        prescribed speed required; without the brake.
+    work_force, work_torque : work of either since t = 0, divided by m (R/T_epsilon)^2 or in J/m.
+    brake_loss, slip_loss, rolling_loss : energy lost since t = 0 in brake, slip and rolling, likewise.  The works
+        are the change of (V^2 + j omega^2)/2 plus the three losses.
+    power_force, power_torque : force V and torque omega, divided by P R/T_epsilon or in W/m.
+    drive_error : largest difference seen between a callable and the polynomials that fit it, dimensionless.
+    onset_time : first change from full to partial slip; NaN if there is none.
+    rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
+    success, status, message : whether the motion came to its end, how it ended, and its last state if that was not
+        its end; outputs it did not reach are NaN.
+    steps : integration steps taken, rejected ones included.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+    >>> motion.success, motion.V.shape
+    (True, (2,))
+    """
+
+    reversals: Floats
+    _problem: MotionProblem = field(repr=False)
+
+    @property
+    def message(self) -> str:
+        """The status in words; for a motion that was given up also the state that it had reached."""
+        text = self.status.message
+        if self.success or self.status == MotionStatus.CAUGHT:
+            return text
+        last = self._last_reached
+        t, V, omega = (f"{x} = {float(last[x][0]):.6g} {self._unit(x)}".rstrip() for x in ("t", "V", "omega"))
+        return f"{text}; it stood at {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
+
+    @cached_property
+    def _step_ends(self) -> Floats:
+        """Ends of the integration steps, ascending, in T_ref."""
+        ends = np.full(2 * self.steps + _MORE_STEPS, np.nan)
+        integrate_one(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
+        return ends[~np.isnan(ends)]
+
+    @cached_property
+    def _last_reached(self) -> Motion:
+        """The motion at the last time that it reached, for one that was given up."""
+        reached = float(self._step_ends.max(initial=0.0))
+        # A last step that is cut at this end may take more steps than one that was not.
+        limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
+        return integrate_motion(
+            self._problem._replace(end=reached, limits=limits), np.array([reached * self.scale["t"]])
+        )
+
+    @property
+    def power_force(self) -> Floats:
+        """Power of the force."""
+        return self.force * self.V
+
+    @property
+    def power_torque(self) -> Floats:
+        """Power of the torque."""
+        return self.torque * self.omega
+
+    def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
+        """Contact state (:func:`viscoroll.contact`) along the motion.
+
+        At rest, and where V passes through zero while sliding, the limits V -> 0 stand.  At times that the
+        motion did not reach everything is NaN, and ``full_slip`` False.
+
+        Parameters
+        ----------
+        fields, **options : as for :func:`viscoroll.contact`.
+
+        Returns
+        -------
+        Values
+            Each field over t.  The law is exact to rounding: errors are those of V and delta, which beta
+            and Q magnify near full slip (``tests/motion/test_motion.py``).
+
+        Raises
+        ------
+        ParameterError
+            Unknown fields or options out of range.
+        """
+        reached = self.regime >= 0
+        V, delta = self.V[reached], self.delta[reached]
+        delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
+        slowest = -SPEED_RANGE[0] * self.scale["V"]
+        V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
+        found = contact(self.roller, V, delta=delta, fields=fields, **options)
+        whole = {}
+        for name, values in found.as_dict().items():
+            whole[name] = np.full(reached.shape, False if values.dtype == bool else np.nan)
+            whole[name][reached] = values
+        return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
+
+    def validity(self) -> Validity:
+        """Report which assumptions of the model the motion violates, at each output time that it reached.
+
+        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far.
+        """
+        reached = self.regime >= 0
+        V = self.V[reached]
+        report = validity(self.roller, V, omega=self.omega[reached])
+        if not reached.any() or self.scene.cover is not None:
+            return report
+        rolls, x = self.regime[reached] > 0, self.x[reached]
+        return self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Title and rows of the printed report."""
+        rows = [self._row_of_times()]
+        rows += [
+            SummaryRow(name, _describe_course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
+        ]
+        for name, given in self.drive.given.items():
+            title = f"prescribed {name}" if name in ("V", "omega") else name  # V and omega have rows of their own above
+            rows.append(SummaryRow(title, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
+        if not np.isnan(self.onset_time):
+            rows.append(SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
+        if self.switches:
+            last = self.switches[-1]
+            end = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(self.rest_time) else ""
+            when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
+            rows.append(
+                SummaryRow("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{end}")
+            )
+        if self.reversals.size:
+            rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
+        return "Motion", [*rows, SummaryRow("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
+
+    def at(self, t: ArrayLike) -> Motion:
+        """The same motion at other times within [0, end], by the dense output of the steps.
+
+        Parameters
+        ----------
+        t : times, ascending.
+
+        Returns
+        -------
+        Motion
+            As accurate between the steps as at their ends (``tests/motion/test_motion.py``).
+
+        Raises
+        ------
+        ParameterError
+            Times that are not ascending or lie beyond the end of the motion.
+        """
+        times = output_times(t, self.scale)
+        end = self._problem.end * self.scale["t"]
+        if times[-1] > end and float(times[-1]) / self.scale["t"] > self._problem.end:
+            raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
+        return integrate_motion(self._problem, times)
+
+    @cached_property
+    def course(self) -> Motion:
+        """The same motion at 0, at the ends of its steps, at points between them, and at its end."""
+        ends, end = self._step_ends, self._problem.end
+        return self.at(np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"])
+
+    def _figure(self) -> Figure:
+        """Figure of the motion; of the whole course where only one output time was requested."""
+        if self.t.size > 1:
+            return RollResult._figure(self)
+        t = self.course.t
+        return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
+        from .export import motion_dataset
+
+        return motion_dataset(self)
+
+
+def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
+    """Integrate one motion.
+
+    problem: of one motion.
+    times: output times, ascending, in the unit of its roller; the motion is integrated to its end in any case.
+    """
+    scale, end = problem.roller.scale, problem.end
+    T, t = scale["t"], np.minimum(times / scale["t"], end)
+    if t[-1] != end:
+        t = np.append(t, end)
+    noted = np.empty((_SWITCHES_KEPT, 2))
+    noted.fill(np.nan)
+    out, (status, steps, _, onset_time, rest_time) = integrate_one(problem, t, noted, NO_NOTES[1])
+    rows = dict(zip(ROWS, out[:, : times.size], strict=True))
+    codes = rows.pop("regime")
+    if scale.si:
+        rows = {name: row * scale[name] for name, row in rows.items()}
+    regime = np.where(np.isnan(codes), -1, codes).astype(np.int8)
+    noted = noted[~np.isnan(noted[:, 1])]
+    switches = tuple(Switch(float(when) * T, REGIMES[int(code)]) for when, code in noted if code >= 0.0)
+    return Motion(
+        problem.roller, problem.drive, times, **rows, regime=regime, switches=switches, onset_time=onset_time * T,
+        rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
+        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.drive_error, _problem=problem,
+    )  # fmt: skip
+
+
+def _describe_course(t: NDArray, values: NDArray) -> str:
+    """Describe values over time: the first, the last that was reached, and the largest between them with its time.
+
+    t, values: (times,); NaN where the motion did not get.
+    """
+    if np.isnan(values).all():
+        return "not reached"
+    reached, peak = values[~np.isnan(values)], int(np.nanargmax(np.abs(values)))
+    first, most, last = (f"{value:.6g}" for value in (reached[0], values[peak], reached[-1]))
+    if t.size == 1:
+        return first
+    largest = "" if most in (first, last) else f"largest {most} (at t = {t[peak]:.6g}), "
+    return f"first {first}, {largest}last {last}"

@@ -1,0 +1,251 @@
+"""Functions of time that act on motions, and as piecewise polynomials for the kernels.
+
+A piece lasts from ``starts`` to ``ends``; in it x = -1 ... 1 and the value is sum terms[n] x^n.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.array_types import Floats
+from ..core.checks import check_array
+from ..core.drive import Feedback, Schedule, require_time_argument
+from ..core.errors import ParameterError
+from ..kernels.motion.records import COL_COEFFICIENTS, COL_SCALE, COL_START
+from .drive_fit import fit_callable
+
+#: First value of a piece divided by the size of its terms, dimensionless, that counts as rounding: some 50 roundings.
+_ROUNDING = 1e-14
+#: The same of the slope of a piece, which the differentiation makes larger.
+_ROUNDING_OF_SLOPE = 1e-12
+#: Jump of a prescribed speed divided by its largest size, dimensionless, that counts as rounding.
+_ROUNDING_OF_JUMP = 1e-12
+#: Duration of a piece, in T_ref, that counts as none: 2 divided by it and by gamma is to be finite.
+_INSTANT = 1e-280
+
+
+class Piecewise(NamedTuple):
+    """A piecewise polynomial function of time of one motion or m.
+
+    starts : when pieces start, (1 or m, k), in T_ref; the last piece has no end.  Pieces may have no length.
+    terms : coefficients, (1 or m, k, terms); one row where the function is the same for all motions.
+    error : largest difference seen between a callable and this fit.
+    """
+
+    starts: Floats
+    terms: Floats
+    error: float = 0.0
+
+    @property
+    def ends(self) -> Floats:
+        """When the pieces end, in the shape of ``starts``."""
+        return _ends(self.starts)
+
+
+#: A checked function of time: numbers (one, or one of each motion), corners, or the polynomials that follow a callable.
+TimeFunction = Floats | Schedule | Piecewise
+
+
+def check_function(
+    name: str, given: Any, end: float, rtol: float, *, low: float = -np.inf, resolve: float | None = None
+) -> TimeFunction:
+    """Check a function of time; a callable is fitted.
+
+    name: of the argument, for refusals.
+    given: None (0), a number, one of each motion, a Schedule, a callable of t, or a Feedback of one of these, whose
+    gains are ignored; dimensionless.
+    end: last time, in T_ref.
+    rtol: relative tolerance of the motion, of which the fit of a callable takes a tenth.
+    low: smallest value allowed.
+    resolve: largest spacing of samples, as of :func:`viscoroll.roll`.
+    Raises ParameterError for what is neither a number, a schedule nor a callable; values that are not finite or below
+    ``low``; a callable that polynomials do not follow.
+    """
+    if isinstance(given, Feedback):
+        given = given.value
+    if callable(given):
+        require_time_argument(name, given)
+        starts, terms, error = fit_callable(name, given, end, rtol, low, resolve)
+        after = np.zeros((1, terms.shape[1]))
+        after[0, 0] = terms[-1].sum()
+        return Piecewise(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
+    if isinstance(given, Schedule):
+        check_array(f"values of {name}", given.values, low=low)
+        return given
+    values = check_array(name, 0.0 if given is None else given, low=low)
+    if values.ndim > 1:
+        allowed = "a number, one a motion, or a Schedule(times, values)"
+        raise ParameterError(name, f"array of shape {values.shape}", allowed)
+    return values
+
+
+def count_motions(function: TimeFunction) -> int:
+    """Return the number of motions that a function tells apart; 1 if it is the same for all."""
+    if isinstance(function, Piecewise):
+        return len(function.terms)
+    if isinstance(function, Schedule):
+        return max(len(array) for array in map(np.atleast_2d, (function.times, function.values)))
+    return function.size
+
+
+def count_corners(function: TimeFunction) -> int:
+    """Return the number of corners of a function that is a schedule, of its pieces if it is a fit, else 0."""
+    if isinstance(function, Piecewise):
+        return function.starts.shape[-1]
+    return function.times.shape[-1] if isinstance(function, Schedule) else 0
+
+
+def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
+    """Return a function for some motions, by an index of numpy; itself where it is the same for all."""
+    if isinstance(function, Piecewise) or count_motions(function) == 1:
+        return function
+    if isinstance(function, Schedule):
+        parts = (a[index] if a.ndim == 2 and len(a) > 1 else a for a in (function.times, function.values))
+        return Schedule(*parts)
+    return function[index]
+
+
+def piecewise(function: TimeFunction) -> Piecewise:
+    """Return a function as polynomials; a schedule is linear between its times, constant outside."""
+    if isinstance(function, Piecewise):
+        return function
+    if not isinstance(function, Schedule):
+        return Piecewise(np.zeros((1, 1)), function.reshape(-1, 1, 1))
+    times, values = np.atleast_2d(function.times, function.values)
+    values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
+    first, second = values[:, :-1], values[:, 1:]
+    terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
+    terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
+    starts = np.pad(times, [(0, 0), (1, 0)])
+    kept = (_ends(starts) > starts).any(axis=0)
+    return Piecewise(starts[:, kept], terms[:, kept])
+
+
+def _ends(starts: Floats) -> Floats:
+    """Return the ends of pieces that follow one another, (m, k), from their starts, (m, k)."""
+    return np.pad(starts[:, 1:], [(0, 0), (0, 1)], constant_values=np.inf)
+
+
+def differentiate(name: str, speed: Piecewise) -> Piecewise:
+    """Return the derivative of a prescribed speed.
+
+    name: of the argument, for the refusal.
+    speed: in the unit of the kernels.
+    Raises ParameterError where the speed jumps.
+    """
+    lengths = speed.ends - speed.starts
+    first, last = values_at_start(speed.terms), speed.terms.sum(axis=-1)
+    # for each motion by itself: a slow one must not jump either
+    scale = np.maximum(np.abs(speed.terms).max(axis=(1, 2), initial=0.0), 1e-300)[:, None]
+    least = _ROUNDING_OF_JUMP * scale + 4.0 * speed.error
+    jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # in pieces without length
+    jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
+    if jumps.any():
+        when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
+        raise ParameterError(name, f"a jump at t = {when:.6g}", "a speed that does not jump")
+    order = np.arange(1, speed.terms.shape[-1])
+    dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
+    terms = speed.terms[..., 1:] * order * dx_dt[..., None]
+    return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE) if order.size else np.zeros_like(speed.terms))
+
+
+def values_at_start(terms: Floats) -> Floats:
+    """Return the values at x = -1 of polynomials, (..., terms)."""
+    return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
+
+
+def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
+    """Return pieces that start at 0 where their first value is rounding, by which a motion would leave rest.
+
+    terms: (..., terms).
+    rounding: first value divided by the size of the terms that counts as rounding.
+    """
+    first, size = values_at_start(terms), np.abs(terms).sum(axis=-1)
+    shifted = terms.copy()
+    shifted[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
+    return shifted
+
+
+def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
+    """Return several functions over common pieces, in the layout of the kernels.
+
+    functions: of the same motions, or the same for all.
+    end: last time, in T_ref.
+    Returns (m, k, 2 + terms of all functions).  Where motions have times of their own, pieces between equal times have
+    no length; the kernels skip them.
+    """
+    rows = max(len(f.starts) for f in functions)
+    own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
+    starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
+    starts = starts[:, (_ends(starts) > starts + _INSTANT).any(axis=0)]
+    kept = max(int((starts < end).any(axis=0).sum()), 1)
+    starts, ends = starts[:, :kept], _ends(starts)[:, :kept]
+    count, terms = max(len(f.terms) for f in functions), max(f.terms.shape[-1] for f in functions)
+    packed, lengths = np.zeros((count, kept, COL_COEFFICIENTS + len(functions) * terms)), ends - starts
+    packed[..., COL_START] = starts
+    packed[..., COL_SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT)
+    for n, function in enumerate(functions):
+        part = _restrict(function, rows, starts, ends)
+        packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part
+    at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
+    late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
+    if late.any():  # the last piece before the end acts behind it too
+        acting = packed[np.arange(count), np.broadcast_to(at_end, count), COL_COEFFICIENTS:]
+        packed[..., COL_COEFFICIENTS:] = np.where(late[..., None], acting[:, None], packed[..., COL_COEFFICIENTS:])
+    return packed
+
+
+def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> Floats:
+    """Return the terms of a function over finer pieces.
+
+    function: of one motion or m.
+    rows: number of motions with times of their own, or 1.
+    starts, ends: of the finer pieces, (rows, k).
+    Returns (1 or m, k, terms).
+    """
+    piece = _piece_at(function.starts, starts)
+    shape = rows, function.starts.shape[1]
+    first, last = (np.take_along_axis(np.broadcast_to(t, shape), piece, 1) for t in (function.starts, function.ends))
+    piece = np.broadcast_to(piece, (max(rows, len(function.terms)), piece.shape[1]))
+    terms = np.broadcast_to(function.terms, (len(piece), *function.terms.shape[1:]))
+    terms = np.take_along_axis(terms, piece[..., None], 1)
+    same = (first == starts) & (last == ends)
+    return _start_at_zero(np.where(same[..., None], terms, _substitute(terms, first, last, starts, ends)))
+
+
+def _piece_at(begins: Floats, times: Floats) -> NDArray:
+    """Return the index of the piece that acts at each time: the last that starts by then.
+
+    begins: when pieces start, (1 or m, k), ascending, the first at 0.
+    times: (m, n), >= 0.
+    Returns (m, n), in 0 ... k - 1.  Takes memory in proportion to its input, and n log k steps.
+    """
+    if len(begins) == 1:
+        return np.searchsorted(begins[0], times, side="right") - 1
+    # Complex numbers are sorted by their real parts first: one search through the pieces of all motions in a row.
+    row = np.arange(len(begins))[:, None]
+    found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * times, side="right")
+    return found - row * begins.shape[1] - 1
+
+
+def _substitute(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray) -> Floats:
+    """Return the terms of polynomials on parts of their pieces, by Horner's scheme with x -> shift + scale x.
+
+    terms: (m, k, terms).
+    first, last: start and end of each piece, (m, k); inf for one without end, which is constant.
+    starts, ends: of the part, (m, k).
+    """
+    endless = np.isinf(last) | (last == first)
+    length = np.where(endless, 1.0, last - first)
+    scale = np.where(endless, 0.0, (ends - starts) / length)
+    shift = np.where(endless, 0.0, (starts - first) / length * 2.0 - 1.0 + scale)
+    result = np.zeros_like(terms)
+    for n in range(terms.shape[-1] - 1, -1, -1):
+        raised = np.zeros_like(result)
+        raised[..., 1:] = result[..., :-1] * scale[..., None]
+        result = result * shift[..., None] + raised
+        result[..., 0] += terms[..., n]
+    return result

@@ -1,0 +1,252 @@
+"""Motions that are checked and ready to be integrated: :class:`MotionProblem`; and the calls of the kernel."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact_law.contact import contact
+from ..contact_law.parameters import Parameters, Roller, refuse_cover, resolve_model
+from ..contact_law.validity.free_rolling import FreeRolling
+from ..contact_law.validity.steadiness import LARGEST_LOSS
+from ..core.array_types import Floats, Integers
+from ..core.blocks import broadcast_vector, run_blocks
+from ..core.checks import check_array, check_bool
+from ..core.drive import make_dimensionless
+from ..core.errors import MotionStatus, ParameterError
+from ..core.scale import HasUnits
+from ..materials.law_table import law_table
+from .checks import controls, in_words, refuse_end, refuse_many
+from .drive import LOSSES, ROWS, STATES, Drive
+from .drive_functions import DriveFunctions, DrivenStart, KernelDrive, prepare_drive, refuse_rest, undriven
+
+#: Indices of all rows of the kernel's output.
+_ALL_ROWS = np.arange(len(ROWS))
+#: Indices of the rows of free motions.
+_FREE_ROWS = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
+#: (rtol, threshold of rest, step limit) of the motions of a flow map: as accurate as the integrator is, where alpha =
+#: 1e10 takes tens of thousands of steps.
+_MAP_LIMITS = (1e-12, 0.0, 100_000)
+#: Motions of a flow map in a block of work.
+_BLOCK = 40
+#: Empty arrays for the switches and for the ends of steps, where they are not kept.
+NO_NOTES = np.empty((0, 2)), np.empty(0)
+
+
+class SolverOptions(NamedTuple):
+    """How motions are integrated: the arguments of :func:`viscoroll.roll` of these names."""
+
+    rtol: float
+    rest: float | None
+    max_steps: int
+    resolve: float | None = None
+    unsteady: bool = False
+    rested: bool | float = False
+
+
+class MotionProblem(NamedTuple):
+    """Checked motions; dimensionless but for roller and drive.
+
+    roller, scene : on the slope.
+    drive : as given, without loads of 0.
+    functions : what drives; None for free motions.
+    V0, omega0 : start speeds, less what leaving the indentation of a standstill costs; numbers or (n,).
+    immobile : whether a motion stays in its indentation, in the shape of the speeds.
+    end : last time, in T_ref.
+    limits : (rtol, threshold of rest, step limit).
+    unsteady : whether the added mass N acts.
+    driven : whether something drives the motions, or the added mass acts.
+    """
+
+    roller: Roller
+    scene: Parameters
+    drive: Drive
+    functions: DriveFunctions | None
+    V0: Any
+    omega0: Any
+    immobile: Any
+    end: float
+    limits: tuple[float, float, int]
+    unsteady: bool
+    driven: bool
+
+    @property
+    def drive_error(self) -> float:
+        """Largest difference seen between a callable and its fit, dimensionless."""
+        return 0.0 if self.functions is None else self.functions.error
+
+    def kernel_drive(self, index: Any = slice(None)) -> KernelDrive:
+        """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
+        return undriven() if self.functions is None else self.functions.for_kernel(index)
+
+
+def make_problem(
+    roller: Roller, start: tuple[Any, Any], drive: Drive, end: float, options: SolverOptions, *, single: bool = False
+) -> MotionProblem:
+    """Check motions before any is integrated.
+
+    roller: scene or cylinder.
+    start: V0 and omega0 in its units, plain numbers; None where they are prescribed.
+    drive: in its units, plain numbers.
+    end: last output time, in its unit.
+    options: how to integrate.
+    single: whether only one motion is allowed.
+    Raises ParameterError for everything that :func:`viscoroll.roll` and :func:`viscoroll.ensemble` refuse.
+    """
+    acts = drive.acts
+    if single:
+        refuse_many(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
+    drive, (rtol, rest, max_steps, resolve, unsteady, rested) = drive.without_zeros() if acts else drive, options
+    roller, scene, scale = resolve_model(roller, "roll" if single else "ensemble", moves=True, slope=drive.slope)
+    if single and scene.shape:
+        refuse_many(material=roller.material, **roller.numbers)
+    if rest is not None and np.ndim(scale["V"]):
+        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+    unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
+    try:
+        limits, last = controls(rtol, make_dimensionless("rest", rest, scale), max_steps), float(end) / scale["t"]
+        if last == math.inf:
+            refuse_end(float(end), scale["t"])
+        V0, omega0 = make_dimensionless("V0", start[0], scale), make_dimensionless("omega0", start[1], scale)
+        spacing = None if resolve is None else make_dimensionless("resolve", resolve, scale)
+        prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
+        functions = prepared.functions
+        if functions is not None:  # a step ends at every corner
+            limits = (*limits[:2], limits[2] + functions.corners)
+        refuse_rest(limits[1], functions)
+        V0, omega0, immobile = _apply_standstill(prepared, scene, _standstill_time(rested, scale) / scale["t"])
+    except ParameterError as error:
+        raise in_words(error, scale) from error
+    many = 1 if functions is None else max(functions.counts)
+    if single and many > 1:
+        raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
+    driven = unsteady or (acts and drive.acts)
+    return MotionProblem(roller, scene, drive, functions, V0, omega0, immobile, last, limits, unsteady, driven)
+
+
+def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
+    """Return whether the added mass acts; raises ParameterError where N, or the part of either body, is not known.
+
+    unsteady: as given.
+    scene: parameters.
+    """
+    if not check_bool("unsteady", unsteady):
+        return False
+    refuse_cover(scene, "N is not known: leave unsteady=True out")
+    if not scene.like_bodies:
+        sentence = "unsteady = True: the bodies differ, and the added mass of either is not known then"
+        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
+    return True
+
+
+def _standstill_time(rested: Any, units: HasUnits) -> float:
+    """Return the time of the standstill before the start, infinite for a long one, in the unit of the roller.
+
+    rested: as given.
+    units: of the roller.
+    Raises ParameterError for what is not one number >= 0.
+    """
+    if isinstance(rested, bool | np.bool_):
+        return math.inf if rested else 0.0
+    time = check_array("rested", rested, unit=units, low=0.0)
+    if time.ndim:
+        raise ParameterError("rested", rested, "one time >= 0, or True")
+    return float(time)
+
+
+def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
+    """Reduce the start speeds by the cost of leaving the indentation of a standstill.
+
+    start: speeds and drive, dimensionless.
+    scene: parameters.
+    rested: time of the standstill, in T_ref.
+    Returns (V0, omega0, whether the cylinder stays in its indentation).
+    Raises ParameterError for a prescribed speed, or a start in full slip, whose cost is not known.
+    """
+    if rested == 0.0:
+        return start.V0, start.omega0, False
+    refuse_cover(scene, "the cost of leaving the indentation of a standstill is not known: leave rested out")
+    V = np.asarray(start.V0, np.float64)
+    limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    prescribed = start.functions is not None and start.functions.prescribed
+    if prescribed or np.any(np.abs(start.omega0 - V) > limit):
+        why = "a speed is prescribed" if prescribed else "it starts in full slip"
+        sentence = f"rested is given, but {why}: the cost of leaving the indentation is not known then"
+        raise ParameterError("rested", rested, "left out", sentence)
+    lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
+    return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS
+
+
+def integrate(
+    count: int, batch: tuple[Any, ...], drive: KernelDrive, times: Floats,
+    limits: tuple[float, float, int], rows: Integers, notes: tuple[NDArray, ...] = NO_NOTES,
+) -> tuple[Floats, Floats]:  # fmt: skip
+    """Integrate motions in the kernel.
+
+    count: their number.
+    batch: law, whether bodies differ, kappa, mu, gamma, j, V0, omega0, each one number or (count,).
+    drive: of the motions.
+    times: output times, ascending, in T_ref.
+    limits: (rtol, threshold of rest, step limit).
+    rows: indices into :data:`ROWS`.
+    notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
+    Returns (rows (rows, count, times); status, steps, switches, onset and rest time of each motion (count, 5)).
+    """
+    from ..kernels.motion.batch import INFO_COLUMNS, motion_loop
+
+    out, info = np.empty((rows.size, count, times.size)), np.empty((count, len(INFO_COLUMNS)))
+    motion_loop(batch, drive, times, limits, rows, out, info, notes)
+    return out, info
+
+
+def integrate_one(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
+    """Integrate one motion; returns all rows (rows, times), and status, steps, switches, onset and rest time.
+
+    problem: of one motion.
+    times: output times, ascending, in T_ref.
+    notes: as of :func:`integrate`.
+    """
+    scene = problem.scene
+    if problem.immobile:
+        return np.full((_ALL_ROWS.size, times.size), np.nan), [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
+    law = scene.table
+    assert law is not None
+    numbers = scene.kappa, scene.mu, scene.gamma, scene.j, problem.V0, problem.omega0
+    arrays = np.array(numbers, float).reshape(-1, 1)
+    arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
+    batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *arrays
+    out, info = integrate(1, batch, problem.kernel_drive(), times, problem.limits, _ALL_ROWS, notes)
+    return out[:, 0], info[0].tolist()
+
+
+def integrate_motions(
+    parameters: tuple[Any, ...], starts: tuple[Floats, Floats], gamma: Floats, t: Floats, *, threads: int | None = 1
+) -> tuple[Floats, Floats]:
+    """Integrate the motions from which a flow map is built and by which it is tested.
+
+    No kernel is compiled for them alone.
+
+    parameters: (alpha or series, kappa, mu, j).
+    starts: V0 and omega0, (n,).
+    gamma: of each motion, (n,); the times count in its unit.
+    t: output times, common to all.
+    threads: to use.
+    Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss (8, n, times); status, steps, switches, onset
+    and rest time (n, 5)).
+    """
+    material, kappa, mu, j = parameters
+    law, count = law_table(material), starts[0].size
+    arrays = [broadcast_vector(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
+    blocks: dict[int, tuple[Floats, Floats]] = {}
+
+    def work(start: int, stop: int) -> None:
+        parts = (array[start:stop] if array.size > 1 else array for array in arrays)
+        batch = law.record, law.unlike, *parts
+        blocks[start] = integrate(stop - start, batch, undriven(), t, _MAP_LIMITS, _FREE_ROWS)
+
+    run_blocks(work, count, _BLOCK, threads=threads)
+    out, info = zip(*(blocks[start] for start in sorted(blocks)), strict=True)
+    return np.concatenate(out, axis=1), np.concatenate(info)
