@@ -82,7 +82,7 @@ MOTION = [
     ("motion/rhs.py", "stick = max(1.0 - sign * d, 0.0)", "stick = max(1.0 - 0.999 * sign * d, 0.0)", _MOTION),
     ("motion/rhs.py", "dVdelta_star = L + u * dL\n", "dVdelta_star = L\n", _MOTION),
     ("motion/rhs.py", "H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)", "H_over_F2_secants(index, index, v, D / w, law)", _DRIVE),
-    ("motion/rhs.py", "- critical_creepage(V, scene) * abs(V)", "- 0.98 * critical_creepage(V, scene) * abs(V)", _MOTION),
+    ("motion/law.py", "- critical_creepage(V, scene) * abs(V)", "- 0.98 * critical_creepage(V, scene) * abs(V)", _MOTION),
     ("motion/collocation.py", "value = fma(t, value, nodes[row + k])", "value = fma(t, value, nodes[row + k] * (1.0 + 1e-7))", _MOTION),
     ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, ROW_LENGTH + 1.0)", "_ALL.powers() / np.arange(2.0, ROW_LENGTH + 2.0)", _MOTION),
     ("motion/asymptotics.py", "scene.j * omega_over_V * (half_space - force) - cylinder", "omega_over_V * (half_space - force) - scene.j * cylinder", "tests/motion/test_motion.py"),

@@ -19,9 +19,10 @@ from ..compile.jit import inline_kernel, kernel
 from ..rows.cover import is_cover
 from .collocation import NODE_FRACTIONS, N
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
+from .law import added_inertia, low_speed_limits, rest_limits
 from .output import accept_step, write_column, write_quadrature
 from .records import AT_REST, CAME_TO_REST, COMPLETED, N_QUADRATURES, PARTIAL_SLIP, State, Step, StepState
-from .rhs import added_inertia, current_rates, low_speed_limits, rest_limits
+from .rhs import current_rates
 from .step_control import moderate_speed
 from .workspace import (
     REST_TIME,
@@ -36,16 +37,19 @@ from .workspace import (
     set_step_length,
 )
 
-#: relative distance from an equilibrium at which a motion has reached it, divided by rtol: the distance adds nothing to
-#: the errors of the steps before
+#: A motion has reached an equilibrium at this relative distance of V divided by rtol: the distance adds nothing that
+#: counts to the errors of the steps before.
 _NEAR_EQUILIBRIUM = 1e-3
-#: smallest such distance that rounding allows
+#: Smallest such distance that rounding leaves, dimensionless.
 _NEAR_ROUNDING = 1e-14
-#: distance from an equilibrium of V, in units of that above, below which the equilibrium is evaluated
+#: The equilibrium is evaluated only where V is within this multiple of that distance by p' and p at node 0, which are
+#: stored; p is only about dp/dV times V.
 _EQUILIBRIUM_CHECK = 2.0
-#: V below which it decays exponentially, in units of rtol times the moderate speed
+#: V divided by rtol and by the moderate speed, below which V decays exponentially: M/V then differs from its limit at V
+#: = 0 by about 1e-4 rtol, as M is linear in V up to terms of the order kappa V.
 _COASTING_SPEED = 1e-4
-#: |d| below which V decays exponentially, divided by rtol
+#: |d| divided by rtol, below which V decays exponentially: the part j k L d V of p is then below rtol V for j k up to
+#: 100.
 _COASTING_D = 1e-2
 
 
@@ -75,7 +79,7 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
     It counts only where omega does not approach V, nor 0 under a brake, and no feedback of omega acts.
 
     state: State, the present one.
-    rates: Rates, there.
+    rates: Rates, at that state.
     regime: Regime, of full slip.
     noise: float, rounding error of p', dimensionless.
     tolerance: float, relative distance of V at which it has reached its equilibrium.
@@ -95,20 +99,23 @@ def find_equilibrium(state, regime, noise, step_state, work):
 
     It has if Newton's step to it is below the tolerance, of V relative to itself and of d, or below rounding.
 
-    state: State, the present one, with V > 0. regime: Regime, there. noise: float, rounding error of p' where that
-    is 0, dimensionless. step_state: StepState, with the time and its segment. work: Workspace, of the motion.
-    Returns (whether it has, State after that step); (False, state) where the equilibrium is not stable, or in
-    partial slip with a speed prescribed.
+    state: State, the present one, with V > 0.
+    regime: Regime, at that state.
+    noise: float, rounding error of p' where that is 0, dimensionless.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    Returns (whether it has, State after that step); (False, state) where the equilibrium is not stable, or in partial
+    slip with a speed prescribed.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
     if regime.full_slip:
         return _equilibrium_full_slip(state, rates, regime, noise, tolerance)
-    # where one speed is prescribed, p' does not depend on the other
+    # Where one speed is prescribed, p' does not depend on the other.
     if load.inverse_mass == 0.0 or load.inverse_inertia == 0.0:
         return False, state
     gains, p_d = load.gains, rates.dp_dd
-    # p' depends on d by the feedback of omega; Newton's matrix of a step neglects this
+    # p' depends on d by the feedback of omega, which Newton's matrix of a step neglects.
     p_rate_d = rates.dp_rate_dd + load.inverse_inertia * (gains.force_omega + gains.torque_omega) * p_d
     d_rate, d_V, d_d = rates.weighted_rate / V, rates.drate_dV / V, rates.drate_dd / V
     V_rate = (rates.p_rate - p_d * d_rate) / rates.dp_dV
@@ -119,7 +126,7 @@ def find_equilibrium(state, regime, noise, step_state, work):
     V_off, d_off = (V_rate * d_d - d_rate * V_d) / determinant, (d_rate * V_V - V_rate * d_V) / determinant
     rounding = abs(noise / (rates.dp_dV * determinant))
     steady = abs(V_off) <= tolerance * V + rounding * abs(d_d) and abs(d_off) <= tolerance + rounding * abs(d_V)
-    # where force and torque cancel, V = 0 but for rounding
+    # Where force and torque cancel, V is 0 but for rounding.
     return steady, State(max(V - V_off, 0.0), state.omega_or_d - d_off)
 
 
@@ -132,7 +139,7 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     end: float, tau at the end of the segment.
     noise: float, rounding error of p', dimensionless.
     state: State, the present one, with V > 0.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; nodes and outputs are written.
     Returns (whether it has, State, StepState): at the end of the segment, one step later, or unchanged.
@@ -147,7 +154,7 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     for i in range(N + 1):
         nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i] = state.V, state.omega_or_d + omega_change * NODE_FRACTIONS[i]
         nodes[ROW_DENSE_V + i] = nodes[ROW_DENSE_OMEGA_OR_D + i] = 0.0
-    nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # linear in v = 0 ... 2
+    nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # The change is linear in v = 0 ... 2.
     store_drive(step, work)
     step_state = set_step_length(0.0, 1, step_state)
     return True, State(state.V, state.omega_or_d + omega_change), accept_step(end, 2.0, step, regime, step_state, work)
@@ -159,7 +166,7 @@ def is_coasting(state, regime, step_state, work):
     drives.
 
     state: State, the present one.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
     """
@@ -195,7 +202,7 @@ def coast_to_end(state, regime, step_state, work):
     """Write the outputs of the exponential decay (1 + j + gamma N) V' = -rate V with delta/V constant.
 
     state: State, the present one, in partial slip.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; outputs are written.
     Returns (status COMPLETED or CAME_TO_REST, StepState at the last output).
@@ -205,7 +212,7 @@ def coast_to_end(state, regime, step_state, work):
     L, delta_0 = rest_limits(scene)
     omega_over_V = 1.0 + delta_0
     inertia = 1.0 + scene.j * omega_over_V + added_inertia(0.0, scene)[0]
-    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments
+    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments.
     rate, stiffness = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
     torque_difference = scene.j * omega_over_V * (half_space - force) - cylinder + torque
     creep = state.V * torque_difference / stiffness * L

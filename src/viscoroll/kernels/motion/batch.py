@@ -17,7 +17,7 @@ from .output import N_OUTPUTS, requested_groups
 from .records import COL_COEFFICIENTS, COL_SCALE, COL_START, DRIVE_RATE, Batch, Drive, Gains, Options, Scene, Workspace
 from .workspace import ROW_ONES, WORKSPACE_SIZE
 
-#: columns of the information on each motion
+#: Columns of the information on each motion.
 INFO_COLUMNS = ("status", "steps", "switches", "onset_time", "rest_time")
 
 

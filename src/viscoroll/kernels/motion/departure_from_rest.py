@@ -18,28 +18,32 @@ import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
 from .drive import evaluate_load, has_brake, is_constant, segment_end
+from .law import added_inertia, rest_limits
 from .records import REGIME_AT_REST, Load, Regime
-from .rhs import added_inertia, rest_limits
 
-#: at rest for a time
+#: Code of a departure: the cylinder stays at rest for a time.
 STAYS_AT_REST = 0
-#: departs in partial slip
+#: Code of a departure: the cylinder departs in partial slip.
 ROLLS_OFF = 1
-#: departs in full slip
+#: Code of a departure: the cylinder departs in full slip.
 SLIDES_OFF = 2
-#: the departure is not unique
+#: Code of a departure: two motions satisfy the equations, the departure is not unique.
 AMBIGUOUS = 3
-#: largest number of Newton iterations for d
+#: Largest number of Newton iterations for d: a step outside the bracket bisects it, and 200 bisections of [-1, 1] reach
+#: |d| = 1e-60.
 _MAX_ITERATIONS = 200
-#: relative tolerance of d
+#: Newton's iteration for d ends at this relative change, below the unit of rounding: d changes no more.
 _D_TOLERANCE = 1e-16
-#: time at which the drive is evaluated if nothing moves the cylinder at the start of a segment, divided by its length
+#: The drive is evaluated later by this fraction of the time to the end of its segment, if nothing moves the cylinder at
+#: the start of the segment: its slope then decides.
 _LOOKAHEAD = 1e-6
-#: rounding error of the holding margin, divided by the largest force that holds the cylinder
+#: Rounding error of the holding margin, divided by the largest force that holds the cylinder: some units of rounding,
+#: so that a brake that rises from 0 takes hold.
 _HOLDING_ROUNDING = 4e-15
-#: number of intervals of a segment in which the holding margin is searched for a sign change
+#: Number of intervals of a segment in which the holding margin, which consists of polynomials of up to 14 terms, is
+#: searched for a sign change; two sign changes in one interval are not found.
 _SCAN_INTERVALS = 64
-#: force and torque that count as 0, dimensionless: speeds under them would underflow in the first steps
+#: Force plus torque that counts as 0, dimensionless: speeds under it would underflow in the first steps.
 _NEGLIGIBLE_FORCE = 1e-75
 
 
@@ -76,9 +80,10 @@ def _d_at_zero_omega(scene):
 def _spin_against_brake(load, scene):
     """Return how omega starts under a brake as V grows from 0 in partial slip.
 
-    load: Load, at V = 0, with a brake. scene: Scene, parameters of Eq. (22). Returns (sign of omega, whether the
-    brake holds omega at 0 instead): so it does where mu > 2 kappa and the traction at omega = 0 leaves less torque
-    than the brake can take.
+    load: Load, at V = 0, with a brake.
+    scene: Scene, parameters of Eq. (22).
+    Returns (sign of omega, whether the brake holds omega at 0 instead): so it does where mu > 2 kappa and the traction
+    at omega = 0 leaves less torque than the brake can take.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
@@ -124,7 +129,7 @@ def _local_maximum_of_residual(load, scene):
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
     first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
     second = -stiffness - 2.0 * scene.mu * load.inverse_mass
-    # the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0
+    # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0.
     discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
     return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
 
@@ -139,19 +144,19 @@ def solve_d_at_departure(load, spin_sign, scene):
     Returns (whether the cylinder can roll off in partial slip with V > 0, d); d = 0 where there is no root.
     """
     load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
-    d_zero = _d_at_zero_omega(scene)  # above this d the residual decreases
+    d_zero = _d_at_zero_omega(scene)  # The residual decreases above this d.
     if d_zero > -1.0:
         residual, _, V_rate = _residual_of_d(d_zero, load, scene)
         if load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
             return V_rate > 0.0, d_zero
         if residual > 0.0:
             low = d_zero
-        else:  # below this d the residual may have a maximum
+        else:  # The residual may have a maximum below this d.
             low, high = min(max(low, _local_maximum_of_residual(load, scene)), d_zero), d_zero
     if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
         return False, 0.0
     d, V_rate = 0.5 * (low + high), 0.0
-    for _ in range(_MAX_ITERATIONS):  # Newton's iteration with a bracket
+    for _ in range(_MAX_ITERATIONS):
         residual, slope, V_rate = _residual_of_d(d, load, scene)
         low, high = (d, high) if residual > 0.0 else (low, d)
         d_next = d - residual / slope
@@ -266,7 +271,7 @@ def depart_from_rest(tau, segment, work):
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
     if holding_margin(load, scene.mu) >= -rounding and not is_constant(segment, work.drive):
-        # whether the drive moves the cylinder is seen a little later
+        # Whether the drive moves the cylinder is decided by its values a little later.
         tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
         load = evaluate_load(tau_drive, segment, REGIME_AT_REST, work)
     braked = has_brake(segment, work.drive)
@@ -284,7 +289,7 @@ def depart_from_rest(tau, segment, work):
         if sticks and kind == ROLLS_OFF:
             return AMBIGUOUS, REGIME_AT_REST, 0.0
         if sticks:
-            # d at the present time is the limit from which the motion departs
+            # The motion departs from d at the present time.
             load = evaluate_load(tau, segment, regime, work)
             kind, d_start = ROLLS_OFF, solve_d_at_departure(load, spin_sign, scene)[1]
             departure = Regime(False, direction, 1.0 if d >= 0.0 else -1.0, spin_sign, locked)

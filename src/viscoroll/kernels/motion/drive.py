@@ -27,11 +27,11 @@ from .records import (
 )
 from .workspace import ROW_DRIVE, last_output_tau, node_time
 
-#: relative jump of a function or of its slope at the end of a segment, up to which it counts as smooth: fits of
-#: callables leave smaller ones
+#: Relative jump of a function or of its slope at the end of a segment, up to which it counts as smooth: the polynomials
+#: fitted to a callable leave smaller ones.
 _SMOOTH_JUMP = 1e-4
-#: units of rounding of a segment's coefficients up to which a prescribed speed counts as 0: a polynomial of up to 14
-#: terms, moved to a part of its segment, is wrong by some of them
+#: A prescribed speed counts as 0 below this number of units of rounding of its coefficients: a polynomial of up to 14
+#: terms, moved to a part of its segment, is wrong by some of them.
 _ZERO_SPEED_ROUNDINGS = 30.0
 
 
@@ -73,9 +73,11 @@ def _sum_of_moduli(row, first, last):
 def evaluate_drive(tau, segment, drive):
     """Return the drive at one time, not oriented by the regime, dimensionless.
 
-    tau: float, the time. segment: int, index of the segment that contains tau. drive: Drive, that of the motion.
-    Returns (force, torque of the motor, slope in tau of the prescribed speed, largest torque of the brake); the
-    slope is 0 without a prescribed speed, the torque of the brake at least 0.
+    tau: float, the time.
+    segment: int, index of the segment that contains tau.
+    drive: Drive, that of the motion.
+    Returns (force, torque of the motor, slope in tau of the prescribed speed, largest torque of the brake); the slope
+    is 0 without a prescribed speed, the torque of the brake at least 0.
     """
     row = drive.segments[segment]
     x = (tau - row[COL_START]) * row[COL_SCALE] - 1.0
@@ -92,9 +94,11 @@ def evaluate_drive(tau, segment, drive):
 def prescribed_speed(tau, segment, drive):
     """Return the prescribed speed at one time.
 
-    tau: float, the time. segment: int, index of the segment that contains tau. drive: Drive, with a prescribed
-    speed. Returns V or omega, dimensionless, not oriented by the regime; 0 where it is rounding relative to the
-    coefficients of its segment.
+    tau: float, the time.
+    segment: int, index of the segment that contains tau.
+    drive: Drive, with a prescribed speed.
+    Returns V or omega, dimensionless, not oriented by the regime; 0 where it is rounding relative to the coefficients
+    of its segment.
     """
     row = drive.segments[segment]
     speed = evaluate_polynomial(row, DRIVE_SPEED, (tau - row[COL_START]) * row[COL_SCALE] - 1.0)
@@ -106,9 +110,9 @@ def prescribed_speed(tau, segment, drive):
 def load_from_values(values, regime, work):
     """Return the Load for given values of the drive, oriented by the regime, without feedback.
 
-    values: (force, torque, slope of the prescribed speed, torque of the brake), as :func:`evaluate_drive` returns
-    them. regime: Regime, whose direction orients them and which may hold omega at 0. work: Workspace, with the Drive
-    and j.
+    values: (force, torque, slope of the prescribed speed, torque of the brake), as :func:`evaluate_drive` returns them.
+    regime: Regime, whose direction orients them and which may hold omega at 0.
+    work: Workspace, with the Drive and j.
     """
     force, torque, rate, brake = values
     drive, direction = work.drive, regime.direction
@@ -286,40 +290,3 @@ def rest_threshold(segment, work):
     work: Workspace, of the motion.
     """
     return work.options.rest_speed if work.options.rest_speed > 0.0 and is_undriven(segment, work.drive) else 0.0
-
-
-@inline_kernel
-def applied_forces(V, omega, load, regime):
-    """Return the applied force and torques, feedback included, oriented by the regime, dimensionless.
-
-    V, omega: float, speeds in the direction of the regime, dimensionless.
-    load: Load, the drive.
-    regime: Regime, with the sign of omega under a brake.
-    Returns (force, torque of the motor, torque of motor and brake together).
-    """
-    gains = load.gains
-    force = load.force + gains.force_V * V + gains.force_omega * omega
-    torque = load.torque + gains.torque_V * V + gains.torque_omega * omega
-    return force, torque, torque - load.brake * regime.spin_sign
-
-
-@inline_kernel
-def required_forces(V, omega, rates, load, regime, j):
-    """Return the forces and torques that act: the applied ones, or those that hold a prescribed speed by Eq. (22).
-
-    V, omega: float, speeds in the direction of the regime, dimensionless.
-    rates: Rates, at these speeds.
-    load: Load, the drive.
-    regime: Regime, there.
-    j: float, moment of inertia, dimensionless.
-    Returns (force, torque of the motor, torque of the brake), oriented by the regime, dimensionless.
-    """
-    force, torque, _ = applied_forces(V, omega, load, regime)
-    brake = -load.brake * regime.spin_sign
-    if regime.locked:
-        brake = rates.Q + rates.M_cylinder - torque
-    elif load.inverse_inertia == 0.0:
-        torque = j * load.prescribed_omega_rate + rates.Q + rates.M_cylinder - brake
-    if load.inverse_mass == 0.0:
-        force = load.prescribed_V_rate - rates.Q + rates.M_half_space
-    return force, torque, brake

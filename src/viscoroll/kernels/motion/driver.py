@@ -12,6 +12,7 @@ from ..compile.jit import kernel
 from .asymptotics import coast_to_end, is_coasting
 from .departure_from_rest import AMBIGUOUS, ROLLS_OFF, SLIDES_OFF, STAYS_AT_REST, depart_from_rest, find_departure_time
 from .drive import continues_smoothly, current_load, is_undriven, rest_threshold, segment_end
+from .law import added_inertia, added_mass_margin, creepage, omega_and_delta
 from .output import record_switch, write_due_outputs, write_outputs_at_rest
 from .records import (
     ADDED_MASS_EXHAUSTED,
@@ -29,7 +30,7 @@ from .records import (
 )
 from .regime_solver import integrate_regime
 from .regimes import ZERO_V_RATIO, apply_event, enter_segment, initial_regime, regime_code, rest_code
-from .rhs import added_inertia, added_mass_margin, creepage, current_rates, omega_and_delta
+from .rhs import current_rates
 from .workspace import (
     BELOW_REST_SPEED,
     DELTA_ZERO,
@@ -45,11 +46,13 @@ from .workspace import (
     set_step_length,
 )
 
-#: relaxation time of d, or time to V = 0, divided by the time so far, that no step can resolve
+#: Relaxation time of d, or time to V = 0, divided by the time so far, that no step can resolve: 450 units of rounding.
 _TIME_ROUNDING = 1e-13
-#: speeds that count as 0 where something drives, or will
+#: Speeds that count as 0 where something drives or will, dimensionless: as _NEGLIGIBLE_FORCE in
+#: :mod:`departure_from_rest`.
 _NEGLIGIBLE_SPEED = 1e-75
-#: length of the step after a relaxation of d within rounding, divided by the time so far
+#: Length of the step after a relaxation of d within rounding, divided by the time so far: a hundred times the time that
+#: no step can resolve.
 _STEP_AFTER_RELAXATION = 1e-11
 
 
@@ -76,7 +79,7 @@ def _is_below_rest_speed(moving, state, regime, step_state, work):
 
     moving: bool, whether the cylinder moves.
     state: State, the present one.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the segment.
     work: Workspace, of the motion.
     """
@@ -93,7 +96,7 @@ def added_mass_exhausted(event, state, regime, work):
 
     event: int, the last event, or NO_EVENT.
     state: State, the present one.
-    regime: Regime, there.
+    regime: Regime, at that state.
     work: Workspace, of the motion.
     """
     margin = added_mass_margin(added_inertia(state.V, work.scene)[0], work.scene.j)
@@ -105,8 +108,7 @@ def added_mass_exhausted(event, state, regime, work):
 def _relaxes_within_rounding(state, regime, step_state, work):
     """Return whether d relaxes within the rounding of time, in partial slip.
 
-    state: State, the present one.
-    regime: Regime, there.
+    state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
     """
@@ -120,8 +122,7 @@ def _relaxes_within_rounding(state, regime, step_state, work):
 def _vanishes_within_rounding(state, regime, step_state, work):
     """Return whether V falls to 0 within the rounding of time, or counts as 0 where something drives.
 
-    state: State, the present one.
-    regime: Regime, there.
+    state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
     """
@@ -135,7 +136,7 @@ def relax_creep(state, regime, step_state, work):
     """Relax d to its equilibrium at a fixed time and fixed p, by bisection.
 
     state: State, the present one, in partial slip.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
     Returns (whether the cylinder still moves, State, Regime, StepState); full slip if |d| would exceed 1.
@@ -167,8 +168,7 @@ def _advance_segment(moving, state, regime, step_state, work):
     """Enter the next segment of the drive if one ends at the time reached and there is a next one.
 
     moving: bool, whether the cylinder moves.
-    state: State, the present one.
-    regime: Regime, there.
+    state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; a change of direction is recorded.
     Returns (whether the cylinder moves, State, Regime, StepState), unchanged where no segment ends.
@@ -184,7 +184,7 @@ def _advance_segment(moving, state, regime, step_state, work):
         state, regime = enter_segment(state, regime, step_state, work)
         if regime.direction != direction:
             record_switch(DIRECTION_REVERSED, step_state, work)
-        # in partial slip omega = 0 where V = 0
+        # In partial slip omega is 0 where V is 0.
         moving = state.V != 0.0 or (regime.full_slip and state.omega_or_d != 0.0)
     return moving, state, regime, step_state
 
@@ -196,8 +196,7 @@ def _come_to_rest(code, state, regime, step_state, work):
     The kinetic energy that is left is added to the loss in rolling.
 
     code: int, regime in the outputs before; -1 before the first one.
-    state: State, the present one.
-    regime: Regime, there.
+    state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; outputs are written.
     """
@@ -235,7 +234,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     moving: bool, whether the cylinder moves.
     stick_formed: bool, whether the stick zone has just formed.
     state: State, at the start.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, at the start.
     work: Workspace, of the motion; outputs are written.
     Returns (status of the motion, StepState at its end).
@@ -285,8 +284,9 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
 def integrate_motion(V0, omega0, record):
     """Integrate one motion of Eq. (22) with its drive from t = 0 to its last output time.
 
-    V0, omega0: float, initial speeds, dimensionless. record: Workspace, by value; outputs are written. Returns
-    (status, trial steps, regime changes, time t of the onset of stick, t of coming to rest); the times are NaN
+    V0, omega0: float, initial speeds, dimensionless.
+    record: Workspace, by value; outputs are written.
+    Returns (status, trial steps, regime changes, time t of the onset of stick, t of coming to rest); the times are NaN
     without them.
     """
     work = by_reference(record)

@@ -34,23 +34,28 @@ from .workspace import (
     node_time,
 )
 
-#: tolerance of the error of one step, divided by rtol: the error of a motion is a sum over steps
+#: Tolerance of the error of one step, divided by rtol: the error of a motion is a sum over steps.
 ERROR_FRACTION = 0.25
-#: tolerance of Newton's iteration, divided by that of the error of the step
+#: Tolerance of Newton's iteration, divided by that of the error of the step: with larger last updates than 0.004 rtol,
+#: which is the product with ERROR_FRACTION, losses of motions from rest were wrong by 60 to 100 rtol.
 NEWTON_FRACTION = 0.016
-#: smallest tolerance that rounding allows, dimensionless
+#: Smallest tolerance of a step or of Newton's iteration, dimensionless: rounding of the residuals leaves updates of
+#: this size.
 LEAST_TOLERANCE = 1e-14
-#: relative rounding error of Q in a defect of V', divided by mu: some tens of units, as the extrapolation enlarges it
+#: Rounding error of Q in a defect of V', divided by mu: some tens of units, as the extrapolation to the left end
+#: enlarges it.  No shorter step would reduce it.
 _STRONG_FRICTION_ROUNDING = 30.0 * ROUNDING
-#: error of the interpolants divided by the defect at the left end, which overestimates it
+#: Error of the interpolants divided by the defect at the left end, which overestimates it: 0.02 with nine nodes, and in
+#: proportion to (9/N)^2 errors for a given rtol were the same with five, seven and nine nodes.
 _DEFECT_FACTOR = 0.02 * (9.0 / N) ** 2
-#: a defect above 1/30 of the variation of p' along the step is not reduced by the whole of _DEFECT_FACTOR: the step
-#: does not resolve the solution
+#: A defect above 1/30 of the variation of p' along the step is not reduced by the whole of _DEFECT_FACTOR: the step
+#: does not resolve the solution.  Without it one of 20,000 free motions was wrong at rtol 1e-4.
 _UNRESOLVED_DEFECT = 30.0
-#: error divided by the last coefficient of the interpolant: ratio of successive coefficients, 0.1, times that of a
-#: power and its Chebyshev polynomial
+#: Error divided by the last coefficient of the interpolant: ratio of successive Chebyshev coefficients, taken as 0.1,
+#: times that of a power and its Chebyshev polynomial; divided by _DEFECT_FACTOR, which multiplies the sum.
 _LAST_COEFFICIENT_FACTOR = 0.1 / (_DEFECT_FACTOR * 2.0 ** (N - 1))
-#: |d| below which errors of d are weighted as absolute ones
+#: |d| below which errors of d are weighted as absolute ones, and square of the |d| of the smallest weight,
+#: dimensionless.
 _D_WEIGHT_FLOOR = 0.04
 
 
@@ -72,8 +77,7 @@ def _rounding_scale_of_V(step, work):
     dimensionless.
 
     V' = Q - M + f may be a small difference of Q and f.  Its rounding changes V during the step, or during the
-    relaxation
-    time of V if that is shorter.
+    relaxation time of V if that is shorter.
 
     step: Step, the trial step.
     work: Workspace, with the drive and the Newton diagonal at its nodes.
@@ -99,14 +103,14 @@ def error_scales(step, regime, work):
         largest_speed, largest_V = max(largest_speed, nodes[ROW_SPEED + i]), max(largest_V, abs(nodes[ROW_V + i]))
     largest_speed = max(largest_speed, largest_V)
     if regime.full_slip:
-        # without feedback of omega on V', V is measured relative to itself: omega may be larger by any factor, and a V
-        # that is accurate relative to omega alone may leave its equilibrium
+        # Without feedback of omega on V', V is measured relative to itself: omega may be larger by any factor, and a V
+        # that is accurate relative to omega alone may leave its equilibrium.
         if step.undriven:
             return largest_V, largest_speed
         if work.drive.gains.force_omega != 0.0:
             return largest_speed, largest_speed
         return max(largest_V, _rounding_scale_of_V(step, work)), largest_speed
-    # an error of d is an error of omega, and at given p an error of V
+    # An error of d is an error of omega, and at given p an error of V.
     for i in range(1, N + 1):
         V_change = max(V_change, abs(nodes[ROW_DP_DD + i] * nodes[ROW_DV_DP + i]))
     V_change = max(V_change, 0.5 * work.scene.mu / work.scene.kappa * largest_V) / largest_speed
@@ -186,8 +190,8 @@ def _strong_friction_rounding(regime, work):
 def estimate_error(step, regime, work):
     """Return the estimated error of the dense output of a step divided by its tolerance; a step is accepted up to 1.
 
-    The error is that of the interpolant of p, by its defect at the left end or by its last coefficient, and that of
-    the second unknown, of which only the part counts that its relaxation leaves at the end of the step.
+    The error is that of the interpolant of p, by its defect at the left end or by its last coefficient, and that of the
+    second unknown, of which only the part counts that its relaxation leaves at the end of the step.
 
     step: Step, the solved trial step.
     regime: Regime, that of the step.
@@ -202,19 +206,19 @@ def estimate_error(step, regime, work):
     error *= dV_dp
     variation = _variation_of_p_rate(half, nodes) * dV_dp + work.options.rtol * scale_V
     error *= min(max(_UNRESOLVED_DEFECT * error / variation, 1.0), 1.0 / _DEFECT_FACTOR)
-    # the defect may be small by chance where the last Chebyshev coefficient is not
+    # The defect may be small by chance where the last Chebyshev coefficient is not.
     error = max(error, _LAST_COEFFICIENT_FACTOR * abs(work.nodes[ROW_DENSE_V + N - 1]))
-    # shorter steps do not reduce the change of V by the rounding of the drive
+    # Shorter steps do not reduce the change of V by the rounding of the drive.
     error = max(error - step.h * drive_rounding(step.segment, work.drive), 0.0) / scale_V
     if nodes[ROW_SPEED] == 0.0:
         error /= _relative_speed_at_first_output(step, work)
-    elif not step.undriven:  # speeds that grow are accurate relative to those at the left end
+    elif not step.undriven:  # Speeds that grow are accurate relative to those at the left end.
         error *= np.sqrt(max(nodes[ROW_SPEED + N] / nodes[ROW_SPEED], 1.0))
     if step.initial_slope_known:
         weight = 1.0 if regime.full_slip else nodes[ROW_V]
         defect = _defect_at_start(ROW_OMEGA_OR_D, ROW_D_SLOPE, nodes[ROW_WEIGHTED_RATE] / weight * half, nodes)
-        # the relaxation of d reduces its error; near the edge of the stick zone it ends
+        # The relaxation of d reduces its error; near the edge of the stick zone it ends.
         error = max(error, defect / ((1.0 + step.h * abs(nodes[ROW_RELAXATION])) * scale_d))
-    if not regime.full_slip:  # error of d between the nodes
+    if not regime.full_slip:  # The last coefficient estimates the error of d between the nodes.
         error = max(error, _LAST_COEFFICIENT_FACTOR * abs(work.nodes[ROW_DENSE_OMEGA_OR_D + N - 1]) / scale_d)
     return _DEFECT_FACTOR * error / (ERROR_FRACTION * work.options.rtol)

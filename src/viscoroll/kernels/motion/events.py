@@ -6,8 +6,9 @@ from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
 from .collocation import NODES, ROW_LENGTH, N, evaluate_dense_output, fit_dense_output, row_range
 from .drive import load_at_node
+from .law import creepage, omega_and_delta, stick_edge_function
 from .records import DRIVE_BRAKE, PRESCRIBED_V, State
-from .rhs import creepage, omega_and_delta, rhs_and_forces_at_node, stick_edge_function
+from .rhs import rhs_and_forces_at_node
 from .workspace import (
     BELOW_REST_SPEED,
     BRAKE_RELEASE,
@@ -24,29 +25,36 @@ from .workspace import (
     dense_state,
 )
 
-#: an event ends a step where its function is below this times rtol, relative to the scale of the function
+#: A step ends at an event where the function of the event is below this times rtol, relative to the scale of the
+#: function: a hundredth of the tolerance.
 _EVENT_TOLERANCE = 1e-2
-#: smallest such tolerance that rounding allows, relative to the scale of the function
+#: Smallest such tolerance that rounding allows, relative to the scale of the function: some units of rounding.
 _EVENT_ROUNDING = 4e-15
-#: largest number of bisections of an interpolant
+#: Largest number of bisections of an interpolant: 60 halve an interval of the step to rounding.
 _BISECTIONS = 60
-#: steps of the ternary search for the minimum of an interpolant
+#: Number of steps of the ternary search for the minimum of an interpolant: 40 leave 1e-7 of the interval, at which the
+#: value differs from the minimum by 1e-14 of its variation.
 _TERNARY_STEPS = 40
-#: relative size of an event function at the start of a step up to which it counts as 0: the step begins on the event
+#: Value of an event function at the left end of a step, divided by its largest value on the step, up to which it counts
+#: as 0: the step begins on the event.
 _START_ROUNDING = 1e-14
-#: rounding error of the function of the stick edge, relative to the speeds
+#: Rounding error of the function of the stick edge, relative to the speeds of which it is the difference: without it
+#: steps under slight friction could not end.
 _EDGE_ROUNDING = 1e-13
-#: v up to which an interpolant is extrapolated beyond the step in search of a zero
+#: Position v up to which an interpolant is extrapolated beyond the step in search of a zero: half a step beyond its
+#: end.
 _EXTRAPOLATION_END = 3.0
-#: v from which on no zero was found on the extrapolation
+#: Position v from which on no zero was found on the extrapolation, whose bisection then ends at 3.
 NOT_FOUND = 2.99
-#: offset in v of the difference quotient by which a zero is refined
+#: Offset in v of the difference quotient by which a zero is refined; the function itself is evaluated there, as it is
+#: no polynomial of the unknowns.
 _SECANT_OFFSET = 1e-3
-#: number of refinements
+#: Number of refinements with the same difference quotient, which converge linearly.
 _SECANT_STEPS = 5
-#: largest correction of v in a refinement
+#: Largest correction of v in a refinement; a larger one ends the refinement.
 _MAX_SECANT_MOVE = 0.1
-#: |d| up to which either branch of the law serves, as they differ by d^2: the branch ends this far beyond d = 0
+#: |d| up to which either branch of the law serves, as they differ by d^2: the branch ends this far beyond d = 0.
+#: Without it rounding makes endless events on the slow manifold, where d falls like V.
 BRANCH_OVERLAP = 1e-8
 
 
@@ -85,11 +93,11 @@ def evaluate_event_functions(step, regime, work):
             nodes[DELTA_ZERO + i] = regime.sigma * omega_or_d + BRANCH_OVERLAP
         if regime.spin_sign != 0.0 or (step.undriven and rest > 0.0):
             omega, delta = omega_and_delta(State(V, omega_or_d), regime, scene)
-            # in partial slip omega = V (1 + delta): V = 0 is another event, delta = -1 is this one
+            # In partial slip omega = V (1 + delta): V = 0 is another event, delta = -1 is this one.
             spin_function = omega if regime.full_slip else 1.0 + delta if V > 0.0 else 1.0
             nodes[OMEGA_ZERO + i] = regime.spin_sign * spin_function
             nodes[BELOW_REST_SPEED + i] = max(abs(V), abs(omega)) - rest
-        if regime.locked:  # squares: smooth where the torque of the brake changes its sign
+        if regime.locked:  # Squares are smooth where the torque of the brake changes its sign.
             limit, torque = load_at_node(i, regime, work).brake, rhs_and_forces_at_node(i, regime, work)[1][2]
             nodes[BRAKE_RELEASE + i] = limit * limit - torque * torque
 
@@ -209,12 +217,12 @@ def find_missed_event(step, regime, work):
     """
     nodes = work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
-        # the equations of partial slip continue into full slip: a missed edge does no harm there
+        # The equations of partial slip continue into full slip: a missed edge does no harm there.
         excluded = candidate == BELOW_REST_SPEED or (candidate == STICK_EDGE and not regime.full_slip)
         if excluded or not is_event_active(candidate, step, regime, work):
             continue
         (_, largest), scale = row_range(candidate, nodes), _event_scale(candidate, nodes)
-        # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself
+        # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself.
         if candidate == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
             scale = max(scale, nodes[ROW_SPEED + N])
         if largest <= _START_ROUNDING * scale and nodes[candidate + N] < -_event_tolerance(work.options.rtol) * scale:
@@ -224,9 +232,12 @@ def find_missed_event(step, regime, work):
 
 @kernel
 def _event_function(event, v, regime, work):
-    """Evaluate an event function at v from the dense output of the unknowns, not from its own interpolant.
+    """Return an event function at a position of a step, by the dense output of the unknowns.
 
-    event: STICK_EDGE, OMEGA_ZERO or BELOW_REST_SPEED; regime: Regime; work: Workspace with the dense output.
+    event: int, STICK_EDGE, BELOW_REST_SPEED or OMEGA_ZERO.
+    v: float, position in [0, 2].
+    regime: Regime, that of the step.
+    work: Workspace, with the dense output.
     """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:
@@ -238,12 +249,16 @@ def _event_function(event, v, regime, work):
 
 @kernel
 def refine_event(event, v, regime, work):
-    """Return the refined v of an event whose function is no polynomial of the unknowns, by the difference quotient
-    of it.
+    """Refine the position of an event whose function is no polynomial of the unknowns, by the function itself.
 
-    event, v: the event and its position by the interpolant; regime: Regime; work: Workspace with the dense output.
-    Such functions are the stick edge and the larger speed in full slip, and omega in partial slip; else v is
-    unchanged.
+    Such functions are the stick edge and the larger speed in full slip, and omega in partial slip.  The iteration is
+    Newton's, with a difference quotient in place of the slope.
+
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    v: float, position of the event by the interpolant.
+    regime: Regime, that of the step.
+    work: Workspace, with the dense output.
+    Returns the position v in [0, 2]; unchanged for other functions.
     """
     if event not in ((STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)):
         return v

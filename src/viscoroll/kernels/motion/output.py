@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from ..compile.jit import inline_kernel, kernel
 from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
-from .drive import evaluate_load, required_forces
+from .drive import evaluate_load
+from .law import omega_and_delta
 from .records import DIRECTION_REVERSED, N_QUADRATURES, REGIME_AT_REST, StepState
 from .regimes import regime_code
-from .rhs import evaluate_rhs, omega_and_delta, rhs_and_forces_at_node
+from .rhs import evaluate_rhs, required_forces, rhs_and_forces_at_node
 from .workspace import (
     N_RECORDED,
     N_SWITCHES,
@@ -24,13 +25,13 @@ from .workspace import (
     last_output_tau,
 )
 
-#: number of output quantities
+#: Number of output quantities.
 N_OUTPUTS = 13
-#: output row of x; that of the angle follows
+#: Output row of x; that of the angle follows.
 OUT_X = 2
-#: output row of the force; that of the torque follows
+#: Output row of the force; that of the torque follows.
 OUT_FORCE = 6
-#: output row of the first energy; four others follow
+#: Output row of the first energy; four others follow.
 OUT_WORK = 8
 
 
@@ -76,9 +77,7 @@ def write_quadrature(column, n, increase, work):
 
 @kernel
 def _write_totals(column, work):
-    """Write the totals of all quadratures to one output column; column: int, its index; work: Workspace, of the
-    motion.
-    """
+    """Write the totals of all quadratures to one output column; column: int, its index; work: Workspace."""
     for n in range(N_QUADRATURES):
         write_quadrature(column, n, 0.0, work)
 
@@ -143,7 +142,7 @@ def write_due_outputs(state, regime, step_state, work):
     """Write the outputs due at the time reached, to the tolerance; return the StepState behind them.
 
     state: State, at that time.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with that time and the next output.
     work: Workspace, of the motion; outputs are written.
     """

@@ -22,10 +22,10 @@ from .workspace import (
     node_time,
 )
 
-#: distance beyond the right end of a step up to which its dense output is extrapolated, divided by its length
+#: Distance beyond the right end of a step up to which its dense output is extrapolated, divided by its length.
 _EXTRAPOLATION = 1.5
-#: length of a step relative to one with the same left end, below which the dense output of that one is not used: an
-#: error below the tolerance of Newton's iteration stays, and may have the sign of an event
+#: Length of a step relative to one with the same left end, below which the dense output of that one is not used: an
+#: error below the tolerance of Newton's iteration stays, and may have the sign of an event.
 _SHORTER_STEP = 1e-3
 
 
@@ -34,8 +34,7 @@ def predict(step, relaxation, dense_step, regime, work):
     """Store the unknowns at nodes 1 ... N from which Newton's iteration of a step starts.
 
     They are extrapolated from the stored dense output where that is near enough; else V is linear and the second
-    unknown
-    relaxes exponentially, or the motion starts from V = 0.
+    unknown relaxes exponentially, or the motion starts from V = 0.
 
     step: Step, the trial step.
     relaxation: float, derivative of the slope of the second unknown in itself at the left end, per unit of tau.
@@ -73,7 +72,7 @@ def _extrapolate(step, dense_step, regime, nodes):
 
     step: Step, the one to predict.
     dense_step: Step, whose dense output is stored.
-    regime: Regime, that of both.
+    regime: Regime, that of both steps.
     nodes: Workspace.nodes, with node 0 of ``step`` and the dense output; nodes 1 ... N are written.
     """
     v_start = dense_position(step.tau, dense_step)
@@ -107,8 +106,8 @@ def _predict_relaxation(step, relaxation, regime, nodes):
 def _predict_from_rest(step, regime, work):
     """Store the unknowns of a step that starts at V = 0.
 
-    V' changes linearly from its value at the left end, which may be 0, to that of the drive at the right end; d
-    changes linearly to its value at departure under that drive.
+    V' changes linearly from its value at the left end, which may be 0, to that of the drive at the right end; d changes
+    linearly to its value at departure under that drive.
 
     step: Step, the one to predict.
     regime: Regime, that of the step.

@@ -10,42 +10,42 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-#: regime of an output: full slip
+#: Regime of an output: the whole contact slips.
 FULL_SLIP = 0
-#: regime of an output: partial slip (stick and slip)
+#: Regime of an output: a part of the contact sticks.
 PARTIAL_SLIP = 1
-#: regime of an output: V = omega = 0 without a brake
+#: Regime of an output: V = omega = 0 without a brake.
 AT_REST = 2
-#: regime of an output: a brake holds omega at 0 while V is not 0
+#: Regime of an output: a brake holds omega at 0 while V is not 0.
 OMEGA_LOCKED = 3
-#: regime of an output: V = omega = 0, held by a brake or by a prescribed speed
+#: Regime of an output: V = omega = 0, held by a brake or by a prescribed speed.
 HELD_AT_REST = 4
-#: entry among the regime changes: V changed its sign
+#: Entry among the regime changes: V changed its sign.
 DIRECTION_REVERSED = -1
 
-#: neither speed is prescribed
+#: Code of a drive: neither speed is prescribed.
 NOT_PRESCRIBED = 0
-#: omega is prescribed
+#: Code of a drive: omega is prescribed.
 PRESCRIBED_OMEGA = 1
-#: V is prescribed
+#: Code of a drive: V is prescribed.
 PRESCRIBED_V = 2
 
-#: status of a motion: integrated to its last output time
+#: Status of a motion: it is integrated to its last output time.
 COMPLETED = 0
-#: status of a motion: came below the rest threshold
+#: Status of a motion: it came below the rest threshold.
 CAME_TO_REST = 1
-#: status of a motion: the allowed number of steps was used up
+#: Status of a motion: the allowed number of steps was used up.
 STEP_LIMIT = 2
-#: status of a motion: every step, however short, was rejected
+#: Status of a motion: every step, however short, was rejected.
 STEP_TOO_SMALL = 3
-#: status of a motion: the departure from rest is not unique
+#: Status of a motion: the departure from rest is not unique.
 NOT_UNIQUE = 4
-#: status of a motion: the added mass left the range in which the equations hold
+#: Status of a motion: the added mass left the range in which the equations are regular.
 ADDED_MASS_EXHAUSTED = 5
 
-#: unit of rounding of a double, dimensionless
+#: Unit of rounding of a double, dimensionless.
 ROUNDING = 2.2e-16
-#: V below which it counts as 0 in partial slip, dimensionless: far below every speed that an output can tell from 0
+#: V below which it counts as 0 in partial slip, dimensionless: far below every speed that an output can tell from 0.
 ZERO_SPEED = 1e-200
 
 
@@ -135,12 +135,16 @@ class Regime(NamedTuple):
     locked: bool
 
 
-#: regime of a cylinder at rest, before its departure is known
+#: Regime of a cylinder at rest, before its departure is known.
 REGIME_AT_REST = Regime(False, 1.0, 1.0, 0.0, False)
 
 
 class State(NamedTuple):
-    """Unknowns: V, and omega in full slip or d = delta/delta_star in partial slip; dimensionless."""
+    """Unknowns of a motion in the direction of its regime, dimensionless.
+
+    V : speed of the axis
+    omega_or_d : omega in full slip, d = delta/delta_star in partial slip
+    """
 
     V: float
     omega_or_d: float
@@ -242,25 +246,27 @@ class Batch(NamedTuple):
     omega0: Any
 
 
-#: column of a segment: tau of its left end
+#: Column of a segment: tau of its left end.
 COL_START = 0
-#: column of a segment: scale of its time, x = (tau - start) scale - 1 runs from -1 to 1
+#: Column of a segment: scale of its time; x = (tau - start) scale - 1 runs from -1 to 1.
 COL_SCALE = 1
-#: first column of the coefficients in x: as many for each function below as there are terms
+#: First column of the coefficients in x of a segment, in ascending powers: as many for each function below as there are
+#: terms.
 COL_COEFFICIENTS = 2
-#: function of a segment: force
+#: Function of a segment: force.
 DRIVE_FORCE = 0
-#: function of a segment: torque of the motor
+#: Function of a segment: torque of the motor.
 DRIVE_TORQUE = 1
-#: function of a segment: slope in tau of the prescribed speed
+#: Function of a segment: slope in tau of the prescribed speed.
 DRIVE_RATE = 2
-#: function of a segment: largest torque of the brake
+#: Function of a segment: largest torque of the brake.
 DRIVE_BRAKE = 3
-#: function of a segment: prescribed speed
+#: Function of a segment: prescribed speed.
 DRIVE_SPEED = 4
-#: number of functions of a segment
+#: Number of functions of a segment.
 N_DRIVE_FUNCTIONS = 5
-#: functions that are stored at the nodes of a step: all but the prescribed speed
+#: Number of functions that are stored at the nodes of a step: all but the prescribed speed, which is evaluated at
+#: single times.
 N_NODE_FUNCTIONS = 4
-#: number of quadratures: distance, angle, work of force and torque, losses in brake, slip and rolling
+#: Number of quadratures: distance, angle, work of force and torque, losses in brake, slip and rolling.
 N_QUADRATURES = 7

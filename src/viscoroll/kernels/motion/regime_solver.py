@@ -40,28 +40,31 @@ from .workspace import (
     shorten_step,
 )
 
-#: largest number of successive rejections
+#: Largest number of successive rejections: as each shortens the step to 0.7 or 0.4 of its length at most, the step is
+#: then below 1e-23 of the first.
 _MAX_REJECTIONS = 60
-#: error divided by its tolerance up to which a step is accepted where it cannot be shortened: the error of a motion
-#: grows by 2 to 3 rtol at most
+#: Error divided by its tolerance up to which a step is accepted where it cannot be shortened: the error of a motion
+#: grows by 2 to 3 rtol at most.
 _ACCEPTED_AT_SHORTEST = 10.0
-#: V at the right end of a step divided by V at its left end, below which the step is ended at V = 0 if it was aimed
-#: at it
+#: V at the right end of a step divided by V at its left end, below which V = 0 is taken for the event of a step that
+#: was aimed at it and on which no event function changes its sign.
 _V_ZERO_DROP = 0.2
-#: error divided by its tolerance up to which a step shows where its regime ends
+#: Error divided by its tolerance up to which a step shows where its regime ends; a step with a larger one is repeated.
 _MAX_ERROR_FOR_EVENTS = 1e6
-#: largest number of trials until a step ends at the event
+#: Largest number of trials until a step ends at the event.
 _MAX_TRIALS = 8
-#: error divided by its tolerance that is assigned to a step that did not end at its event
+#: Error divided by its tolerance that is assigned to a step that did not end at its event: the next step is then
+#: shorter, as behind any rejection.
 _ERROR_OF_FAILED_TRIAL = 10.0
-#: v of an event in full slip in the first quarter of a step, up to which the step is solved again with an end behind
-#: it: early on the interpolants are less accurate relative to the time so far
+#: Position v of an event in full slip, up to which the step is solved again with an end behind it: early on a step the
+#: interpolants are less accurate relative to the time so far; the onset was wrong by 7e-12 of it.
 _EARLY_EVENT = 0.5
-#: length of that step divided by the time to the event
+#: Length of that step divided by the time to the event: above 1, so that the event lies on the step.
 _BEYOND_EARLY_EVENT = 1.1
-#: shortest step divided by the time so far: a regime that ends where it begins
+#: Shortest step divided by the time so far and to come: a regime that is over at all nodes of such a step ends there.
 SHORTEST_STEP = 1e-14
-#: fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next segment
+#: Fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next segment: 1 but for
+#: rounding of the time.
 BEFORE_SEGMENT_END = 1.0 - 1e-13
 
 
@@ -70,7 +73,7 @@ def _start_step(state, regime, step_state, work):
     """Store the right-hand side at node 0 of the next step.
 
     state: State, at the time reached.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with that time and its segment.
     work: Workspace; node 0 is written.
     Returns the Regime; at d = 0 that of the branch of the law to which d moves.
@@ -79,11 +82,11 @@ def _start_step(state, regime, step_state, work):
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
     rates = current_rates(state, regime, step_state, work)
     store_rhs(0, rates, nodes)
-    # at V = 0 d has its relaxed value and Q is a rounding error of it: V' then follows from p'
+    # At V = 0 d has its relaxed value and the rounding of d changes Q: V' then follows from p'.
     nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
     nodes[ROW_RELAXATION], nodes[ROW_P_DIAGONAL] = rates.drate_dd / rates.weight, rates.dp_rate_dV / rates.dp_dV
     if not regime.full_slip and state.omega_or_d == 0.0 and regime.sigma * rates.weighted_rate < 0.0:
-        # both branches agree at d = 0
+        # Both branches agree at d = 0.
         return change_slip(regime, False, -regime.sigma)
     return regime
 
@@ -97,7 +100,7 @@ def _end_at_V_zero(step, remaining, state, regime, work):
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
     state: State, at the left end.
-    regime: Regime, there.
+    regime: Regime, at that state.
     work: Workspace, with node 0.
     Returns (Step, whether it ends at that time).
     """
@@ -132,8 +135,8 @@ def _find_crossed_event(step, remaining, regime, work):
 def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 
-    A step with too large an error, on which the regime ends, contains a kink of the law: a step that ends at it may
-    be accurate.
+    A step with too large an error, on which the regime ends, contains a kink of the law: a step that ends at it may be
+    accurate.
 
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
@@ -153,7 +156,7 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
             break
         evaluate_event_functions(step, regime, work)
         first_event, v = _find_crossed_event(step, remaining, regime, work)
-        # in partial slip the motion ends at V = 0: the equations have no continuation
+        # In partial slip the motion ends at V = 0: the equations have no continuation.
         V_negative = row_range(ROW_V, nodes)[0] < 0.0
         missed_event = find_missed_event(step, regime, work)
         if missed_event != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
@@ -166,7 +169,7 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
             event = V_ZERO
         if event == NO_EVENT or (first_event == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)):
             return event, 2.0, step, error, dense_step
-        # partial slip ends at V = 0, and |V| in two event functions of full slip has a kink there
+        # Partial slip ends at V = 0, and |V| in two event functions of full slip has a kink there.
         has_kink = V_negative and (not regime.full_slip or first_event == STICK_EDGE or first_event == BELOW_REST_SPEED)
         if first_event != NO_EVENT and error <= 1.0 and not has_kink and first_event != V_ZERO:
             if v > _EARLY_EVENT or not regime.full_slip:
@@ -174,7 +177,7 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
             v *= _BEYOND_EARLY_EVENT
         if first_event == NO_EVENT:
             v = locate_zero(event, 0, nodes)
-            if v >= NOT_FOUND:  # the event is not near the step
+            if v >= NOT_FOUND:  # The event is not near the step.
                 return NO_EVENT, 2.0, step, error, dense_step
         h = min(step.h * 0.5 * v, upper)
         if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
@@ -194,16 +197,15 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     step_state: StepState, at the start.
     work: Workspace, of the motion; outputs are written.
     Returns (event, State, Regime, StepState) at its end; the event is NO_EVENT at the end of the segment, if the
-    allowed
-    steps are used up, or if the rest of the motion is known in closed form, and STEP_FAILED if no step was short
-    enough.
+    allowed steps are used up, or if the rest of the motion is known in closed form, and STEP_FAILED if no step was
+    short enough.
     """
     nodes, segment, drive = work.nodes, step_state.segment, work.drive
     end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0
     h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
     undriven = is_undriven(segment, drive)
     constant = is_constant(segment, drive) and not is_unloaded(segment, drive)
-    # rounding error of p', which contains Q = mu in full slip
+    # The rounding error of p' contains that of Q = mu in full slip.
     noise = drive_rounding(segment, drive) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
     dense_step = Step(step_state.tau, 0.0, segment, False, undriven)
     while step_state.tau < end and step_state.n_steps < work.options.max_steps:

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..compile.jit import kernel
 from .collocation import row_range
-from .drive import applied_forces, current_load, has_brake, is_undriven, prescribed_speed
+from .drive import current_load, has_brake, is_undriven, prescribed_speed
+from .law import critical_creepage, excess_slip
 from .records import (
     AT_REST,
     FULL_SLIP,
@@ -18,18 +19,20 @@ from .records import (
     Regime,
     State,
 )
-from .rhs import critical_creepage, current_rates, excess_slip
+from .rhs import applied_forces, current_rates
 from .workspace import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip
 
-#: V at the event divided by V at the left end of the step, below which V is 0: the stick zone closes at rest
+#: V at the event divided by V at the left end of the step, below which V is 0, as rounding leaves it: the stick zone
+#: closes at rest.
 _STICK_ZONE_CLOSED = 1e-14
-#: omega/V in partial slip above which V follows a prescribed omega at fixed d
+#: omega/V in partial slip above which V follows a prescribed omega at fixed d; below it, under strong friction, V
+#: stays.
 _OMEGA_FOLLOWED = 0.5
-#: error of the position of an event, divided by rtol
+#: Error of V at an event divided by rtol times the largest V of the step: with omega = 0, slip ends at V = 0 within it.
 _EVENT_ERROR = 10.0
-#: V divided by the larger speed, below which it counts as 0 at the start
+#: V divided by the larger speed, below which it counts as 0 at the start: its square is near the smallest double.
 ZERO_V_RATIO = 1e-150
-#: rounding error of a start on the edge of the stick zone, relative to the speeds
+#: Distance of a start from the edge of the stick zone, relative to the speeds, that is rounding: about a hundred units.
 _START_ON_EDGE = 2e-14
 
 
@@ -38,7 +41,7 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
     """Return the torque that would accelerate a wheel with omega = 0, and the limit of the brake, dimensionless.
 
     state: State, with omega = 0.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
     Returns (torque of the motor less that of the contact, largest torque of the brake).
@@ -64,7 +67,7 @@ def brake_holds_omega(state, regime, step_state, work):
     """Return whether the brake holds omega at 0.
 
     state: State, with omega = 0.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
     """
@@ -99,7 +102,7 @@ def comes_to_rest(state, regime, step_state, work):
     omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
     if not (regime.locked or omega_zero):
         return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
-    # with omega = 0 slip ends at V = 0, to the tolerance of the step
+    # With omega = 0 slip ends at V = 0, to the tolerance of the step.
     return state.V <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol) * row_range(ROW_V, work.nodes)[1]
 
 
@@ -116,13 +119,16 @@ def reverse_direction(regime):
 def impose_prescribed_speed(state, regime, step_state, work):
     """Set the prescribed speed to its given value, where a segment begins or the stick zone forms.
 
-    The error of the integration so far is small relative to the speeds so far, but may be large relative to the
-    speed prescribed from here on.  In partial slip V follows a prescribed omega at fixed d, except where friction is
-    so strong that omega is far below V.
+    The error of the integration so far is small relative to the speeds so far, but may be large relative to the speed
+    prescribed from here on.  In partial slip V follows a prescribed omega at fixed d, except where friction is so
+    strong that omega is far below V.
 
-    state: State, as integrated, with V >= 0. regime: Regime, there. step_state: StepState, with the time and its
-    segment. work: Workspace, of the motion. Returns (State, Regime) with the prescribed speed; the direction is
-    reversed where V < 0 is prescribed in full slip, in partial slip V is at least 0.
+    state: State, as integrated, with V >= 0.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    Returns (State, Regime) with the prescribed speed; the direction is reversed where V < 0 is prescribed in full slip,
+    in partial slip V is at least 0.
     """
     drive, full_slip = work.drive, regime.full_slip
     if drive.prescribed == NOT_PRESCRIBED:
@@ -157,7 +163,7 @@ def apply_event(event, state, regime, step_state, work):
         rates = current_rates(state, regime, step_state, work)
         state, regime = State(state.V, sigma), change_slip(regime, False, sigma)
         if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(rates.weighted_rate):
-            # of both speeds at the event, whose time has an error, the one that changes more slowly is more accurate
+            # The time of the event has an error, so that the speed that changes more slowly is more accurate.
             state, regime = impose_prescribed_speed(state, regime, step_state, work)
         return state.V > 0.0, state, regime
     if event == STICK_EDGE:
@@ -182,11 +188,11 @@ def enter_segment(state, regime, step_state, work):
     """Return (State, Regime) at the start of a segment of the drive: a brake takes hold or lets go, V may reverse.
 
     state: State, at the end of the segment before, or the start of the motion.
-    regime: Regime, there.
+    regime: Regime, at that state.
     step_state: StepState, with the index of the new segment.
     work: Workspace, of the motion.
     """
-    if step_state.segment > 0:  # a start keeps its given speeds
+    if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
     if regime.full_slip and state.V == 0.0 and current_rates(state, regime, step_state, work).V_rate < 0.0:
         state, regime = State(0.0, -state.omega_or_d), reverse_direction(regime)
@@ -209,7 +215,7 @@ def initial_regime(V, omega, step_state, work):
     Returns (State, Regime, whether the stick zone just forms).
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
-        # sliding ends within a time of that order, at constant V + j omega
+        # Sliding ends within a time of that order, at constant V + j omega.
         V = omega = (V + work.scene.j * omega) / (1.0 + work.scene.j)
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega

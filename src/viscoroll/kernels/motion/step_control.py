@@ -23,37 +23,41 @@ from .workspace import (
     ROW_WEIGHTED_RATE,
 )
 
-#: relative change of the unknowns in the first step of a regime
+#: Relative change of the unknowns in the first step of a regime.
 _FIRST_CHANGE = 0.4
-#: length of the first step in partial slip, in relaxation times of d
+#: Length of the first step in partial slip, in relaxation times of d.
 _FIRST_RELAXATION_TIMES = 3.0
-#: change of d in the first step behind the onset of stick, in units of (rtol V d'/(alpha feedback))^(1/3)
+#: Change of d in the first step behind the onset of stick, in units of (rtol V d'/(alpha feedback))^(1/3), on whose
+#: scale the law bends there.
 _ONSET_CHANGE = 12.0
-#: octaves from the first row of a law to the rate of the longest time of its material
+#: Number of octaves from the first row of a law to the rate of the longest time of its material, by the construction of
+#: the rows.
 _ROWS_BELOW_LONGEST_TIME = 4
-#: V reached in the first step from V = 0 on, in units of rtol^(1/7) times the moderate speed
+#: V reached in the first step from V = 0 on, in units of rtol^(1/7) times the moderate speed, as the error estimate is
+#: of the order of the seventh power of the length.
 _START_SPEED = 0.25
-#: time after which the slope of the drive is evaluated, divided by the time to the end of the segment
+#: Time after which the slope of the drive is evaluated, divided by the time to the end of the segment.
 _LOOKAHEAD = 1e-3
-#: relaxation times of d in a step, above which d follows V at its end
+#: Number of relaxation times of d in a step, above which d follows V at its end: exp(-6) = 0.002 of a disturbance is
+#: left.
 _RELAXED_TIMES = 6.0
-#: relative change of V in the step after the relaxation of d, divided by rtol^(1/8)
+#: Relative change of V in the step after the relaxation of d, divided by rtol^(1/8).
 _RELAXED_CHANGE = 4.0
-#: largest ratio of successive step lengths by the error of the last step
+#: Largest ratio of successive step lengths by the error of the last step.
 _MAX_GROWTH = 6.0
-#: smallest ratio of successive step lengths by the error of the last step
+#: Smallest ratio of successive step lengths by the error of the last step.
 _MAX_SHRINKAGE = 0.1
-#: ratio of successive step lengths where Newton's iteration failed
+#: Ratio of successive step lengths where Newton's iteration did not converge.
 _NEWTON_FAILURE = 0.3
-#: safety factor of the step length
+#: Safety factor of the step length, so that few steps are rejected.
 _SAFETY = 0.9
-#: largest additional growth where errors decrease although steps grow (behind a boundary layer)
+#: Largest additional growth where errors decrease although steps grow, as behind a boundary layer.
 _MAX_EXTRA_GROWTH = 1.3
-#: error added in ratios of errors, so that none is 0
+#: Error divided by its tolerance that is added in ratios of errors, so that none is 0.
 _ERROR_FLOOR = 1e-12
-#: largest ratio of a step length to that of a rejected step, at the first rejection
+#: Largest ratio of a step length to that of a rejected step, at the first rejection.
 _FIRST_REJECTION = 0.7
-#: largest ratio of a step length to that of a rejected step, at later rejections
+#: Largest ratio of a step length to that of a rejected step, at later rejections.
 _LATER_REJECTION = 0.4
 
 
@@ -74,7 +78,7 @@ def _time_to_reach_V(V_change, step_state, regime, work):
 
     V_change: float, that V, dimensionless.
     step_state: StepState, at V = 0.
-    regime: Regime, there.
+    regime: Regime, at that state.
     work: Workspace, with node 0.
     """
     lookahead, V_rate = _LOOKAHEAD * (segment_end(step_state.segment, work) - step_state.tau), work.nodes[ROW_V_RATE]
@@ -83,9 +87,9 @@ def _time_to_reach_V(V_change, step_state, regime, work):
     rates = evaluate_rhs(State(0.0, d if d != 0.0 else work.nodes[ROW_OMEGA_OR_D]), load, regime, work.scene)
     V_rate, V_rate_slope = max(V_rate, 0.0), (rates.p_rate / rates.dp_dV - V_rate) / lookahead
     discriminant = V_rate**2 + 2.0 * V_rate_slope * V_change
-    if discriminant < 0.0:  # V does not reach V_change: the step ends at its maximum
+    if discriminant < 0.0:  # V does not reach V_change: the step ends at its maximum.
         return -V_rate / V_rate_slope
-    # at d = 1 both rates may be 0
+    # At d = 1 both rates may be 0.
     return 2.0 * V_change / (V_rate + np.sqrt(discriminant) + 1e-300)
 
 
@@ -93,9 +97,10 @@ def _time_to_reach_V(V_change, step_state, regime, work):
 def first_step_length(stick_formed, step_state, regime, work):
     """Return the length in tau of the first step of a regime; inf if nothing limits it.
 
-    stick_formed: bool, whether the stick zone has just formed, where d' changes on the scale of the slip that is
-    left. step_state: StepState, at the start of the regime. regime: Regime, the new one. work: Workspace, with node
-    0.
+    stick_formed: bool, whether the stick zone has just formed, where d' changes on the scale of the slip that is left.
+    step_state: StepState, at the start of the regime.
+    regime: Regime, the new one.
+    work: Workspace, with node 0.
     """
     nodes, scene = work.nodes, work.scene
     V, V_rate, rate = nodes[ROW_V], abs(nodes[ROW_V_RATE]), abs(nodes[ROW_WEIGHTED_RATE])
@@ -105,12 +110,12 @@ def first_step_length(stick_formed, step_state, regime, work):
             return np.inf
         h = _FIRST_CHANGE * largest_speed / largest_rate
         return min(h, (V + moderate_speed(scene)) / V_rate) if V_rate > 0.0 else h
-    if not V > ZERO_SPEED:  # the step starts from V = 0
+    if not V > ZERO_SPEED:  # The step starts from V = 0.
         V_end = _START_SPEED * work.options.rtol ** (1.0 / N) * moderate_speed(scene)
         return _time_to_reach_V(V_end, step_state, regime, work)
     h = _FIRST_RELAXATION_TIMES / abs(nodes[ROW_RELAXATION])
     if stick_formed:
-        # d may change until the slip that is left feeds back on it
+        # d may change until the slip that is left feeds back on it.
         load = current_load(regime, step_state, work)
         feedback = scene.kappa * max(load.inverse_mass + load.inverse_inertia, 1.0)
         d_scale = (work.options.rtol * rate / (feedback * scene.law.rows[ALPHA])) ** (1.0 / 3.0)

@@ -11,89 +11,90 @@ from ..compile.jit import inline_kernel
 from .collocation import NODE_FRACTIONS, ROW_LENGTH, evaluate_dense_output
 from .records import N_NODE_FUNCTIONS, N_QUADRATURES, Regime, State, Step, StepState
 
-#: row: V
+#: Row of V, dimensionless as all rows.
 ROW_V = ROW_LENGTH * 0
-#: row: second unknown, omega or d
+#: Row of the second unknown, omega or d.
 ROW_OMEGA_OR_D = ROW_LENGTH * 1
-#: row: p'
+#: Row of p'.
 ROW_P_RATE = ROW_LENGTH * 2
-#: row: weight times the slope of the second unknown
+#: Row of the weight (V in partial slip, 1 in full slip) times the slope in tau of the second unknown.
 ROW_WEIGHTED_RATE = ROW_LENGTH * 3
-#: row: V', at node 0 only
+#: Row of V', at node 0 only.
 ROW_V_RATE = ROW_LENGTH * 4
-#: row: max(|V|, |omega|)
+#: Row of max(|V|, |omega|).
 ROW_SPEED = ROW_LENGTH * 5
-#: row: p, the collocated combination of V and omega (:mod:`rhs`)
+#: Row of p, the collocated combination of V and omega (:mod:`rhs`).
 ROW_P = ROW_LENGTH * 6
-#: row: dV/dp, inverse of dp/dV
+#: Row of dV/dp, inverse of dp/dV.
 ROW_DV_DP = ROW_LENGTH * 7
-#: row: dp/dd, 0 in full slip
+#: Row of dp/dd, 0 in full slip.
 ROW_DP_DD = ROW_LENGTH * 8
-#: row: derivative in p of the residual of the second unknown, negative
+#: Row of the derivative in p of the residual of the second unknown, with the opposite sign.
 ROW_COUPLING = ROW_LENGTH * 9
-#: row: rate at which the second unknown relaxes, its derivative of its own slope
+#: Row of the derivative of the slope of the second unknown in itself, per unit of tau: below 0 it relaxes.
 ROW_RELAXATION = ROW_LENGTH * 10
-#: row: slopes of the interpolant of p
+#: Row of the slopes of the interpolant of p in t on [-1, 1].
 ROW_P_SLOPE = ROW_LENGTH * 11
-#: row: slopes of the interpolant of the second unknown
+#: Row of the slopes of the interpolant of the second unknown in t on [-1, 1].
 ROW_D_SLOPE = ROW_LENGTH * 12
-#: row: residual of p
+#: Row of the residual of the equation of p.
 ROW_P_RESIDUAL = ROW_LENGTH * 13
-#: row: residual of the second unknown
+#: Row of the residual of the equation of the second unknown.
 ROW_D_RESIDUAL = ROW_LENGTH * 14
-#: row: Newton update of p
+#: Row of the Newton update of p.
 ROW_P_UPDATE = ROW_LENGTH * 15
-#: row: Newton update of the second unknown
+#: Row of the Newton update of the second unknown.
 ROW_D_UPDATE = ROW_LENGTH * 16
-#: row: ones, the weights of the equation of p
+#: Row of ones, the weights of the equation of p.
 ROW_ONES = ROW_LENGTH * 17
-#: row: weights of the equation of the second unknown
+#: Row of the weights of the equation of the second unknown.
 ROW_WEIGHT = ROW_LENGTH * 18
-#: row: diagonal that the Newton matrix of p subtracts
+#: Row of the diagonal that the Newton matrix of p subtracts; dp'/dp at node 0 before a step, half the length times
+#: dp'/dp at the other nodes.
 ROW_P_DIAGONAL = ROW_LENGTH * 19
-#: row: diagonal that the Newton matrix of the second unknown subtracts
+#: Row of the diagonal that the Newton matrix of the second unknown subtracts.
 ROW_D_DIAGONAL = ROW_LENGTH * 20
-#: row: derivative of p' in the second unknown, times h/2
+#: Row of the derivative of p' in the second unknown, times half the length of the step.
 ROW_FEEDBACK = ROW_LENGTH * 21
-#: rows: integrands of the quadratures
+#: First of N_QUADRATURES rows of the integrands of the quadratures.
 ROW_INTEGRANDS = ROW_LENGTH * 22
-#: event, and row of its function: in full slip the stick zone forms, in partial slip it vanishes
+#: Event, and row of its function: in full slip the stick zone forms, in partial slip it vanishes.
 STICK_EDGE = ROW_INTEGRANDS + ROW_LENGTH * N_QUADRATURES
-#: event and row: delta, less that of free rolling, passes 0 in partial slip
+#: Event, and row of its function: delta, less that of free rolling, passes 0 in partial slip.
 DELTA_ZERO = STICK_EDGE + ROW_LENGTH
-#: event and row: V passes 0
+#: Event, and row of its function: V passes 0.
 V_ZERO = DELTA_ZERO + ROW_LENGTH
-#: event and row: omega passes 0 under a brake
+#: Event, and row of its function: omega passes 0 under a brake.
 OMEGA_ZERO = V_ZERO + ROW_LENGTH
-#: event and row: both speeds fall below the rest threshold
+#: Event, and row of its function: both speeds fall below the rest threshold.
 BELOW_REST_SPEED = OMEGA_ZERO + ROW_LENGTH
-#: event and row: a brake that holds omega at 0 lets go
+#: Event, and row of its function: a brake that holds omega at 0 lets go.
 BRAKE_RELEASE = BELOW_REST_SPEED + ROW_LENGTH
-#: no event: the segment of the drive or the allowed number of steps ended
+#: Code beside the events: the segment of the drive or the allowed number of steps ended.
 NO_EVENT = 0
-#: no event: every step, however short, was rejected
+#: Code beside the events: every step, however short, was rejected.
 STEP_FAILED = -1
-#: rows: functions of the drive
+#: First of N_NODE_FUNCTIONS rows of the functions of the drive.
 ROW_DRIVE = BRAKE_RELEASE + ROW_LENGTH
-#: row: dense output of V
+#: Row of the dense output of V: coefficients, as of all rows of dense output.
 ROW_DENSE_V = ROW_DRIVE + ROW_LENGTH * N_NODE_FUNCTIONS
-#: row: dense output of the second unknown
+#: Row of the dense output of the second unknown.
 ROW_DENSE_OMEGA_OR_D = ROW_DENSE_V + ROW_LENGTH
-#: rows: dense output of the quadratures
+#: First of N_QUADRATURES rows of the dense output of the quadratures.
 ROW_DENSE_QUADRATURES = ROW_DENSE_V + ROW_LENGTH * 2
-#: row: interpolant of one event function
+#: Row of the interpolant of one event function.
 ROW_DENSE_EVENT = ROW_DENSE_QUADRATURES + ROW_LENGTH * N_QUADRATURES
-#: N_QUADRATURES numbers: quadratures up to the last accepted step
+#: N_QUADRATURES numbers: quadratures up to the last accepted step.
 QUADRATURE_TOTALS = ROW_DENSE_EVENT + ROW_LENGTH
-#: number: regime changes so far
+#: A number: regime changes so far.
 N_SWITCHES = QUADRATURE_TOTALS + N_QUADRATURES
-#: number: entries of ``switches`` so far, reversals of direction among them
+#: A number: entries of ``switches`` so far, reversals of direction among them.
 N_RECORDED = N_SWITCHES + 1
-#: number: t of the onset of stick, NaN before it
+#: A number: t of the onset of stick, NaN before it.
 ONSET_TIME = N_SWITCHES + 2
-#: number: t at which the motion came to rest, NaN if it did not
+#: A number: t at which the motion came to rest, NaN if it did not.
 REST_TIME = N_SWITCHES + 3
-#: numbers of ``Workspace.nodes``
+#: Number of doubles in ``Workspace.nodes``.
 WORKSPACE_SIZE = N_SWITCHES + 4
 
 
