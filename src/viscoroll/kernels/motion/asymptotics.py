@@ -162,8 +162,9 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
 
 @inline_kernel
 def is_coasting(state, regime, step_state, work):
-    """Return whether V decays exponentially up to a fraction of the tolerance: slow rolling, at most feedback
-    drives.
+    """Return whether V decays exponentially up to a fraction of the tolerance.
+
+    It does in slow rolling where no force or torque acts, or only feedback that does not outweigh the resistance.
 
     state: State, the present one.
     regime: Regime, at that state.

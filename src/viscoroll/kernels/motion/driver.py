@@ -91,8 +91,7 @@ def _is_below_rest_speed(moving, state, regime, step_state, work):
 
 @kernel
 def added_mass_exhausted(event, state, regime, work):
-    """Return whether the added mass has left its range in partial slip, or an event is that it reaches the end of
-    it.
+    """Return whether the added mass has left its range in partial slip, or ends it by an event.
 
     event: int, the last event, or NO_EVENT.
     state: State, the present one.
@@ -210,8 +209,7 @@ def _come_to_rest(code, state, regime, step_state, work):
 
 @kernel
 def _record_regime(code, new_code, stick_formed, step_state, work):
-    """Record a regime that differs from the one before, and the time at which stick first forms; return the new
-    code.
+    """Record a regime that differs from the one before, and when stick first forms; return the new code.
 
     code: int, regime in the outputs before; -1 before the first one, which is no change.
     new_code: int, regime in the outputs from now on.

@@ -73,8 +73,7 @@ def _d_weight(d):
 
 @kernel
 def _rounding_scale_of_V(step, work):
-    """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration,
-    dimensionless.
+    """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration.
 
     V' = Q - M + f may be a small difference of Q and f.  Its rounding changes V during the step, or during the
     relaxation time of V if that is shorter.
@@ -138,8 +137,7 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
 
 @inline_kernel
 def _variation_of_p_rate(half, nodes):
-    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step; in the unit of
-    p.
+    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step.
 
     half: float, half the length of the step in tau.
     nodes: Workspace.nodes.
@@ -152,8 +150,7 @@ def _variation_of_p_rate(half, nodes):
 
 @kernel
 def _relative_speed_at_first_output(step, work):
-    """Return V at the first output time of a step from V = 0 on, divided by the largest V of the step,
-    dimensionless.
+    """Return V at the first output time of a step from V = 0 on, divided by the largest V of the step.
 
     By this the error of the step is divided, so that V is accurate relative to itself at its first output.
 
