@@ -34,7 +34,8 @@ from .workspace import (
     node_time,
 )
 
-#: Tolerance of the error of one step, divided by rtol: the error of a motion is a sum over steps.
+#: Tolerance of the error of one step, divided by rtol: the error of a motion is a sum over steps.  With 0.25 the error
+#: of V and omega of 2400 motions was below 0.6 rtol at rtol 1e-6 and 1e-9, with 1 up to 4 rtol.
 ERROR_FRACTION = 0.25
 #: Tolerance of Newton's iteration, divided by that of the error of the step: with larger last updates than 0.004 rtol,
 #: which is the product with ERROR_FRACTION, losses of motions from rest were wrong by 60 to 100 rtol.
@@ -46,7 +47,8 @@ LEAST_TOLERANCE = 1e-14
 #: enlarges it.  No shorter step would reduce it.
 _STRONG_FRICTION_ROUNDING = 30.0 * ROUNDING
 #: Error of the interpolants divided by the defect at the left end, which overestimates it: 0.02 with nine nodes, and in
-#: proportion to (9/N)^2 errors for a given rtol were the same with five, seven and nine nodes.
+#: proportion to (9/N)^2 errors for a given rtol were the same with five, seven and nine nodes.  With 0.005 errors of
+#: motions grow two to seven times, up to 3 rtol; with 0.2 motions take 20 to 28 % more trial steps.
 _DEFECT_FACTOR = 0.02 * (9.0 / N) ** 2
 #: A defect above 1/30 of the variation of p' along the step is not reduced by the whole of _DEFECT_FACTOR: the step
 #: does not resolve the solution.  Without it one of 20,000 free motions was wrong at rtol 1e-4.
@@ -55,7 +57,8 @@ _UNRESOLVED_DEFECT = 30.0
 #: times that of a power and its Chebyshev polynomial; divided by _DEFECT_FACTOR, which multiplies the sum.
 _LAST_COEFFICIENT_FACTOR = 0.1 / (_DEFECT_FACTOR * 2.0 ** (N - 1))
 #: |d| below which errors of d are weighted as absolute ones, and square of the |d| of the smallest weight,
-#: dimensionless.
+#: dimensionless. Errors of V and omega do not depend on it; with 0.004 motions take up to 10 % fewer trial steps, with
+#: 0.4 up to 4 % more.
 _D_WEIGHT_FLOOR = 0.04
 
 

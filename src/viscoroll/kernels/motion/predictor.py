@@ -22,7 +22,8 @@ from .workspace import (
     node_time,
 )
 
-#: Distance beyond the right end of a step up to which its dense output is extrapolated, divided by its length.
+#: Distance beyond the right end of a step up to which its dense output is extrapolated, divided by its length.  Between
+#: 0.7 and 4 steps and errors of a motion hardly change.
 _EXTRAPOLATION = 1.5
 #: Length of a step relative to one with the same left end, below which the dense output of that one is not used: an
 #: error below the tolerance of Newton's iteration stays, and may have the sign of an event.

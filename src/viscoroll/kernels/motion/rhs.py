@@ -32,11 +32,7 @@ from ..compile.by_reference import by_value
 from ..compile.intrinsics import unlikely
 from ..compile.jit import inline_kernel, kernel
 from ..rows.cover import free_kinematics
-from ..rows.evaluate import (
-    H_over_F2,
-    H_over_F2_secants,
-    locate_row,
-)
+from ..rows.evaluate import H_over_F2, H_over_F2_secants, locate_row
 from .drive import current_load, load_at_node
 from .law import added_inertia, evaluate_moments
 from .records import State

@@ -58,16 +58,19 @@ from .workspace import (
     ROW_WEIGHTED_RATE,
 )
 
-#: Largest number of Newton iterations of a step.
+#: Largest number of Newton iterations of a step; a step that needs more is repeated with a shorter length.
 _MAX_ITERATIONS = 12
-#: Relative update above which the Newton matrices are evaluated again.
+#: Relative update above which the Newton matrices are evaluated again.  With 1e-3 a motion takes 5 to 10 % longer;
+#: between 1e-3 and 1e-1 its steps and errors hardly change.
 _REFACTOR_UPDATE = 1e-2
-#: Ratio of successive updates above which the Newton matrices are evaluated again.
+#: Ratio of successive updates above which the Newton matrices are evaluated again.  Between 1e-4 and 1e-2 neither steps
+#: nor errors of a motion change.
 _REFACTOR_CONTRACTION = 1e-3
 #: Largest assumed ratio of the second update to the first, which is not known: with 0.1 an accurate prediction ends
 #: after one iteration, with 0.01 losses of motions from rest were wrong by 60 rtol.
 _FIRST_CONTRACTION = 0.1
 #: Assumed contraction of the first iteration divided by its update, as Newton's iteration converges quadratically.
+#: Between 1 and 100 neither steps nor errors of a motion change.
 _QUADRATIC_CONTRACTION = 10.0
 
 

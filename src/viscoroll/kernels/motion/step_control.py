@@ -39,9 +39,10 @@ _START_SPEED = 0.25
 #: Time after which the slope of the drive is evaluated, divided by the time to the end of the segment.
 _LOOKAHEAD = 1e-3
 #: Number of relaxation times of d in a step, above which d follows V at its end: exp(-6) = 0.002 of a disturbance is
-#: left.
+#: left.  With 2 a motion takes 25 to 62 % more trial steps, with 20 3 to 14 % more.
 _RELAXED_TIMES = 6.0
-#: Relative change of V in the step after the relaxation of d, divided by rtol^(1/8).
+#: Relative change of V in the step after the relaxation of d, divided by rtol^(1/8), as the interpolant has eight
+#: coefficients.  With 1 a motion takes up to 5 % more trial steps, with 16 up to 34 % more.
 _RELAXED_CHANGE = 4.0
 #: Largest ratio of successive step lengths by the error of the last step.
 _MAX_GROWTH = 6.0
