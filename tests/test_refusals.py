@@ -14,7 +14,7 @@ from drives import DMA, ON_DMA
 from refusals import refused
 from run_files import FILES
 from scipy import stats
-from viscoroll.app.identification.file import read_measurements
+from viscoroll.app.identification.measurements_toml import read_measurements
 
 import viscoroll as vr
 from viscoroll import fmu
@@ -48,7 +48,7 @@ NAMES = vars(experiments) | {
     "SERIES": vr.Prony([2.0, 6.0], [1.0, 1e-4]), "MANY": vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
-    "read_body": read_roller, "read_bodies": read_law_source, "read_materials": read_materials, "sample": sample,
+    "read_roller": read_roller, "read_law_source": read_law_source, "read_materials": read_materials, "sample": sample,
     "FreeRolling": FreeRolling, "Steadiness": Steadiness, "Scale": Scale,
     "law_table": law_table, "table_of": table_of,
     "SOFT": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0),

@@ -42,6 +42,8 @@ class Cover(Bodies):
     part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1 (default): the other
         body is rigid, else it is an elastic half-space.
     other_nu : Poisson's ratio of the other body; only where ``part`` < 1.
+    other : series of the other body where it relaxes too, times over T_ref; default: elastic.  How slip and M are split
+        between the bodies is then not known: :func:`contact` gives lam, zeta, epsilon, delta_star, M and C_rr alone.
 
     Raises
     ------
@@ -81,6 +83,7 @@ class Cover(Bodies):
         on: Literal["cylinder", "base"] = "cylinder",
         part: float = 1.0,
         other_nu: float = 0.5,
+        other: Prony | None = None,
     ) -> None:
         if isinstance(series, Real) and not isinstance(series, bool):
             series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
@@ -91,7 +94,7 @@ class Cover(Bodies):
         for name, value in (("nu", nu), ("other_nu", other_nu)):
             object.__setattr__(self, name, check_number(name, value, low=0.0, high=0.5))
         part = check_number("part", part, low=0.0, strict=True, high=1.0)
-        other, cylinder = Prony.elastic(), on == "cylinder"
+        other, cylinder = Prony.elastic() if other is None else other, on == "cylinder"
         object.__setattr__(self, "cylinder", series if cylinder else other)
         object.__setattr__(self, "base", other if cylinder else series)
         object.__setattr__(self, "share", part if cylinder else 1.0 - part)
@@ -114,6 +117,11 @@ class Cover(Bodies):
         return self.cylinder if self.on == "cylinder" else self.base
 
     @property
+    def other(self) -> Prony:
+        """The series of the other body."""
+        return self.base if self.on == "cylinder" else self.cylinder
+
+    @property
     def part(self) -> float:
         """The layer's part of the long-time compliance."""
         return float(self.share if self.on == "cylinder" else 1.0 - self.share)
@@ -121,7 +129,13 @@ class Cover(Bodies):
     @property
     def modes(self) -> CoverModes:
         """What the solve takes of it."""
-        return CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
+        return CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu, self.other)
+
+    def refuse_unknown_split(self, call: str) -> None:
+        """Raise ParameterError where the other body relaxes; ``call``: function that needs the slip and both M."""
+        if self.other.alpha > 1.0:
+            allowed = f"rigid or elastic: how M and slip are split, which {call} needs, is not known; contact gives M"
+            raise ParameterError("body beside the layer", "one that relaxes", allowed)
 
     def rows(self, thickest: float | None = None) -> CoverRows:
         """The law over speed, of one cover; 0.1 to 0.3 s.  ``thickest`` : as of :func:`.cover_rows.cover_rows`."""
@@ -129,7 +143,7 @@ class Cover(Bodies):
 
     def of_thickness(self, thickness: ArrayLike) -> Cover:
         """The same bodies with another thickness over l0."""
-        more: dict[str, Any] = {"on": self.on, "part": self.part, "other_nu": self.other_nu}
+        more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
         return Cover(self.layer, nu=self.nu, thickness=thickness, **more)
 
     def __getitem__(self, which: Any) -> Cover:
@@ -138,8 +152,9 @@ class Cover(Bodies):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         thickness = np.shape(self.thickness), np.asarray(self.thickness).tobytes()
-        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu
+        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu, self.other
 
     def __repr__(self) -> str:
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
+        other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
         return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={format_value(self.thickness)}, on={self.on!r}{other})"

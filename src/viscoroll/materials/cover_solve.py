@@ -89,9 +89,12 @@ class CoverModes:
     total : series of both bodies together, the layer's own where the other body is rigid.
     share : the layer's part of the long-time compliance, in (0, 1].
     nu, other_nu : Poisson's ratios of the layer and of the other body.
+    other : series of the other body; default: elastic.
     """
 
-    def __init__(self, layer: Prony, total: Prony, share: float, nu: float, other_nu: float) -> None:
+    def __init__(
+        self, layer: Prony, total: Prony, share: float, nu: float, other_nu: float, other: Prony | None = None
+    ) -> None:
         modes = total.modes
         self.alpha = float(total.alpha)
         self.a, self.b, self.J = modes.a, modes.b, modes.J
@@ -100,7 +103,7 @@ class CoverModes:
         self.share, self.nodes, self.nus = share, layer_nodes(nu), (nu, other_nu)
         self.layer_J, self.layer_b = share * layer.J, 1.0 / layer.T
         self.layer_instant = share / float(layer.alpha)
-        self.other_local = (1.0 - share) * _local(other_nu)
+        self.other, self.other_local = Prony.elastic() if other is None else other, (1.0 - share) * _local(other_nu)
 
     def elastic(self, share: float) -> CoverModes:
         """The same bodies without relaxation, with this share of the compliance."""
@@ -109,6 +112,14 @@ class CoverModes:
     def compliance(self, k: Floats) -> Any:
         """Complex compliance of both bodies at wave numbers k over 1/(V T_ref), for exp(i k Y)."""
         return 1.0 / self.alpha + (self.J * self.b / (self.b - 1j * k[:, None])).sum(axis=1)
+
+    def layer_part(self, k: Floats) -> Any:
+        """Return the layer's part of :meth:`compliance` at wave numbers k over 1/(V T_ref): complex, or 1.0 if all."""
+        if self.share == 1.0:
+            return 1.0
+        b = 1.0 / self.other.T
+        other = 1.0 / self.other.alpha + (self.other.J * b / (b - 1j * k[:, None])).sum(axis=1)
+        return 1.0 - (1.0 - self.share) * other / self.compliance(k)
 
     def layer_storage(self, k: Floats) -> Any:
         """Real part of the layer's share of that compliance."""
@@ -246,7 +257,7 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     nodes, N = modes.nodes, orders or _orders(theta)
     v = nodes.u * theta
     A, J = bessel(v, N), modes.compliance(v / z)
-    part: Any = 1.0 if modes.share == 1.0 else 1.0 - (1.0 - modes.share) / J
+    part = modes.layer_part(v / z)
     ratio, root, k, x, sigma = _exponentials(modes, z, N)
     X0, Xi = modes.e / root * x[:, 0], (modes.e / root)[:, None] * x[:, 1:] * sigma
     S, c = _layer_operator(v, A, modes.b * z, nodes.L * part)
@@ -268,6 +279,39 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     return CoverState(float(z * q[0]), float(shift), float(moment), float(limit), float(strain), q, X0 - Xi @ (c @ q))
 
 
+def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
+    """Return the pressure along the contact, over 2 P/(pi a): its largest value if it were Hertz's on half length a.
+
+    modes: of the cover.  z, theta: a over V T_ref, which may be infinite (V = 0), and over the thickness.
+    x: positions in half lengths from the middle of the contact, positive along V, any shape; 0 outside of [-1, 1].
+    """
+    from numpy.polynomial.chebyshev import chebval
+
+    if z == np.inf:
+        modes, z = modes.elastic(modes.share), 1.0
+    state = solve(modes, z, theta)
+    # I_n/I_0 is below rounding from n = 9 sqrt(alpha) on
+    width = math.sqrt(min(z * modes.a.max(initial=0.0), _LARGE))
+    terms = _pressure_terms(modes, z, state, max(state.q.size, math.ceil(9.0 * width)) + 40)
+    # sum terms_n U_n in Chebyshev polynomials of the first kind: U_n = 2 (T_n + T_(n-2) + ...), with T_0 once
+    sums = np.empty(terms.size)
+    for parity in (0, 1):
+        sums[parity::2] = 2.0 * np.cumsum(terms[parity::2][::-1])[::-1]
+    sums[0] *= 0.5
+    inside = np.clip(x, -1.0, 1.0)
+    return np.sqrt((1.0 - inside) * (1.0 + inside)) * chebval(inside, sums) / state.q[0]
+
+
+def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) -> Floats:
+    """Return the first ``count`` coefficients of the pressure, q_m for m = 1, 2, ..., of the state at z."""
+    from scipy.special import ive
+
+    alpha = np.minimum(modes.a * z, _LARGE)
+    terms = 2.0 * (ive(np.arange(1, count + 1)[:, None], alpha) / ive(0, alpha)) @ state.X
+    terms[: state.q.size] = state.q
+    return terms
+
+
 def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:
     """Mean strain by the coupling of a half-space, -C J p at each place, less that of the other body; 0 for nu = 1/2.
 
@@ -287,11 +331,8 @@ def _products(modes: CoverModes, z: float, state: CoverState) -> tuple[float, Fl
     p is linear between points that are even in t = arccos x; the memory runs from the front edge x = 1 to the rear.
     """
     from scipy.fft import dst
-    from scipy.special import ive
 
-    alpha = np.minimum(modes.a * z, _LARGE)
-    coefficients = 2.0 * (ive(np.arange(1, _POINTS)[:, None], alpha) / ive(0, alpha)) @ state.X
-    coefficients[: state.q.size] = state.q
+    coefficients = _pressure_terms(modes, z, state, _POINTS - 1)
     p = np.concatenate([[0.0], 0.5 * dst(coefficients, type=1), [0.0]])
     t = np.arange(_POINTS + 1) * (math.pi / _POINTS)
     x, weights = np.cos(t), np.sin(t) * (math.pi / _POINTS)

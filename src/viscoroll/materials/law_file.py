@@ -59,6 +59,8 @@ def as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Datas
     if isinstance(law, LawAxis):
         return dataset_of(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
     if law.cover is not None:
+        cover: Any = law.material
+        cover.refuse_unknown_split("a file")
         rows = np.concatenate([law.given_coefficients[..., _NOT_N], np.moveaxis(law.cover.creep, 0, -1)], axis=-1)
         text = ("" if law.pair is None else f"{described(law.pair)}\n") + described(law.material)
         numbers = SimpleNamespace(coefficients=rows, **{n: getattr(law, n) for n in ("e0", "alpha", "T_ref")})

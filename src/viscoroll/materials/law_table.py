@@ -66,16 +66,10 @@ class LawTable:
     def coefficients(self) -> Floats:
         """(rows, 24 powers, 7 functions), the functions in the order of :data:`.law_build.FUNCTIONS`.
 
-        Raises
-        ------
-        ParameterError
-            Of a cover: N is not known, and files, C and FMU do not hold what else it needs.
+        Of a cover N is not known: its column is NaN.
         """
-        if self.cover is not None:
-            allowed = "a half-space: laws of covers have no N, and are not written to files, C or FMU"
-            raise ParameterError("material", f"{self.material!r:.60}", allowed)
         table = self.given_coefficients
-        if not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
+        if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
         return read_only(with_unsteady(table, self.e0, lambda z: by_modes(self.material, z).N))
 

@@ -46,7 +46,7 @@ class Pair:
     ------
     ParameterError
         What is no :class:`Material`, or two bodies that are both rigid; two bodies with a thickness, one in plane
-        stress, or one against a body that relaxes.
+        stress.
     """
 
     cylinder: Any
@@ -67,15 +67,11 @@ class Pair:
     def _refuse_covers(self) -> None:
         """Raise ParameterError for what the law of a cover does not hold of; see the class."""
         thick = [body for body in (self.cylinder, self.half_space) if getattr(body, "thickness", None) is not None]
-        other = self.half_space if self.covered == "cylinder" else self.cylinder
         if len(thick) > 1:
             allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
             raise ParameterError("thickness", "of both bodies", allowed)
         if self.plane != "strain":
             raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
-        if other.prony.alpha > 1.0:
-            found = "of a layer against a body that relaxes"
-            raise ParameterError("thickness", found, "left out, or the other body rigid or elastic")
 
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
@@ -161,9 +157,9 @@ class Pair:
         if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
             allowed = "one series, nu and part of the compliance where a body has a thickness: only l0 and it may vary"
             raise ParameterError(on, "of many materials", allowed)
-        part, series = float(np.max(parts)), layer.prony.slower(layer.T_ref / self.T_ref)
-        other_nu = other.nu if part < 1.0 else 0.5
-        return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, other_nu=other_nu)
+        part, (series, behind) = float(np.max(parts)), (b.prony.slower(b.T_ref / self.T_ref) for b in (layer, other))
+        more = {} if part == 1.0 else {"other_nu": other.nu, "other": behind}
+        return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:
