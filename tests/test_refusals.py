@@ -14,10 +14,10 @@ from drives import DMA, ON_DMA
 from refusals import refused
 from run_files import FILES
 from scipy import stats
-from viscoroll.app.identification.measurements_toml import read_measurements
 
 import viscoroll as vr
 from viscoroll import fmu
+from viscoroll.app.identification.measurements_toml import read_measurements
 from viscoroll.contact_law.validity.free_rolling import FreeRolling
 from viscoroll.contact_law.validity.steadiness import Steadiness
 from viscoroll.core import errors
