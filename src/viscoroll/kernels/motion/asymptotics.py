@@ -181,7 +181,7 @@ def is_coasting(state, regime, step_state, work):
 
 @kernel
 def _energies_of_decay(rate, inertia, torque_difference, work):
-    """Return what the kinetic energy goes into while V decays exponentially from V to 0, each divided by V^2/2.
+    """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the start.
 
     rate: float, rate of the decay per unit of tau.
     inertia: float, factor of V' in the equation of the decay, dimensionless.

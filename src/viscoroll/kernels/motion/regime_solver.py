@@ -114,9 +114,7 @@ def _end_at_V_zero(step, remaining, state, regime, work):
 def _find_crossed_event(step, remaining, regime, work):
     """Return the event whose function falls below 0 first on a solved step, and its position.
 
-    A prescribed V that is 0 at the end of its segment does not count: the next segment decides in which direction it
-        goes
-    on.
+    A prescribed V that is 0 at the end of its segment does not count: the next segment decides its direction.
 
     step: Step, the solved one.
     remaining: float, time in tau to the end of the segment.

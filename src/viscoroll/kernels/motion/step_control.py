@@ -44,8 +44,8 @@ _RELAXED_TIMES = 6.0
 #: Relative change of V in the step after the relaxation of d, divided by rtol^(1/8), as the interpolant has eight
 #: coefficients.  With 1 a motion takes up to 5 % more trial steps, with 16 up to 34 % more.
 _RELAXED_CHANGE = 4.0
-#: Largest ratio of successive step lengths by the error of the last step.  With 3 the trial steps of motions change by
-#: less than 1 %.
+#: Largest ratio of successive step lengths by the error of the last step.  With 3 or 12 the trial steps of motions
+#: change by less than 1 %.
 _MAX_GROWTH = 6.0
 #: Smallest ratio of successive step lengths by the error of the last step.
 _MAX_SHRINKAGE = 0.1
