@@ -16,8 +16,8 @@ from refusals import refused
 
 import viscoroll as vr
 from pipeline.evidence.prove import layer
-from viscoroll.materials.cover_rows import at_speed
-from viscoroll.materials.cover_solve import CoverModes, solve
+from viscoroll.materials.law.cover_rows import solve_at_speed
+from viscoroll.materials.law.cover_solve import CoverModes, solve
 
 ONE, THREE = vr.Prony([10.0], [1.0 / 11.0]), vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003])
 KAPPA, MU = 10.0, 0.3
@@ -52,9 +52,8 @@ def test_a_thick_cover_is_a_half_space(p):
 @pytest.mark.parametrize("cover", COVERS)
 def test_rows_are_the_solve(cover):
     """With twice as many terms of the pressure."""
-    modes = CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu)
     u = 10.0 ** np.linspace(-2.5, 3.0, 12)
-    truth = np.array([at_speed(modes, cover.thickness, each, orders=60) for each in u]).T
+    truth = np.array([solve_at_speed(cover, each, orders=60) for each in u]).T
     found = vr.contact(scene_on(cover), u / KAPPA, delta=0.0)
     assert close(found.lam, truth[0], rel=tol.COVER_ROWS)
     assert close(2.0 * KAPPA / MU * found.delta_star, truth[1], rel=tol.COVER_ROWS)

@@ -76,7 +76,7 @@ CONTINUITY_Q = 1e-15
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 
-# --- materials/law_axis.py (test_law_axis.py) ---
+# --- materials/law/alpha_axis.py (test_law_axis.py) ---
 #: M/V, eta/F and H/F^2 by the axis of alpha, relative; measured 4.9e-15.
 AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.

@@ -107,7 +107,7 @@ def contact(
     condition number, and the error of grip twice that.  The error of N is 2e-14 of its largest value
     (``tests/kernels/rows/test_unsteady.py``).
 
-    The law of one material is evaluated from polynomials of one variable (:mod:`.materials.law_table`), which are
+    The law of one material is evaluated from polynomials of one variable (:mod:`.materials.law.table`), which are
     computed at first use in some milliseconds and kept.  The result of a state does not depend on other states of the
     call.
 

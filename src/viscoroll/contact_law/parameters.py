@@ -16,8 +16,8 @@ from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
-from ..materials.law_grid import LawGrid
-from ..materials.law_table import LawTable, law_table
+from ..materials.law.grid import LawGrid
+from ..materials.law.table import LawTable, law_table
 from ..materials.prony import Prony
 from ..materials.prony_forms import HIGHEST_ALPHA
 

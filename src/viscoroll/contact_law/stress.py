@@ -13,9 +13,9 @@ from ..core.checks import broadcast_shape, check_array
 from ..core.errors import exactly_one_error
 from ..core.labels import strip_labels
 from ..core.results import Values
-from ..materials.bodies import one_series
-from ..materials.cover_solve import pressure
-from ..materials.law_modes import kernel_series
+from ..materials.bodies import total_series
+from ..materials.law.cover_pressure import pressure
+from ..materials.law.evaluate import series_record
 from .contact_table import evaluate_contact
 from .parameters import Parameters, Roller, resolve_model
 from .validity.model_warnings import warn_of_contact
@@ -123,8 +123,8 @@ def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats)
             continue
         material: Any = alpha if scene.series is None else scene.series
         if scene.material_array is not None:
-            material = one_series(scene.material_array[int(alpha[min(first, alpha.size - 1)])])
-        series, alphas = kernel_series(material)
+            material = total_series(scene.material_array[int(alpha[min(first, alpha.size - 1)])])
+        series, alphas = series_record(material)
         stress_loop(
             series, alphas, new_memory_weights(series), new_memory_weights(series), part, p[first:last], tau[first:last]
         )

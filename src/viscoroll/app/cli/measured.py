@@ -29,7 +29,7 @@ def show(arguments: Namespace) -> None:
     import pandas as pd
 
     from ...core.results import as_text
-    from ...materials.file import read_materials
+    from ...materials.material_toml import read_materials
 
     for section, material in read_materials(arguments.file).items():
         print(f"[{section}] {as_text(*material._summary())}\n")
@@ -76,7 +76,7 @@ def fit(arguments: Namespace) -> int:
       viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
     """
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
-    from ...materials.file import as_toml
+    from ...materials.material_toml import material_as_toml
 
     columns, units = _columns(arguments.column), arguments.units and tuple(arguments.units.split(","))
     record = vr.read_dma(
@@ -102,7 +102,7 @@ def fit(arguments: Namespace) -> int:
     if path is not None and path.suffix.lower() == ".nc":
         material.to_netcdf(path)
     elif path is not None:
-        write_text(path, as_toml(material))
+        write_text(path, material_as_toml(material))
     return 0
 
 

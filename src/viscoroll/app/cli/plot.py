@@ -59,7 +59,7 @@ def _figure_of_toml(path: str) -> Any:
 
     from ...core.sections import read_toml
     from ...io.config import SCENES, read_roller
-    from ...materials.file import read_materials
+    from ...materials.material_toml import read_materials
 
     if not read_toml(path).keys() & set(SCENES):
         return read_materials(path)["material"].plot()

@@ -142,7 +142,7 @@ def fmu(arguments: Namespace) -> None:
     """
     from ...core.sections import read_toml
     from ...io.config import SCENES, read_law_source, read_roller
-    from ...materials.law_store import is_law
+    from ...materials.law_file import is_law
 
     path = arguments.file
     content = {} if Path(path).suffix == ".nc" else read_toml(path)

@@ -20,9 +20,9 @@ from ...core.extras import import_extra
 from ...core.files import replace_file
 from ...cylinder import Cylinder
 from ...io import tables
-from ...materials.law_file import law_of
-from ...materials.law_store import content_of
-from ...materials.law_table import LawTable
+from ...materials.law.netcdf import parse_law
+from ...materials.law.table import LawTable
+from ...materials.law_file import dataset_content
 from .description import build_description, model_description
 from .variables import MODELS, RADIUS, Variable
 
@@ -73,7 +73,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     if version not in VERSIONS:
         raise ParameterError("version", version, "2 or 3, of FMI")
     law = tables.law(given)
-    table = law_of(content_of(law), path)
+    table = parse_law(dataset_content(law), path)
     if table.cover is not None and not MODELS[model].states:
         raise ParameterError("model", repr(model), "'Roller' for a cover, whose law holds at one load")
     l0 = _contact_length_of_cover(table)

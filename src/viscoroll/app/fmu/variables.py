@@ -119,7 +119,7 @@ ROLLER = Model(
 )  # fmt: skip
 #: Name of a model -> the model.
 MODELS = {"Roller": ROLLER, "ContactElement": ELEMENT}
-#: Unit -> the same in base units, as :func:`..core.scale.powers` reads it.
+#: Unit -> the same in base units, as :func:`..core.scale.dimension_powers` reads it.
 UNITS = {
     "m": "m", "s": "s", "kg": "kg", "m/s": "m s-1", "m/s2": "m s-2", "rad/s": "rad s-1", "N": "kg m s-2",
     "N.m": "kg m2 s-2", "Pa": "kg m-1 s-2", "1": "",

@@ -98,13 +98,14 @@ def _time_of_laws(run: Run) -> float:
     One law is computed, and its time multiplied.
     """
     from ...kernels.rows.thickness_axis import NODES
+    from ...materials.law.cover_rows import cover_rows
 
     cover = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene().cover
     if cover is None:
         return 0.0
     laws = NODES * np.unique(np.frexp(cover.thickness)[1]).size if cover.shape else 1
     start = time.perf_counter()
-    cover.of_thickness(np.max(cover.thickness)).rows()
+    cover_rows(cover.of_thickness(np.max(cover.thickness)))
     return laws * (time.perf_counter() - start)
 
 

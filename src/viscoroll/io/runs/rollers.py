@@ -17,8 +17,8 @@ from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
 from ...cylinder import Cylinder, contact_length, scene_of
-from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
+from ...materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
 from ..config import make_roller
@@ -119,8 +119,8 @@ def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Sol
     if isinstance(section, Material):
         return section, section
     first = _first(section)
-    typical = materials_of(path, {name: first})[name]
-    series = series_of(path, name, section) or typical.prony
+    typical = parse_materials(path, {name: first})[name]
+    series = parse_series(path, name, section) or typical.prony
     if (factors := _time_factors(path, name, section)) is not None:
         series = series.slower(factors)
     E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
@@ -157,7 +157,7 @@ def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats |
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None
-    shift = shifts_of(path, {name: _first(section)})[name]
+    shift = parse_shifts(path, {name: _first(section)})[name]
     return np.array([shift(temperature) for temperature in section["temperature"]])
 
 

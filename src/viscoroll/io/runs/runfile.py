@@ -34,7 +34,7 @@ import msgspec
 from ...core.array_types import Floats
 from ...core.errors import FileError, ParameterError, check_names
 from ...core.sections import read_toml, section_error
-from ...materials.file import as_toml, materials_of
+from ...materials.material_toml import material_as_toml, parse_materials
 from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
 from ...motion.drive import Drive
@@ -242,7 +242,7 @@ def read_run(path: str | PathLike[str]) -> Run:
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
             raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
-    materials = materials_of(path, medians)
+    materials = parse_materials(path, medians)
     # a material without uncertain numbers is read once
     certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
     inputs = correlated(path, replace(inputs, content=inputs.content | certain))
@@ -254,7 +254,7 @@ def read_run(path: str | PathLike[str]) -> Run:
         check_names("fields", settings.fields, FIELDS, "a field")
         check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
-    digest = _digest(settings, times, content, [as_toml(material) for material in certain.values()], inputs)
+    digest = _digest(settings, times, content, [material_as_toml(material) for material in certain.values()], inputs)
     run = Run(path, text, settings, inputs, times, digest)
     if not settings.summaries:
         raise section_error(path, "run", "summaries", "summaries = []: must name at least one quantity")

@@ -14,7 +14,7 @@ from ...core.errors import FileError
 from ...core.extras import import_extra
 from ...core.scale import si_unit
 from ...core.sections import check_keys, section_error, suggestion
-from ...materials.file import SECTIONS
+from ...materials.material_toml import SECTIONS
 from ..config import SCHEMA
 from ..measurements import column_in_unit, named_table
 from .inputs import Distribution, Input, Inputs

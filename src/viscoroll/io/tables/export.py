@@ -17,8 +17,8 @@ from ...core.array_types import Floats
 from ...core.errors import ParameterError
 from ...core.files import replace_file, write_text
 from ...core.symbols import PAPER
-from ...materials.law_file import law_of
-from ...materials.law_store import CHECKSUM, content_of
+from ...materials.law.netcdf import parse_law
+from ...materials.law_file import CHECKSUM, dataset_content
 from . import schema, store
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
-    table = law_of(content_of(dataset), path)
+    table = parse_law(dataset_content(dataset), path)
     front = table.record.rows[:8]
     arrays = {f"{name}_coefficients": table.coefficients}
     fields, of_cover = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays], ["0", "{0.0}"]

@@ -187,15 +187,15 @@ def _energies_of_decay(rate, inertia, torque_difference, work):
     inertia: float, factor of V' in the equation of the decay, dimensionless.
     torque_difference: float, inertia times Q/V, dimensionless.
     work: Workspace, of the motion.
-    Returns (work of the force, work of the torque, loss in the brake, in slip, in rolling), dimensionless.
+    Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the brake), dimensionless.
     """
     half_space, cylinder, force, torque = low_speed_limits(work)
     delta_0, force_work, torque_work = rest_limits(work.scene)[1], force / rate, torque / rate
     omega_over_V = 1.0 + delta_0
     if is_cover(by_value(work.scene.law).cover_rows):
         slip, rolling = delta_0 * torque_difference / (inertia * rate), (half_space + cylinder * omega_over_V) / rate
-        return force_work, torque_work * omega_over_V, 0.0, slip, rolling
-    return force_work, torque_work, 0.0, 0.0, 1.0 + work.scene.j + force_work + torque_work
+        return slip, rolling, force_work, torque_work * omega_over_V, 0.0
+    return 0.0, 1.0 + work.scene.j + force_work + torque_work, force_work, torque_work, 0.0
 
 
 @kernel

@@ -110,30 +110,49 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
 
 
 @inline_kernel
+def _eliminate(i, matrix):
+    """Do one step of the inversion of a Newton matrix in place, by Gauss and Jordan with the pivot on the diagonal.
+
+    Only whole vectors are stored: a vector load behind the store of a single number into it would wait for that store.
+
+    i: int, the step, row and column of its pivot; 1 ... N, as row and column of node 0 are left out.
+    matrix: pointer to ROW_LENGTH^2 numbers, column by column.
+    """
+    column = ROW_LENGTH * i
+    pivot = broadcast(1.0 / matrix[column + i])
+    off_low, off_high = load(_OFF_DIAGONAL, column), load(_OFF_DIAGONAL, column + LANES)
+    low = fma4(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
+    high = fma4(load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot)
+    for k in range(1, ROW_LENGTH):
+        if k != i:
+            factor = broadcast(-matrix[ROW_LENGTH * k + i])
+            store(matrix, ROW_LENGTH * k, fma4(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
+            store(matrix, ROW_LENGTH * k + LANES, fma4(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high))
+    store(matrix, column, low)
+    store(matrix, column + LANES, high)
+
+
+@inline_kernel
 def invert_matrix(matrix):
     """Invert a Newton matrix in place, by Gauss-Jordan elimination without pivoting.
 
-    Row and column of node 0 are left out.  Where a small pivot costs digits, Newton's iteration does not converge, and
-    the step is repeated with another length. Only whole vectors are stored: a vector load behind the store of a single
-    number into it would wait for that store.
+    Where a small pivot costs digits, Newton's iteration does not converge, and the step is repeated shorter.
 
     matrix: pointer to ROW_LENGTH^2 numbers, column by column.
     """
     for i in range(1, ROW_LENGTH):
-        column = ROW_LENGTH * i
-        pivot = broadcast(1.0 / matrix[column + i])
-        off_low, off_high = load(_OFF_DIAGONAL, column), load(_OFF_DIAGONAL, column + LANES)
-        low = fma4(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
-        high = fma4(load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot)
-        for k in range(1, ROW_LENGTH):
-            if k != i:
-                factor = broadcast(-matrix[ROW_LENGTH * k + i])
-                store(matrix, ROW_LENGTH * k, fma4(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
-                store(
-                    matrix, ROW_LENGTH * k + LANES, fma4(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high)
-                )
-        store(matrix, column, low)
-        store(matrix, column + LANES, high)
+        _eliminate(i, matrix)
+
+
+@inline_kernel
+def invert_two_matrices(first, second):
+    """Invert two Newton matrices in place, step by step in turn: the processor works on one while the other waits.
+
+    first, second: pointers to ROW_LENGTH^2 numbers each, column by column, as for :func:`invert_matrix`.
+    """
+    for i in range(1, ROW_LENGTH):
+        _eliminate(i, first)
+        _eliminate(i, second)
 
 
 @inline_kernel

@@ -160,6 +160,8 @@ def store_drive(step, work):
     work: Workspace; the rows from ROW_DRIVE on are written.
     """
     nodes = work.nodes
+    if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.
+        return
     values = evaluate_drive(step.tau, step.segment, work.drive)
     changes = not is_constant(step.segment, work.drive)
     for i in range(N + 1):

@@ -6,19 +6,23 @@ losses in the brake 10, in slip 11, in rolling 12.
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
 from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
-from .drive import evaluate_load
+from .drive import evaluate_load, load_at_node
 from .law import omega_and_delta
-from .records import DIRECTION_REVERSED, N_QUADRATURES, REGIME_AT_REST, StepState
+from .records import DIRECTION_REVERSED, N_FREE_QUADRATURES, N_QUADRATURES, REGIME_AT_REST, StepState
 from .regimes import regime_code
-from .rhs import evaluate_rhs, required_forces, rhs_and_forces_at_node
+from .rhs import evaluate_rhs, evaluate_rhs_inline, required_forces
 from .workspace import (
     N_RECORDED,
     N_SWITCHES,
     QUADRATURE_TOTALS,
     ROW_DENSE_QUADRATURES,
     ROW_INTEGRANDS,
+    ROW_OMEGA_OR_D,
     ROW_V,
     dense_position,
     dense_state,
@@ -33,6 +37,8 @@ OUT_X = 2
 OUT_FORCE = 6
 #: Output row of the first energy; four others follow.
 OUT_WORK = 8
+#: Output row of each quadrature.
+_OUT_QUADRATURES = np.array([OUT_X, OUT_X + 1, OUT_WORK + 3, OUT_WORK + 4, OUT_WORK, OUT_WORK + 1, OUT_WORK + 2])
 
 
 @kernel
@@ -68,11 +74,11 @@ def write_quadrature(column, n, increase, work):
     """Write one quadrature to one output column: its total up to the last accepted step plus an increase.
 
     column: int, index of the output time.
-    n: int, the quadrature: 0 distance, 1 angle, 2 ... 6 energies.
+    n: int, the quadrature: 0 distance, 1 angle, 2 ... 6 energies in the order of :mod:`records`.
     increase: float, since the last accepted step, dimensionless.
     work: Workspace, with the totals; its outputs are written.
     """
-    work.outputs[OUT_X + n if n < 2 else OUT_WORK + n - 2, column] = work.nodes[QUADRATURE_TOTALS + n] + increase
+    work.outputs[_OUT_QUADRATURES[n], column] = work.nodes[QUADRATURE_TOTALS + n] + increase
 
 
 @kernel
@@ -176,13 +182,18 @@ def _evaluate_integrands(regime, work):
     regime: Regime, that of the step.
     work: Workspace, with unknowns and drive at the nodes; rows from ROW_INTEGRANDS on are written.
     """
-    nodes, direction_over_gamma = work.nodes, regime.direction / work.scene.gamma
+    nodes, values = work.nodes, by_value(work)
+    direction_over_gamma = regime.direction / values.scene.gamma
     for i in range(N + 1):
-        rates, (force, torque, brake) = rhs_and_forces_at_node(i, regime, work)
-        V, omega = nodes[ROW_V + i], rates.omega
+        load, V = load_at_node(i, regime, values), nodes[ROW_V + i]
+        # The right-hand side is inlined: the compiler leaves out its derivatives, half of the work.
+        rates = evaluate_rhs_inline(V, nodes[ROW_OMEGA_OR_D + i], load, regime, values.scene)
+        omega = rates.omega
+        force, torque, brake = required_forces(V, omega, rates, load, regime, values.scene.j)
         integrands = (
-            direction_over_gamma * V, direction_over_gamma * omega, force * V, torque * omega, -brake * omega,
+            direction_over_gamma * V, direction_over_gamma * omega,
             (omega - V) * rates.Q, V * rates.M_half_space + omega * rates.M_cylinder,
+            force * V, torque * omega, -brake * omega,
         )  # fmt: skip
         for n in range(N_QUADRATURES):
             nodes[ROW_INTEGRANDS + ROW_LENGTH * n + i] = integrands[n]
@@ -219,7 +230,8 @@ def accept_step(end, v, step, regime, step_state, work):
     tau, column = work.output_tau, step_state.next_output
     is_last = end == last_output_tau(work)
     due = column < tau.size and (tau[column] < end or is_last)
-    n_quadratures = N_QUADRATURES if work.with_quadratures else 0
+    n_quadratures = N_FREE_QUADRATURES if step.undriven else N_QUADRATURES
+    n_quadratures = n_quadratures if work.with_quadratures else 0
     if n_quadratures > 0:
         _evaluate_integrands(regime, work)
     if due or v < 2.0:
@@ -228,8 +240,9 @@ def accept_step(end, v, step, regime, step_state, work):
     while column < tau.size and (tau[column] < end or is_last):
         v_output = min(dense_position(tau[column], step), 2.0)
         _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
-        for n in range(n_quadratures):
-            write_quadrature(column, n, _quadrature_at(n, v_output, step, work.nodes), work)
+        for n in range(N_QUADRATURES if work.with_quadratures else 0):
+            increase = _quadrature_at(n, v_output, step, work.nodes) if n < n_quadratures else 0.0
+            write_quadrature(column, n, increase, work)
         column += 1
     if step_state.n_accepted < work.step_ends.size:
         work.step_ends[step_state.n_accepted] = end / work.scene.gamma

@@ -268,5 +268,9 @@ N_DRIVE_FUNCTIONS = 5
 #: Number of functions that are stored at the nodes of a step: all but the prescribed speed, which is evaluated at
 #: single times.
 N_NODE_FUNCTIONS = 4
-#: Number of quadratures: distance, angle, work of force and torque, losses in brake, slip and rolling.
+#: Quadrature: loss in rolling.
+ROLLING_LOSS = 3
+#: Number of quadratures that a free motion has: distance, angle, losses in slip and in rolling.
+N_FREE_QUADRATURES = 4
+#: Number of quadratures: those, then work of force and of torque and the loss in the brake, 0 unless something drives.
 N_QUADRATURES = 7
