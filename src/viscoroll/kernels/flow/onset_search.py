@@ -27,7 +27,7 @@ _HIGHEST_U = 2.0**layout.LAYER_HIGH * (1.0 - 2.0**-50)
 
 @kernel
 def _initial_u(size, slow, turns):
-    """Initial guess of the layer coordinate u at which |delta| has fallen to a given value, by Carter's elastic law.
+    """Return the initial guess of the layer coordinate u at which |delta| has fallen to a given value, by Carter's elastic law.
 
     size : |delta|/delta_star of the start, negative beyond delta = 0.
     slow : the same on the slow manifold at the speed of the start, with the same sign convention.
@@ -58,7 +58,10 @@ def _clamp(x, low, high):
 def find_onset(V, delta, edge, flow):
     """Find the onset of partial slip from which a state inside the stick zone would have come.
 
-    V : speed of the axis, > 0.  delta : creepage.  edge : delta_star at V.  flow : the map (:class:`.records.Flow`).
+    V : speed of the axis, > 0.
+    delta : creepage.
+    edge : delta_star at V.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the
     slow manifold E is infinite and the speed is that of the state.  Newton's iteration in ln V at onset and in u,

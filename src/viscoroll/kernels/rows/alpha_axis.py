@@ -53,7 +53,14 @@ _FAST_RATIO = math.log(2.0) - float(np.euler_gamma)
 
 @kernel(allocates=True)
 def select_alpha(n, source):
-    """Select the alpha of state ``n``: write the head of rows and marks; ``source``: pointer to a SOURCE record."""
+    """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
+    parts.
+
+    n : number of the state.  source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+
+    Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
+    selected already.
+    """
     source = record_at(source)
     alpha = element(floats_at(source.alpha, source.state_count), n)
     rows = floats_at(source.rows, ROW_SIZE)
@@ -80,10 +87,12 @@ def select_alpha(n, source):
 
 @kernel(allocates=True)
 def make_part(start, source):
-    """Make a part of a row of the selected alpha, except the moments of the bodies, which are alike.
+    """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
 
-    start : position in the rows.  source : pointer to a SOURCE record.
-    At alpha = 1, where a sum would round, the closed form is written.
+    start : position of the part in the rows.
+    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+
+    The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.
     """
     source = record_at(source)
     rows = floats_at(source.rows, start + 2 * PART_SIZE)
@@ -104,10 +113,14 @@ def make_part(start, source):
 
 @inline_kernel
 def _sum_axis(axis, first, terms, c, rows, to):
-    """Write 24 numbers of a row: the sum over T_j(s), in which every third and fourth number is multiplied by ``c``.
+    """Write 24 coefficients of a row: sums over the Chebyshev polynomials T_j(s) of alpha.
 
-    axis : numbers of the octave.  first : where those of the part begin.  terms : number of T_j.
-    rows : read and written, from ``to`` on.
+    axis : Chebyshev coefficients of the octave of alpha, a vector.
+    first : position in ``axis`` where those of the part begin.
+    terms : number of polynomials T_j.
+    c : factor of every third and fourth coefficient, (alpha - 1)/alpha.
+    rows : read (values T_j(s)) and written.
+    to : position in ``rows`` of the first coefficient that is written.
     """
     sum_of_rows(axis, first, terms, _CHEBYSHEV, to, rows)
     for k in range(0, PART_SIZE, LANES):
