@@ -73,6 +73,7 @@ class Material(FromPrograms):
     temperature: float | None = None
 
     def __post_init__(self) -> None:
+        """Convert the fields to numbers in SI units and check them; raises ParameterError."""
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
         if isinstance(self.E, float | np.floating) and self.E == math.inf:

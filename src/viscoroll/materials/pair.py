@@ -60,6 +60,7 @@ class Pair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
+        """Check the bodies, and what a layer of finite thickness allows; raises ParameterError."""
         for name in ("cylinder", "base"):
             body = getattr(self, name)
             if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
@@ -148,7 +149,8 @@ class Pair:
     def cover(self, l0: Any) -> Cover:
         """Return the layer of finite thickness and its counterpart as a dimensionless :class:`Cover`.
 
-        Parameters ----------
+        Parameters
+        ----------
         l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array for many
         covers.
 

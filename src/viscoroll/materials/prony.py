@@ -285,6 +285,7 @@ class Prony(OneOrMany):
         return self.by_creep, self._strengths.shape, self._strengths.tobytes(), self._times.tobytes(), alpha
 
     def __repr__(self) -> str:
+        """Return the call that makes the series or, of many materials, their number and form."""
         if self.shape:
             form = "creep" if self.by_creep else "relaxation"
             return f"<{len(self)} series of {self._strengths.shape[-1]} modes, by {form}>"

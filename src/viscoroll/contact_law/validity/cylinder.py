@@ -190,7 +190,7 @@ class BodyData:
 
 
 def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
-    """Say whether speeds leave a band of |V|; rest is passed over, since M = 0 there.
+    """Return whether speeds leave a band of |V|; speeds of 0 are allowed, since M = 0 there.
 
     extent: (smallest, largest) of the speeds, signed.
     band: (lowest, highest) |V|, in the same unit.

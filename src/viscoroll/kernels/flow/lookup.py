@@ -63,13 +63,14 @@ _GAUSS_W = gauss(5)[1]
 
 @inline_kernel
 def full_slip_integrals(V, level, flow):
-    """Return time and distance of sliding from rest to V in the mirrored frame.
+    """Return time and distance of sliding from rest to V, and delta_star |V|, in the mirrored frame (omega > V).
 
     V : speed of the axis.
-    level : SPEEDS, PATH (and distance) or LOSS (and slip loss); X is computed from PATH on.
+    level : SPEEDS, PATH (and distance) or LOSS (and slip loss).
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
-    Returns (T with the sign of V, X, delta_star |V|).
+    Returns (T, X, limit): time gamma t with the sign of V; distance, computed from level PATH on, else 0; delta_star
+    |V|.
     """
     speed = abs(V)
     row, t, _ = locate_octave(flow.kappa * speed, layout.LOW)
@@ -132,12 +133,12 @@ def read_onset(I, level, flow):
 
 @inline_kernel
 def _locate_on_manifold(slow_log):
-    """Locate a slow logarithm in the table of the slow manifold.
+    """Return the position of a slow logarithm in the table of the slow manifold.
 
-    slow_log : slow logarithm of V.
+    slow_log : slow logarithm of V, the coordinate along the slow manifold (:mod:`.layout`).
 
-    Returns (position of the row, t in [-1, 1), factor): below the table all values fall as exp(slow_log), by the
-    factor.
+    Returns (position, t, factor): position of the row in the map's vector; argument in [-1, 1) of its polynomials;
+    factor of the values, 1 inside the table.  Below the table all values fall as exp(slow_log).
     """
     if slow_log >= 0.0:
         row, t, _ = locate_octave(1.0 + slow_log, 0)

@@ -85,7 +85,8 @@ def friction_limit(attributes: Any) -> float:
 def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
     """Read the law of a grid from a netCDF file of any program.
 
-    Parameters ----------
+    Parameters
+    ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
     M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
     attributes: mu, and where V has a unit R in m and the load in N/m.
