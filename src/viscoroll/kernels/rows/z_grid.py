@@ -190,14 +190,15 @@ def select_series(n, source):
 
 
 @kernel(allocates=True)
-def make_part(start, source):
+def make_part(number, source):
     """Compute a part of a row of the selected material, and write it into the rows of the law.
 
-    start : position of the part in the rows.
+    number : number of the part, its index in the marks.
     source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.
     """
     source = record_at(source)
-    marks = integers_at(source.marks, start // PART_SIZE + 1)
+    marks = integers_at(source.marks, number + 1)
+    start = PART_SIZE * number
     nodes = source.node_count
     modes = marks[_MODES]
     lowest = NODES_PER_OCTAVE * (2 - marks[E0]) + 2 * POINT_COUNT + LANES - nodes
@@ -211,7 +212,7 @@ def make_part(start, source):
         marks[E0], marks[VERSION], lowest - lowest % LANES,
     )  # fmt: skip
     _make_functions(start % ROW_SIZE, start // ROW_SIZE - 1, grid)
-    marks[start // PART_SIZE] = marks[VERSION]
+    marks[number] = marks[VERSION]
 
 
 @kernel
