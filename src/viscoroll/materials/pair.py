@@ -73,8 +73,7 @@ class Pair:
 
     def _refuse_covers(self) -> None:
         """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
-        thick = [body for body in (self.cylinder, self.half_space) if getattr(body, "thickness", None) is not None]
-        if len(thick) > 1:
+        if self.cylinder.thickness is not None and self.half_space.thickness is not None:
             allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
             raise ParameterError("thickness", "of both bodies", allowed)
         if self.plane != "strain":
@@ -83,9 +82,9 @@ class Pair:
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
         """Name of the body that is a layer of finite thickness, or None."""
-        if getattr(self.cylinder, "thickness", None) is not None:
+        if self.cylinder.thickness is not None:
             return "cylinder"
-        return "base" if getattr(self.half_space, "thickness", None) is not None else None
+        return "base" if self.half_space.thickness is not None else None
 
     @property
     def half_space(self) -> Any:

@@ -173,7 +173,7 @@ class BodyData:
         Returns the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
         """
         if density is not None:
-            density = check_number("density", density, unit=SI, low=0.0, strict=True)
+            density = check_number("density", density, unit=SI, above=0.0)
         fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
         pair, length = self.pair, lam * self.l0
         kind = (
