@@ -152,7 +152,8 @@ class SeriesFit(Result):
         temperature (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer
         with a shorter transit time: modes faster than the transit act there as far as they go.
 
-        Parameters ----------
+        Parameters
+        ----------
         cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any
         temperature.
         V : speed of the axis, m/s, any sign.
