@@ -113,7 +113,7 @@ class Cylinder(Methods):
         for name in numbers:
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
             called = "load" if name == "pressed" else name
-            values[name] = read_only(check_array(called, values[name], unit=SI, low=low, strict=True, high=high))
+            values[name] = read_only(check_array(called, values[name], unit=SI, above=low, high=high))
         broadcast_shape(**{name: np.asarray(values[name]) for name in numbers})
         check_choice("plane", plane, "strain", "stress")
         for name, value in values.items():

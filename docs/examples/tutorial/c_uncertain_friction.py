@@ -42,8 +42,14 @@ left.plot(draw["mu"][:3000], sliding[:3000], ".", markersize=2)
 left.set(xlabel=r"coefficient of friction $\mu$", ylabel="duration of sliding, s")
 right.plot(draw["slope"][:3000], late[:3000], ".", markersize=2)
 right.set(xlabel="slope, degrees", ylabel="speed after 120 s, m/s")
-print("duration of sliding, s (5 %, 50 %, 95 %):", np.quantile(sliding, [0.05, 0.5, 0.95]).round(3))
-print("speed after 120 s, m/s (5 %, 50 %, 95 %): ", np.quantile(late, [0.05, 0.5, 0.95]).round(3))
+print(
+    "duration of sliding, s (5 %, 50 %, 95 %):",
+    np.quantile(sliding, [0.05, 0.5, 0.95]).round(3),
+)
+print(
+    "speed after 120 s, m/s (5 %, 50 %, 95 %): ",
+    np.quantile(late, [0.05, 0.5, 0.95]).round(3),
+)
 
 # %%
 # Friction determines only the duration of sliding, some tenths of a second.  The slope determines

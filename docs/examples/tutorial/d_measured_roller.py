@@ -58,7 +58,9 @@ with_bearing = fit.predict(vr.Resistance(fine)).M
 axes.fill_between(fine, with_bearing.low, with_bearing.high, color="0.8", label="95 % band")
 axes.semilogx(fine, with_bearing.value, "C0", label="fit")
 axes.semilogx(fine, bare, "C0--", label="fit, without bearing")
-axes.semilogx(fine, wrong.predict(vr.Resistance(fine)).M.value, "C1:", label="model without bearing")
+axes.semilogx(
+    fine, wrong.predict(vr.Resistance(fine)).M.value, "C1:", label="model without bearing"
+)
 axes.set(xlabel="speed, m/s", ylabel="moment, N m/m", ylim=(0.0, 1.3))
 axes.legend(frameon=False)
 

@@ -82,6 +82,18 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
 
 
+def check_one_given(**values: Any) -> str:
+    """Return the name of that one of two parameters which is given; raises ParameterError for none and for both.
+
+    values: both parameters by name, None where one is not given.
+    """
+    given = [name for name, value in values.items() if value is not None]
+    if len(given) != 1:
+        first, second = values
+        raise exactly_one_error(first, second, both=bool(given))
+    return given[0]
+
+
 def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
     """Return the error of a parameter whose value is not a known name.
 

@@ -175,12 +175,26 @@ class Values(Result):
         labels: Labels | None = None,
         about: dict[str, Any] | None = None,
     ) -> None:
+        """Keep the fields of a result, with what is needed for tables and figures of it.
+
+        values: name -> number or array of the field.
+        given: name -> argument by which the call varied, for coordinates.
+        units: name -> unit, where it is not that of the field's name.
+        title: first line of the summary.
+        si: whether values are in SI units.
+        labels: labels of the caller's arrays, put onto the fields; None for plain arrays.
+        about: attributes of the dataset.
+        """
         self._about = about or {}
         self._values = values if labels is None else {name: labels.apply(name, each) for name, each in values.items()}
         self._given, self._units, self._labels = given or {}, units or {}, labels
         self._title, self._si = title + ", in SI units" * si, si
 
     def __getattr__(self, name: str) -> Any:
+        """Return the field of a name; AttributeError names the fields that were computed.
+
+        name: of a field.
+        """
         if name.startswith("_"):
             raise AttributeError(name)
         try:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ..core.array_types import Floats
 from ..core.checks import check_array, check_integer, check_number
-from ..core.errors import ParameterError, exactly_one_error, unknown_name_error
+from ..core.errors import ParameterError, check_one_given, unknown_name_error
 
 __all__ = ["Sample", "sample"]
 
@@ -83,8 +83,7 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
     strata of every quantity, "sobol" if n is a power of two (``tests/test_sampling.py``).
     """
-    if (seed is None) == (rng is None):
-        raise exactly_one_error("seed", "rng", both=rng is not None)
+    check_one_given(seed=seed, rng=rng)
     if seed is None:
         seed = int(np.random.default_rng(rng).integers(2**63))
     n, seed = check_integer("n", n, 1, 10**12), check_integer("seed", seed, 0, 2**63 - 1)

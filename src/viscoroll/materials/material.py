@@ -73,6 +73,7 @@ class Material(FromPrograms):
     temperature: float | None = None
 
     def __post_init__(self) -> None:
+        """Convert the fields to numbers in SI units and check them; raises ParameterError."""
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
@@ -115,8 +116,8 @@ class Material(FromPrograms):
         >>> vr.Material.sls(1e6, 0.5, T_epsilon=0.1, T_sigma=0.02).instant
         5000000.0
         """
-        T_epsilon = check_number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
-        T_sigma = check_number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
+        T_epsilon = check_number("T_epsilon", T_epsilon, unit=SI, above=0.0)
+        T_sigma = check_number("T_sigma", T_sigma, unit=SI, above=0.0)
         refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
         prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()

@@ -77,7 +77,7 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = 0.0 if rest is None else check_number("rest", rest, low=0.0, strict=True)
+    threshold = 0.0 if rest is None else check_number("rest", rest, above=0.0)
     return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 

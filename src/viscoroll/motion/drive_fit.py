@@ -207,7 +207,7 @@ def fit_callable(
     """
     samples = SAMPLES
     if resolve is not None:
-        spacing = check_number("resolve", resolve, low=0.0, strict=True)
+        spacing = check_number("resolve", resolve, above=0.0)
         if spacing * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise ParameterError("resolve", spacing, allowed)

@@ -42,7 +42,9 @@ for axes, scene, title in zip(
         )
         axes.plot(s.V[s.stable], s.M[s.stable], "o", color="C0")
         axes.plot(s.V[~s.stable], s.M[~s.stable], "o", color="C0", mfc="white")
-    axes.set(xlabel=r"speed $V\,T/R$", title=title, xlim=(V[0], 2.0 * V[-1]), ylim=(0.0, None))
+    axes.set(
+        xlabel=r"speed $V\,T/R$", title=title, xlim=(V[0], 2.0 * V[-1]), ylim=(0.0, None)
+    )
     axes.xaxis.set_minor_formatter(NullFormatter())
 panels[0].set_ylabel(r"$M/(PR)$; $\tan(\mathrm{slope})$")
 figure.suptitle(

@@ -38,7 +38,10 @@ left.legend(frameon=False, fontsize="small")
 
 # right: gamma M dt = -(1 + j + gamma N) dV from 1 m/s on, without N and with it
 start = np.searchsorted(V, 1.0)
-for inertia, style, name in ((0.0, "-", "quasi-steady law"), (1.0, "k--", "with the correction N")):
+for inertia, style, name in (
+    (0.0, "-", "quasi-steady law"),
+    (1.0, "k--", "with the correction N"),
+):
     rate = (1.0 + inertia * unsteady) * (1.0 + scene.j) / (scene.gamma * c.M)
     t = cumulative_trapezoid(rate[:start], V[:start] / roller.scale["V"], initial=0.0)
     fast = V[:start] > roller.validity(1.0).steady.ten_percent.speed

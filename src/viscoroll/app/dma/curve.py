@@ -158,7 +158,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    values = [check_array(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
+    values = [check_array(name, given, unit=UNITS[name], above=0.0) for name, given in columns.items()]
     first = next(iter(columns))
     for name, column in zip(columns, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:

@@ -214,7 +214,7 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
     Returns (the data that were fitted, the fields of a fit that are of its data and its series, the root mean square
     of the relative errors of each modulus).
     """
-    target = check_number("misfit", misfit, low=0.0, strict=True)
+    target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
     (low, high), data = curve.band, thinned(curve)
     if high > MOST_SPREAD * low:

@@ -89,9 +89,7 @@ def master_curve(
         Curves so flat that their overlap does not fix the shift; temperatures that look like kelvin.
     """
     point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
-    whole = [
-        check_array(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)
-    ]
+    whole = [check_array(name, column, above=0.0) for name, column in zip(Curve._fields, columns, strict=True)]
     sets = sets_of(point_temperatures, first)
     temperatures = sets.temperature
     check_celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])

@@ -103,7 +103,7 @@ class Identification(Result):
         """
         from scipy import stats
 
-        level = check_number("level", level, low=0.0, strict=True, high=0.9999)
+        level = check_number("level", level, above=0.0, high=0.9999)
         estimated = any(one.estimated for one in self._problem.columns)
         return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
 

@@ -63,7 +63,7 @@ class Record:
         arrays = {name: np.atleast_1d(check_array(self.label(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
             label = f"sigma of {name}"
-            arrays[label] = check_array(self.label(label), value, unit=self.unit(name), low=0.0, strict=True)
+            arrays[label] = check_array(self.label(label), value, unit=self.unit(name), above=0.0)
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
             raise ParameterError(self.label(self.QUANTITIES[0]), f"of shape {shape}", "a value a place")
@@ -75,7 +75,7 @@ class Record:
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
             if value is not None and not (name == "omega0" and isinstance(value, str) and value == ROLLING):
-                vars(self)[name] = check_number(self.label(name), value, unit=self.unit(name), low=low, strict=True)
+                vars(self)[name] = check_number(self.label(name), value, unit=self.unit(name), above=low)
 
     @staticmethod
     def unit(name: str) -> str:

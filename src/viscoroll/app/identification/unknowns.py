@@ -63,11 +63,8 @@ class Unknown(NamedTuple):
         :func:`.core.checks.check_array`.
         """
         kind = name.split(":")[0]
-        return {
-            "unit": si_unit(kind.removeprefix(_PREFIX["base"])),
-            "low": _LINEAR.get(kind, 0.0),
-            "strict": kind not in _LINEAR,
-        }
+        bound = {"low": _LINEAR[kind]} if kind in _LINEAR else {"above": 0.0}
+        return {"unit": si_unit(kind.removeprefix(_PREFIX["base"]))} | bound
 
     def to_u(self, value: Any) -> Any:
         """Return the coordinate of a value."""
@@ -130,7 +127,7 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     if prior is None:
         return one
     mean, sd = _pair("prior", name, prior)
-    sd = check_number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
+    sd = check_number(f"standard deviation of prior {name}", sd, above=0.0)
     return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
 
 

@@ -127,9 +127,9 @@ def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Sol
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical, typical
     if thickness is not None:
-        thickness = check_array("thickness", thickness, low=0.0, strict=True)
-    E = check_array("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
-    return typical, Solid(E, check_array("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref, thickness)
+        thickness = check_array("thickness", thickness, above=0.0)
+    E = check_array("E", E, above=0.0) if np.ndim(E) else typical.E
+    return typical, Solid(E, check_array("nu", nu, above=-1.0, high=0.5), series, typical.T_ref, thickness)
 
 
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:

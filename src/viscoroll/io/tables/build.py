@@ -92,7 +92,7 @@ def build(
 
     what = _roller_of(what)
     si = isinstance(what, Cylinder)
-    axes = {"V": increasing("V", V, unit=what.scale, low=0.0, strict=True), "delta": increasing("delta", delta)}
+    axes = {"V": increasing("V", V, unit=what.scale, above=0.0), "delta": increasing("delta", delta)}
     if alpha is not None:
         if isinstance(what, Cylinder) or what.material is not None:
             raise ParameterError("alpha", "given", "left out: a material determines alpha")

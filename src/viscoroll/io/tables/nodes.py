@@ -49,7 +49,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     array([0.01, 0.1 , 1.  ])
     """
     check_choice("spacing", spacing, "linear", "log")
-    low = check_number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
+    low = check_number("low", low, above=0.0 if spacing == "log" else -np.inf)
     high = check_number("high", high)
     if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
@@ -89,7 +89,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
         raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
     roller: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
-    speeds = increasing("V", V, low=0.0, strict=True)
+    speeds = increasing("V", V, above=0.0)
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
     star = np.sort(np.ravel(roller.contact(speeds, delta=0.0, fields="delta_star").delta_star))
     creep = np.linspace(0.0, _END_RATIO * star[-1], _DENSITY_POINTS)

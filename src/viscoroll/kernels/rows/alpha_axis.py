@@ -70,7 +70,14 @@ _load_block = make_load(_BLOCK_VECTORS)
 
 @kernel(allocates=True)
 def select_alpha(n, source):
-    """Select the alpha of state ``n``: write the head of rows and marks; ``source``: pointer to a SOURCE record."""
+    """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
+    parts.
+
+    n : number of the state.  source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+
+    Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
+    selected already.
+    """
     source = record_at(source)
     alpha = element(floats_at(source.alpha, source.state_count), n)
     rows = floats_at(source.rows, ROW_SIZE)
@@ -98,10 +105,12 @@ def select_alpha(n, source):
 
 @kernel(allocates=True)
 def make_part(number, source):
-    """Make a part of a row of the selected alpha, except the moments of the bodies, which are alike.
+    """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
 
-    number : of the part, its place among the marks.  source : pointer to a SOURCE record.
-    At alpha = 1, where a sum would round, the closed form is written.
+    number : number of the part, its index in the marks.
+    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+
+    The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.
     """
     source = record_at(source)
     start = PART_SIZE * number
@@ -146,12 +155,15 @@ def make_part(number, source):
 
 @inline_kernel
 def _sum_block(axis, first, groups, s, factor, rows, to):
-    """Write twelve numbers of a row: the sum of groups, cubic polynomials in s times T_4g(s).
+    """Write twelve coefficients of a row: the sum of groups, cubic polynomials in s times T_4g(s).
 
-    axis, first : numbers of the octave, and where those of the block begin, the group of the highest degree first.
-    groups : how many, a literal number: loops of a length that varies cost more than they save.
-    s : s, T_4(s), T_8(s) and T_12(s).  factor : vector by which every vector is multiplied.
-    rows : written, from ``to`` on.
+    axis : coefficients of the terms in s for the octave of alpha, a vector.
+    first : position in ``axis`` where those of the block begin, the group of the highest degree first.
+    groups : number of groups, a literal number: loops of a length that varies cost more than they save.
+    s : s, T_4(s), T_8(s) and T_12(s); s = 2 log2(alpha/2^N) - 1.
+    factor : vector by which every vector of results is multiplied.
+    rows : written.
+    to : position in ``rows`` of the first coefficient that is written.
     """
     power = broadcast(s[0])
     square = power * power

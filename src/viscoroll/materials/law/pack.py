@@ -321,6 +321,8 @@ def _significant_terms(values: Floats) -> Floats:
     terms[:, 1:] -= dropped @ powers_of_chebyshev(count, 0.0, 1.0)
     kept = np.where(of_both != dropped, np.arange(1, count + 1), 0).max(axis=-1, keepdims=True)
     terms[:, 1:][np.arange(count) >= kept] = 0.0
+    constant = (values == values[0]).all(axis=0)  # as lam = 1 at rest, which rounding must not change
+    terms[0, constant], terms[1:, constant] = values[0, constant], 0.0
     return terms
 
 
