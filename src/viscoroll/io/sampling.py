@@ -41,7 +41,15 @@ _BITS = 52
 
 
 class Sample(dict[str, Floats]):
-    """Draws of each quantity by name, (n,), with the seed and the design that give them again."""
+    """Draws of each quantity by name, (n,), with the seed and the design that give them again.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> draws = vr.sampling.sample(4, seed=1, mu=0.3)
+    >>> draws.seed, draws.design, draws["mu"].tolist()
+    (1, 'random', [0.3, 0.3, 0.3, 0.3])
+    """
 
     seed: int
     design: str

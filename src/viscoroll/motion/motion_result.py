@@ -143,6 +143,13 @@ class Motion(RollResult):
         ------
         ParameterError
             Unknown fields or options out of range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.contact(["Q", "beta"]).beta.shape
+        (2,)
         """
         reached = self.regime >= 0
         V, delta = self.V[reached], self.delta[reached]
@@ -160,6 +167,13 @@ class Motion(RollResult):
         """Report which assumptions of the model the motion violates, at each output time that it reached.
 
         See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.validity().steady.holds.shape
+        (2,)
         """
         reached = self.regime >= 0
         V = self.V[reached]
@@ -207,6 +221,13 @@ class Motion(RollResult):
         ------
         ParameterError
             Times that are not ascending or lie beyond the end of the motion.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, 2.0)
+        >>> motion.at([0.5, 1.5]).V.shape
+        (2,)
         """
         times = output_times(t, self.scale)
         end = self._problem.end * self.scale["t"]
@@ -228,7 +249,15 @@ class Motion(RollResult):
         return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
+        """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.to_xarray()["V"].attrs["units"]
+        'm s-1'
+        """
         from .export import motion_dataset
 
         return motion_dataset(self)

@@ -81,7 +81,14 @@ class DynamicModuli(Result):
         return super().__getitem__(name)
 
     def to_xarray(self) -> xr.Dataset:
-        """All columns over ``point``, with their units; mode, source and notes as attributes."""
+        """All columns over ``point``, with their units; mode, source and notes as attributes.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.read_dma(vr.datasets.path("dma.csv")).to_xarray().sizes["point"]
+        25
+        """
         import xarray as xr
 
         units = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "temperature": "degC"}

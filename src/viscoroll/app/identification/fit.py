@@ -67,6 +67,15 @@ class Identification(Result):
         fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     records : the data by name.
     planned : whether the records hold no values: standard deviations and intervals are what to expect.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> roller = vr.presets.RUBBER_CYLINDER
+    >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+    >>> result = vr.identify(roller, {"mu": (0.1, 1.0)}, [plan])
+    >>> result.planned, result.stderr["mu"] < 1e-3
+    (True, True)
     """
 
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
@@ -122,6 +131,15 @@ class Identification(Result):
         ------
         ParameterError
             Another level.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> roller = vr.presets.RUBBER_CYLINDER
+        >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+        >>> low, high = vr.identify(roller, {"mu": (0.1, 1.0)}, [plan]).intervals()["mu"]
+        >>> low < 0.3 < high
+        True
         """
         found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
         for i, sides in self._likelihood.axes(self._delta_chi2(level)).items():
@@ -168,6 +186,15 @@ class Identification(Result):
         ------
         ParameterError
             A record without a start, draws, level or seed out of range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> roller = vr.presets.RUBBER_CYLINDER
+        >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+        >>> band = vr.identify(roller, {"mu": (0.1, 1.0)}, [plan]).predict(vr.Traction(V=1.0, delta=[0.1])).Q
+        >>> bool(band.low < band.value < band.high)
+        True
         """
         if not isinstance(record, Record):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")

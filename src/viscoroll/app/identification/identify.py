@@ -70,6 +70,18 @@ def identify(
     ParameterError
         A name that is none, a range that does not hold the start, more unknowns than points, records without
         standard deviations where values are missing, records with and without values, two records of one name.
+
+    Examples
+    --------
+    The friction of a roller, from its traction at two creep ratios:
+
+    >>> import viscoroll as vr
+    >>> roller = vr.presets.RUBBER_CYLINDER
+    >>> delta = [-0.05, 0.05]
+    >>> measured = vr.Traction(V=1.0, delta=delta, Q=roller.contact(1.0, delta=delta).Q, sigma=0.1)
+    >>> result = vr.identify(roller.replace(mu=0.5), {"mu": (0.1, 1.0)}, [measured])
+    >>> round(result.values["mu"], 6)
+    0.3
     """
     shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else shift or {}
     data, prior = [data] if isinstance(data, Record) else data, prior or {}

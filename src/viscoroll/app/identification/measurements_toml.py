@@ -43,6 +43,11 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     FileError
         A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with its line.
         A file of data that cannot be read, or without a column.
+
+    Examples
+    --------
+    >>> from viscoroll.app.identification.measurements_toml import read_measurements
+    >>> vr.identify(**read_measurements("docs/examples/measured.toml"))  # doctest: +SKIP
     """
     cylinder, content = read_roller(path, tuple(_SECTIONS)), {"prior": {}} | read_toml(path)
     if not isinstance(cylinder, Cylinder):

@@ -147,6 +147,13 @@ class Resistance(Record):
     ------
     ParameterError
         Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma <= 0.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> drum = vr.Resistance(V=[0.5, 1.0, 2.0], M=[0.31, 0.33, 0.36], sigma=0.01)
+    >>> drum.M
+    array([0.31, 0.33, 0.36])
     """
 
     COORDINATES, QUANTITIES, LABEL = ("V",), ("M", "F"), "resistance"
@@ -182,6 +189,13 @@ class Traction(Record):
     ------
     ParameterError
         As there.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> traction = vr.Traction(V=1.0, delta=[-0.02, 0.0, 0.02], Q=[-60.0, 0.0, 60.0])
+    >>> traction.V
+    array([1., 1., 1.])
     """
 
     COORDINATES, QUANTITIES, LABEL = ("V", "delta"), ("Q",), "traction"
@@ -215,6 +229,13 @@ class Coastdown(Record):
     ------
     ParameterError
         As there; times that fall.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.Coastdown(t=[0.0, 1.0, 2.0], V=[2.0, 1.7, 1.5], sigma=0.01, V0=2.0)
+    >>> run.omega0
+    'rolling'
     """
 
     COORDINATES, QUANTITIES, LABEL = ("t",), ("V", "omega", "x"), "run"

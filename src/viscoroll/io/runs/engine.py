@@ -79,16 +79,19 @@ def run_ensemble(
         At Ctrl-C (a KeyboardInterrupt), within a second: finished blocks are kept, and the message states their
         number.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import read_run, run_ensemble
-    >>> run = read_run("docs/examples/ensemble.toml")  # doctest: +SKIP
-    >>> run_ensemble(run, "results.zarr")  # doctest: +SKIP
-
     Notes
     -----
     The files are the same, byte for byte, for any number of threads or workers and after any number
     of kills (``tests/runs/test_run_store.py``); a motion is as accurate as :func:`viscoroll.ensemble` makes it.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.runs.read_run(vr.datasets.path("run.toml"))
+    >>> vr.runs.run_ensemble(run, "results.zarr", threads=1)
+    1
+    >>> vr.runs.run_ensemble(run, "results.zarr", threads=1)  # the block is there
+    0
     """
     if progress != "lines":
         progress = check_bool("progress", progress)

@@ -73,6 +73,13 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     -------
     Estimate
         Printed, it states size, time, memory and disk space.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.runs.estimate(vr.runs.read_run(vr.datasets.path("run.toml")), threads=1)
+    >>> found.trial, found.workers, found.seconds > 0.0
+    (16, 1, True)
     """
     workers = min(thread_count(threads), run.blocks)
     warn_of_materials(run)

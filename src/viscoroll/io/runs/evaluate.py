@@ -57,9 +57,10 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
     Examples
     --------
-    >>> from viscoroll.io.runs import read_run, roll_inputs
-    >>> run = read_run("docs/examples/ensemble.toml")  # doctest: +SKIP
-    >>> roll_inputs(run, run.inputs.medians).V  # doctest: +SKIP
+    >>> import viscoroll as vr
+    >>> run = vr.runs.read_run(vr.datasets.path("run.toml"))
+    >>> vr.runs.roll_inputs(run, run.inputs.medians).V.shape
+    (1, 2)
     """
     content, settings = run.inputs.filled(values), run.settings
     start = content["start"]

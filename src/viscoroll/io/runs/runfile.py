@@ -144,6 +144,13 @@ class Run:
     t : output times, dimensionless or, with [cylinder], in s, (t,).
     digest : SHA-256 of what the results depend on, apart from the number of motions, the method and the size of
         blocks: other settings, inputs, samples.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.runs.read_run(vr.datasets.path("run.toml"))
+    >>> run.method, run.blocks, run.inputs.uncertain
+    ('integrate', 1, ('mu', 'V0'))
     """
 
     path: Path
@@ -207,7 +214,14 @@ class Run:
         return -(-self.settings.n // self.block)
 
     def edges(self, block: int) -> tuple[int, int]:
-        """Return the first motion of a block and the first of the next."""
+        """Return the first motion of a block and the first of the next.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.runs.read_run(vr.datasets.path("run.toml")).edges(0)
+        (0, 16)
+        """
         return block * self.block, min((block + 1) * self.block, self.settings.n)
 
 
@@ -231,8 +245,9 @@ def read_run(path: str | PathLike[str]) -> Run:
 
     Examples
     --------
-    >>> from viscoroll.io.runs import read_run
-    >>> read_run("docs/examples/ensemble.toml").blocks  # doctest: +SKIP
+    >>> import viscoroll as vr
+    >>> vr.runs.read_run(vr.datasets.path("run.toml")).settings.n
+    16
     """
     path, content = Path(path), read_toml(path)
     inputs = inputs_of(path, content)

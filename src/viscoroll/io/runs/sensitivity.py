@@ -74,16 +74,18 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         input; n out of range, or so many output times that their values would take more than 0.5 GB; no
         quantity left.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import read_run
-    >>> from viscoroll.io.runs.sensitivity import sobol_indices
-    >>> sobol_indices(read_run("docs/examples/sensitivity.toml"), n=256)  # doctest: +SKIP
-
     Notes
     -----
     Variance shares in closed form lie inside the stated intervals (``tests/runs/test_sensitivity.py``).
     The bootstrap treats the points as random ones, which are less even: intervals are rather too wide.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> from viscoroll.io.runs.sensitivity import sobol_indices
+    >>> indices = sobol_indices(vr.runs.read_run(vr.datasets.path("run.toml")), n=16, threads=1)
+    >>> indices["V_ST"].dims, indices["input"].values.tolist()
+    (('t', 'input'), ['mu', 'V0'])
     """
     import xarray as xr
 

@@ -60,14 +60,16 @@ def verify(path: str | PathLike[str]) -> Verdict:
     FileError
         If the folder is no results store, or the record of its start is damaged.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import verify
-    >>> print(verify("results.zarr"))  # doctest: +SKIP
-
     Notes
     -----
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+    >>> print(vr.runs.verify("results.zarr"))
+    complete: 1 block and the summaries have the SHA-256 that they were written with
     """
     root, start = Path(path), start_of(path)
     motions, size, blocks = (int(start.about[name]) for name in ("motions", "motions_a_block", "blocks"))
