@@ -106,7 +106,7 @@ class RunResults(Result):
         --------
         >>> import viscoroll as vr
         >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
-        >>> vr.runs.open_run("results.zarr").to_pandas().index.names
+        >>> list(vr.runs.open_run("results.zarr").to_pandas().index.names)
         ['quantity', 't']
         """
         import pandas as pd
