@@ -50,7 +50,7 @@ def refuse_end(end: float, T: float) -> None:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
 
 
-def refuse_many(**arguments: Any) -> None:
+def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number; arguments by name."""
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):

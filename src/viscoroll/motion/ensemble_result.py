@@ -129,8 +129,8 @@ class Ensemble(RollResult):
         """
         from .summaries import summary_of
 
-        given: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
-        levels = check_array("quantiles", given, low=0.0, high=1.0)
+        values: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
+        levels = check_array("quantiles", values, low=0.0, high=1.0)
         if levels.ndim != 1:
             raise ParameterError("quantiles", describe_value(quantiles), "a list of numbers")
         return summary_of(self, tuple(levels.tolist()))

@@ -18,7 +18,7 @@ from ..core.errors import MotionStatus, ParameterError
 from ..core.results import SummaryRow, Values
 from .checks import SPEED_RANGE, output_times
 from .drive import ROWS
-from .problem import NO_NOTES, MotionProblem, integrate_one
+from .problem import NO_NOTES, MotionProblem, integrate_single
 from .result import RollResult
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ class Motion(RollResult):
     def _step_ends(self) -> Floats:
         """Ends of the integration steps, ascending, in T_ref."""
         ends = np.full(2 * self.steps + _MORE_STEPS, np.nan)
-        integrate_one(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
+        integrate_single(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
         return ends[~np.isnan(ends)]
 
     @cached_property
@@ -187,7 +187,7 @@ class Motion(RollResult):
         """Title and rows of the printed report."""
         rows = [self._row_of_times()]
         rows += [
-            SummaryRow(name, _describe_course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
+            SummaryRow(name, _describe_values(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
         ]
         for name, given in self.drive.given.items():
             title = f"prescribed {name}" if name in ("V", "omega") else name  # V and omega have rows of their own above
@@ -275,7 +275,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
         t = np.append(t, end)
     noted = np.empty((_SWITCHES_KEPT, 2))
     noted.fill(np.nan)
-    out, (status, steps, _, onset_time, rest_time) = integrate_one(problem, t, noted, NO_NOTES[1])
+    out, (status, steps, _, onset_time, rest_time) = integrate_single(problem, t, noted, NO_NOTES[1])
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
     codes = rows.pop("regime")
     if scale.si:
@@ -290,7 +290,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     )  # fmt: skip
 
 
-def _describe_course(t: NDArray, values: NDArray) -> str:
+def _describe_values(t: NDArray, values: NDArray) -> str:
     """Describe values over time: the first, the last that was reached, and the largest between them with its time.
 
     t, values: (times,); NaN where the motion did not get.

@@ -49,12 +49,12 @@ TimeFunction = Floats | Schedule | Piecewise
 
 
 def check_function(
-    name: str, given: Any, end: float, rtol: float, *, low: float = -np.inf, resolve: float | None = None
+    name: str, function: Any, end: float, rtol: float, *, low: float = -np.inf, resolve: float | None = None
 ) -> TimeFunction:
     """Check a function of time; a callable is fitted.
 
     name: of the argument, for refusals.
-    given: None (0), a number, one of each motion, a Schedule, a callable of t, or a Feedback of one of these, whose
+    function: None (0), a number, one of each motion, a Schedule, a callable of t, or a Feedback of one of these, whose
     gains are ignored; dimensionless.
     end: last time, in T_ref.
     rtol: relative tolerance of the motion, of which the fit of a callable takes a tenth.
@@ -63,18 +63,18 @@ def check_function(
     Raises ParameterError for what is neither a number, a schedule nor a callable; values that are not finite or below
     ``low``; a callable that polynomials do not follow.
     """
-    if isinstance(given, Feedback):
-        given = given.value
-    if callable(given):
-        require_time_argument(name, given)
-        starts, terms, error = fit_callable(name, given, end, rtol, low, resolve)
+    if isinstance(function, Feedback):
+        function = function.value
+    if callable(function):
+        require_time_argument(name, function)
+        starts, terms, error = fit_callable(name, function, end, rtol, low, resolve)
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         return Piecewise(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
-    if isinstance(given, Schedule):
-        check_array(f"values of {name}", given.values, low=low)
-        return given
-    values = check_array(name, 0.0 if given is None else given, low=low)
+    if isinstance(function, Schedule):
+        check_array(f"values of {name}", function.values, low=low)
+        return function
+    values = check_array(name, 0.0 if function is None else function, low=low)
     if values.ndim > 1:
         allowed = "a number, one a motion, or a Schedule(times, values)"
         raise ParameterError(name, f"array of shape {values.shape}", allowed)

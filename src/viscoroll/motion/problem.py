@@ -19,7 +19,7 @@ from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
 from ..materials.law.table import law_table
-from .checks import controls, in_words, refuse_end, refuse_many
+from .checks import controls, in_words, refuse_end, require_single
 from .drive import LOSSES, ROWS, STATES, Drive
 from .drive_functions import DriveFunctions, DrivenStart, KernelDrive, prepare_drive, refuse_rest, undriven
 
@@ -98,11 +98,11 @@ def make_problem(
     """
     acts = drive.acts
     if single:
-        refuse_many(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
+        require_single(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
     drive, (rtol, rest, max_steps, resolve, unsteady, rested) = drive.without_zeros() if acts else drive, options
     roller, scene, scale = resolve_model(roller, "roll" if single else "ensemble", moves=True, slope=drive.slope)
     if single and scene.shape:
-        refuse_many(material=roller.material, **roller.numbers)
+        require_single(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
@@ -202,7 +202,7 @@ def integrate(
     return out, info
 
 
-def integrate_one(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
+def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """Integrate one motion; returns all rows (rows, times), and status, steps, switches, onset and rest time.
 
     problem: of one motion.

@@ -46,7 +46,7 @@ class Quantity(NamedTuple):
         return column_attributes(self.column, si)
 
 
-def _bare(motions: Any, name: str, k: int) -> NDArray:
+def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
     """Return a field at an output time without dimension, (n,)."""
     return getattr(motions, name)[:, k] / motions.scale[name]
 
@@ -60,17 +60,17 @@ def _start_energy(motions: Any) -> NDArray:
 
 def _translation(motions: Any, k: int) -> NDArray:
     """Return the part of the kinetic energy at the start that is in translation, (n,)."""
-    return _bare(motions, "V", k) ** 2 / _start_energy(motions)
+    return _dimensionless(motions, "V", k) ** 2 / _start_energy(motions)
 
 
 def _rotation(motions: Any, k: int) -> NDArray:
     """Return the part of the kinetic energy at the start that is in rotation, (n,)."""
-    return motions.scene.j * _bare(motions, "omega", k) ** 2 / _start_energy(motions)
+    return motions.scene.j * _dimensionless(motions, "omega", k) ** 2 / _start_energy(motions)
 
 
 def _loss(name: str, motions: Any, k: int) -> NDArray:
     """Return a loss divided by the kinetic energy at the start, half of whose unit is m (R/T_epsilon)^2, (n,)."""
-    return 2.0 * _bare(motions, name, k) / _start_energy(motions)
+    return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
 
 def _field(name: str, motions: Any, k: int) -> NDArray:

@@ -102,13 +102,13 @@ class SeriesFit(Result):
         """Fits on grids of times one and two decades wider on either side, no time left out.
 
         For each ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose transit times lie within
-        the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.WiderGrid`).  Computed at the
-        first access.
+        the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.ExtendedGridFit`).  They are
+        computed at the first access.
         """
-        from .spectrum_sensitivity import with_wider_grid
+        from .spectrum_sensitivity import fit_on_extended_grid
 
         return tuple(
-            with_wider_grid(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2)
+            fit_on_extended_grid(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2)
         )
 
     @property
@@ -198,9 +198,9 @@ class SeriesFit(Result):
         x : angular frequencies, rad/s, or times, s, of any shape.
         Returns a row for storage and one for loss, or one for relaxation, each of the shape of x.
         """
-        given = np.asarray(x, np.float64)
-        data = self.data._replace(**{self.data._fields[0]: given.ravel()})
-        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *given.shape)
+        points = np.asarray(x, np.float64)
+        data = self.data._replace(**{self.data._fields[0]: points.ravel()})
+        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 
     def to_xarray(self) -> xr.Dataset:
         """Data and fit over omega or t, the series over ``mode``, and the constants as attributes."""

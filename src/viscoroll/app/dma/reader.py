@@ -77,15 +77,15 @@ def read_dma(
     """
     named = dict(columns or {})
     check_names("columns", named, UNITS, "a quantity")
-    given, default = _units(units)
+    overruling, defaults = _units(units)
     table = read_table(path, lambda cells: _is_heading_line(cells, named), decimal=decimal, encoding=encoding)
-    if table.bare and not named:
+    if table.without_headings and not named:
         if len(table.headings) != 3:
             count = len(table.headings)
             problem = f"has {count} columns, and no heading that names frequency, storage and loss modulus"
             raise FileError(path, f"{problem}: give columns=")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
-    found, others = columns_of(table, named, given, default)
+    found, others = columns_of(table, named, overruling, defaults)
     notes = [f"{table.parts} tables"] * (table.parts > 1)
     # as rheometers write; instruments of tension name E
     beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)

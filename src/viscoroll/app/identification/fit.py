@@ -86,23 +86,23 @@ class Identification(Result):
         """
         self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
-        self.minima = [(one.chi2, problem.values(one.u)) for one in found]
+        self.minima = [(minimum.chi2, problem.values(minimum.u)) for minimum in found]
         self.dof, self.records = problem.points - u.size, problem.records
-        self.planned = not any(one.measured for one in self.records.values())
-        self.sigma = {str(one): problem.sigma[one.at].copy() for one in problem.columns}
+        self.planned = not any(record.measured for record in self.records.values())
+        self.sigma = {str(column): problem.sigma[column.at].copy() for column in problem.columns}
         self.noise = problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
         self.cylinder = cylinder_of(problem.cylinder, self.values)
         self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.active)
         self.correlations = self._likelihood.correlations
-        sizes = zip(problem.unknowns, self._likelihood.sd.tolist(), strict=True)
-        self.stderr = {one.name: one.slope(self.values[one.name]) * size for one, size in sizes}
+        slopes = np.array([unknown.slope(self.values[unknown.name]) for unknown in problem.unknowns])
+        self.stderr = dict(zip(self.values, (slopes * self._likelihood.sd).tolist(), strict=True))
         self.stderr |= dict.fromkeys(self.does_not_act, math.inf)
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
         """The best fit to each record with its bands, by the name of the record."""
-        return {called: self._predict(record, called, _LEVEL) for called, record in self.records.items()}
+        return {record_name: self._predict(record, record_name, _LEVEL) for record_name, record in self.records.items()}
 
     def _delta_chi2(self, level: float = _LEVEL) -> float:
         """Return the rise of chi2 at the ends of an interval: chi-squared where sigma is given, F where it is
@@ -113,7 +113,7 @@ class Identification(Result):
         from scipy import stats
 
         level = check_number("level", level, low=0.0, strict=True, high=0.9999)
-        estimated = any(one.estimated for one in self._problem.columns)
+        estimated = any(column.estimated for column in self._problem.columns)
         return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
 
     def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
@@ -143,9 +143,9 @@ class Identification(Result):
         """
         found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
         for i, sides in self._likelihood.axes(self._delta_chi2(level)).items():
-            one = self._problem.unknowns[i]
-            low, high = (None if end is None else float(one.to_value(end)) for end in sides.ends)
-            found[one.name] = low, high
+            unknown = self._problem.unknowns[i]
+            low, high = (None if end is None else float(unknown.to_value(end)) for end in sides.ends)
+            found[unknown.name] = low, high
         return found
 
     @cached_property
@@ -205,7 +205,7 @@ class Identification(Result):
             record, "", level, check_integer("draws", draws, 0, _DRAWS), check_integer("seed", seed, 0)
         )
 
-    def _predict(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
+    def _predict(self, record: Record, record_name: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         """Predict a record, with bands.
 
         record : the record.
@@ -215,7 +215,7 @@ class Identification(Result):
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
         def predict(u: Floats) -> Floats:
-            values = problem.predicted(record, u, called)
+            values = problem.predicted(record, u, record_name)
             return np.array([values[name] for name in record.QUANTITIES])
 
         value, factor = predict(u), math.sqrt(self._delta_chi2(level))
@@ -245,13 +245,17 @@ class Identification(Result):
     def jacobian(self, values: Mapping[str, float]) -> Floats:
         """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences."""
         J = self._problem.jacobian(self._coordinates(values))
-        return J / [one.slope(values.get(one.name, one.start)) for one in self._problem.unknowns]
+        return J / [unknown.slope(values.get(unknown.name, unknown.start)) for unknown in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
         """Return the coordinates of values by name; raise ParameterError for unknown names and values out of range."""
         check_names("values", values, self.values, "an unknown")
-        given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
-        return np.array([one.to_u(check_number(one.name, value, **one.bounds(one.name))) for one, value in given])
+        found = []
+        for unknown in self._problem.unknowns:
+            name = unknown.name
+            value = check_number(name, values.get(name, unknown.start), **unknown.bounds(name))
+            found.append(unknown.to_u(value))
+        return np.array(found)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"

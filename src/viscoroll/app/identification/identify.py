@@ -153,7 +153,7 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
     # of sigma as estimated at the best one
     for found in sorted((Minimum(found.u, problem.cost(found.u)) for found in exact), key=_chi2):
         if found.chi2 - minima[0].chi2 < _ALTERNATIVE:
-            if not any(_in_one_valley(problem, found, other) for other in minima):
+            if not any(_in_same_valley(problem, found, other) for other in minima):
                 minima.append(found)
     return minima
 
@@ -194,17 +194,17 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     return [np.clip(u + step, problem.low, problem.high) for step in (far, -far)]
 
 
-def _in_one_valley(problem: Problem, first: Minimum, second: Minimum) -> bool:
+def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
     """Return whether no ridge lies between two minima.
 
     problem : the least squares.
-    first, second : the minima.
+    first, other : the minima.
     chi2 is minimised at three points between, with the coordinate that differs most fixed and all others free.
     """
-    difference = second.u - first.u
+    difference = other.u - first.u
     largest = int(np.argmax(np.abs(difference)))
     if abs(difference[largest]) < _SAME:
         return True
-    powers, top = np.eye(difference.size)[largest], max(first.chi2, second.chi2) + _RIDGE
+    powers, top = np.eye(difference.size)[largest], max(first.chi2, other.chi2) + _RIDGE
     between = (first.u + part * difference for part in (0.5, 0.25, 0.75))
     return all(problem.minimize(u, powers, _ROUGH, _STEPS).chi2 < top for u in between)

@@ -58,24 +58,25 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
                 path, "", section, f"section {'[[data]]' if kind is list else f'[{section}]'} is missing"
             )
     data = [_record(Path(path), section) for section in content["data"]]
-    given = {name: content[name] for name in ("unknown", "prior")}
-    return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | given
+    ranges = {name: content[name] for name in ("unknown", "prior")}
+    return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | ranges
 
 
-def _record(path: Path, given: Any) -> Record:
+def _record(path: Path, content: Any) -> Record:
     """Return the record of one [[data]].
 
     path : of the TOML file, from whose folder files of data are found.
-    given : the section.
+    content : the section.
     Raises FileError for unknown keys, wrong types, and values that make no record.
     """
-    named = given.get("kind") if isinstance(given, dict) else None
+    named = content.get("kind") if isinstance(content, dict) else None
     kind = next((kind for name, kind in _KINDS.items() if name == named), None)
     if kind is None:
         raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
     columns = (*kind.COORDINATES, *kind.QUANTITIES)
-    own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
-    section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
+    fields = (field for field in dataclasses.fields(kind) if field.init and field.name not in columns)
+    own = [(field.name, Any, field.default) for field in fields]
+    section: Any = as_struct(path, "data", content, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
         check_keys(path, f"data.{name}", getattr(section, name), columns)
     values = {name: getattr(section, name) for name, *_ in own}

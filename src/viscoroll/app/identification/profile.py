@@ -106,7 +106,7 @@ class Likelihood:
         self.cov = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
         self.sd = np.sqrt(np.diag(self.cov))
         self.correlations = self.cov / np.outer(self.sd, self.sd)
-        self.others = [v for v in (*(one.u for one in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
+        self.others = [v for v in (*(minimum.u for minimum in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
         self.ends: list[Floats] = []
         self._profiles = cache(lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile())
 
@@ -158,9 +158,9 @@ class Likelihood:
             return []
         by_slopes = [*self._by_slopes(which)]
         found = self._narrow(self._by_points(which, delta_chi2), delta_chi2) or self._narrow(by_slopes, delta_chi2)
-        least = min((one.high - one.low for one in found), default=math.inf)
+        least = min((product.high - product.low for product in found), default=math.inf)
         near = self._narrow(by_slopes, delta_chi2, near=True)
-        return found + [one for one in near if one.high - one.low < _SHARPER * least]
+        return found + [product for product in near if product.high - product.low < _SHARPER * least]
 
     def _narrow(self, family: Iterable[Floats], delta_chi2: float, near: bool = False) -> list[Product]:
         """Return products with their intervals, up to the first one that is open or wide.
@@ -176,8 +176,8 @@ class Likelihood:
             if low is None or high is None or high - low > _NARROW:
                 break
             exponents = {
-                one.name: p * (values[one.name] / one.slope(values[one.name]))
-                for one, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
+                unknown.name: p * (values[unknown.name] / unknown.slope(values[unknown.name]))
+                for unknown, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
             }  # fmt: skip
             value = math.prod(values[name] ** p for name, p in exponents.items())
             found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
@@ -253,7 +253,7 @@ class ProfileWalk:
                 d, last = self.find_end(reach, lower[-1])
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
             limits.append([] if d is None else self.limiting_bounds(last.u))
-        within = np.array([one.u for one in self.visited if one.chi2 - self.best.chi2 <= self.delta_chi2])
+        within = np.array([minimum.u for minimum in self.visited if minimum.chi2 - self.best.chi2 <= self.delta_chi2])
         return Profile(ends, limits, pieces, min(self.visited, key=attrgetter("chi2")), within)
 
     def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
@@ -302,7 +302,8 @@ class ProfileWalk:
                 cost = problem.cost(np.clip(self.shift_to(target, u), problem.low, problem.high))
                 if self.is_below(Minimum(u, cost), _HOPELESS):
                     found.append(self.minimum_at(target, u))
-        return sorted((one for one in found if self.is_below(one, _LOWER)), key=lambda one: abs(self.distance(one.u)))
+        lower = (minimum for minimum in found if self.is_below(minimum, _LOWER))
+        return sorted(lower, key=lambda minimum: abs(self.distance(minimum.u)))
 
     def limiting_bounds(self, u: Floats) -> list[str]:
         """Return the names of unknowns at a bound beyond which chi2 would fall, with the combination fixed.

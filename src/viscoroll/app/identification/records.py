@@ -280,15 +280,15 @@ class Coastdown(Record):
         R : radius of the cylinder, m.
         Raises ParameterError where the data do not show it.
         """
-        given: Any = self.V if name == "V0" else self.omega
-        if given is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
-            given = R * np.asarray(self.omega)
-        if given is None and name == "V0" and self.x is not None:
+        data: Any = self.V if name == "V0" else self.omega
+        if data is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
+            data = R * np.asarray(self.omega)
+        if data is None and name == "V0" and self.x is not None:
             some = slice(0, max(3, np.size(self.t) // 10))
-            given = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
-        if given is None:
+            data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
+        if data is None:
             raise ParameterError(self.label(name), None, "a number: the data do not show it")
-        first, most = float(given[0]), float(np.max(np.abs(given)))
+        first, most = float(data[0]), float(np.max(np.abs(data)))
         return first, (first - most, first + most)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:

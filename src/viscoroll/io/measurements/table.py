@@ -35,7 +35,7 @@ class Table:
     units : the cell of a row of units below each heading, "" without.
     rows : the lines of numbers, of which all cells beyond the headings are empty.
     parts : number of tables of the file that these rows are from.
-    bare : whether the file has no headings.
+    without_headings : whether the file has no headings.
     decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
     """
 
@@ -44,7 +44,7 @@ class Table:
     units: list[str]
     rows: list[Line]
     parts: int
-    bare: bool
+    without_headings: bool
     decimal: str
 
     def has_numbers(self, column: int) -> bool:

@@ -91,13 +91,13 @@ def warn_of_materials(run: Run) -> None:
     content = run.inputs.filled(medians)
     if "V0" in content["start"]:
         bands = measured_bands(run.path, content)
-        if not (bands and warn_of_unmeasured_starts(_share_outside(run), bands)):
+        if not (bands and warn_of_unmeasured_starts(_fraction_outside(run), bands)):
             warn_of_contact(roller_of(run.path, content), run.inputs.largest("V0"))
     settings = msgspec.structs.replace(run.settings, summaries=("V",), keep="summaries", method="integrate")
     roll_inputs(replace(run, settings=settings), medians)
 
 
-def _share_outside(run: Run) -> float:
+def _fraction_outside(run: Run) -> float:
     """Return the share of motions whose transit frequency at the start is outside a measured band.
 
     run: in SI units, whose first motions are looked at.  A start at rest is inside: M is 0 there.

@@ -73,7 +73,7 @@ class StartSection(msgspec.Struct):
     omega0: float | None = None
 
 
-class CourseSection(msgspec.Struct):
+class ScheduleSection(msgspec.Struct):
     """{ times = [...], values = [...] }: a piecewise linear load."""
 
     times: Numbers
@@ -83,13 +83,13 @@ class CourseSection(msgspec.Struct):
 class DriveSection(msgspec.Struct):
     """[drive]: loads, and prescribed speeds."""
 
-    force: float | CourseSection | None = None
-    torque: float | CourseSection | None = None
-    brake: float | CourseSection | None = None
+    force: float | ScheduleSection | None = None
+    torque: float | ScheduleSection | None = None
+    brake: float | ScheduleSection | None = None
     slope: float | None = None
     drag: float | None = None
-    V: float | CourseSection | None = None
-    omega: float | CourseSection | None = None
+    V: float | ScheduleSection | None = None
+    omega: float | ScheduleSection | None = None
 
 
 class TimesSection(msgspec.Struct):
