@@ -126,8 +126,8 @@ def _is_distribution(name: str, value: Any) -> bool:
 def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int) -> Floats:
     """Return a block of points inside (0, 1), (dimensions, stop - start).
 
-    design: "random", "latin" or "sobol".  seed: of all points.  n: number of all points.  dimensions: coordinates of a
-    point.  start, stop: indices of the block.  block: its number.
+    design: "random", "latin" or "sobol".  seed: seed of all points.  n: number of all points.  dimensions:
+    coordinates of a point.  start, stop: indices of the block.  block: its number.
     """
     if dimensions == 0:
         return np.empty((0, stop - start))
@@ -196,7 +196,8 @@ def _sequence(seed: int, dimensions: int) -> Any:
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
     """Return points of the Sobol sequence, (dimensions, stop - start).
 
-    seed: of the sequence.  dimensions: of a point.  start, stop: indices of the points.
+    seed: seed of the sequence.  dimensions: coordinates of a point.  start, stop: first index, and the one behind
+    the last.
 
     ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block
     (and refuses more than 32 bits).  Its state is set instead; a test compares with a sequence from its start.

@@ -35,11 +35,12 @@ FLOW_PAYS = 4096
 class Batch(NamedTuple):
     """Motions to be solved; dimensionless.
 
+    problem : the checked motions.
     inputs : parameters and start speeds by name, vectors of one or n values.
     immobile : motions that stay in the indentation of a standstill, (n,).
     times : output times.
     rows : names of the rows to compute.
-    threads : to use.
+    threads : number of threads.
     progress : title of a progress bar, None for none.
     """
 
@@ -156,8 +157,8 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """Return the function that gives the kernel's law of some motions.
 
-    scene: parameters.
-    unsteady: whether the added mass acts; then several materials are asked for one motion at a time.
+    scene: parameters of the motions.
+    unsteady: whether the added mass acts; then several materials are requested for one motion at a time.
     The function takes alphas and indices of motions, and returns (law; whether bodies differ).
     """
     several: Any = scene.material_array

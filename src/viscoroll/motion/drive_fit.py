@@ -94,7 +94,7 @@ class _Sampled:
     ) -> None:
         """Sample a callable.
 
-        name: of the argument, for refusals.
+        name: name of the argument, for refusals.
         function: takes t in T_ref, returns a number.
         end: last time, in T_ref.
         rtol: relative tolerance of the motion.

@@ -52,9 +52,9 @@ class DriveFunctions:
     Attributes
     ----------
     functions : force, torque, brake and prescribed speed by name, where there are any.
-    tangent : of the slope, which adds to the force, () or (m,).
+    tangent : tangent of the slope, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
-    gains : of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
+    gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
     end : last time, in T_ref.
     """
 
@@ -101,7 +101,7 @@ class DriveFunctions:
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
         """Return (value at t = 0, largest size) of a prescribed speed, of every motion that has its own.
 
-        name: of the speed.
+        name: name of the speed.
         Raises ParameterError where it jumps.
         """
         speed, firsts, sizes = self.functions[name], [], []

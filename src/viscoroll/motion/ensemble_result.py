@@ -63,7 +63,7 @@ class Ensemble(RollResult):
     flow_problem : why a map that was tried could not be used, or "".
     drive_error : as of a :class:`Motion`.
     drive : loads and prescribed speeds as they were given.
-    labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
+    labels : labels of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
 
     Examples
     --------

@@ -33,9 +33,10 @@ class NoFlowMap(Exception):
 class FlowProblem(NamedTuple):
     """A scene for which a map is made.
 
-    parameters : (material, kappa, mu, j).  law : record of the law's rows.  slow_rate : rate at which the slow
-    logarithm
-    falls.  threads : of the work.
+    parameters : (material, kappa, mu, j).
+    law : record of the law's rows.
+    slow_rate : rate at which the slow logarithm falls, in units of gamma.
+    threads : number of threads.
     """
 
     parameters: tuple[Any, ...]
@@ -58,10 +59,10 @@ class FlowProblem(NamedTuple):
     def integrate(self, V: Floats, delta: Floats, gamma: Floats, t: Floats, reason: str) -> tuple[Floats, Floats]:
         """Integrate motions in partial slip.
 
-        V, delta : initial speeds and creepages, (n,).  gamma : time scale of each motion, (n,).  t : common output
-        times.
+        V, delta : start speeds and creepages, (n,).
+        gamma : time scale of each motion, (n,).
+        t : output times, common to all.
         reason : message of :class:`NoFlowMap` if a motion leaves partial slip.
-
         Returns (V, delta), each (n, times).
         """
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):

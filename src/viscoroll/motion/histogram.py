@@ -25,8 +25,8 @@ class Histogram(msgspec.Struct):
     """Counts and moments of the finite values of one quantity at one time.
 
     bins : numbers of the bins that hold values, ascending.
-    counts : of the values in each, > 0.
-    count : of all values.
+    counts : number of the values in each, > 0.
+    count : number of all values.
     mean, low, high : moments; NaN without values.
     spread : sum of squares about the mean.
     values : all of them, where quantiles are to be exact; else None.

@@ -266,7 +266,7 @@ class Motion(RollResult):
 def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     """Integrate one motion.
 
-    problem: of one motion.
+    problem: checked problem of one motion.
     times: output times, ascending, in the unit of its roller; the motion is integrated to its end in any case.
     """
     scale, end = problem.roller.scale, problem.end

@@ -53,7 +53,7 @@ def check_function(
 ) -> TimeFunction:
     """Check a function of time; a callable is fitted.
 
-    name: of the argument, for refusals.
+    name: name of the argument, for refusals.
     function: None (0), a number, one of each motion, a Schedule, a callable of t, or a Feedback of one of these, whose
     gains are ignored; dimensionless.
     end: last time, in T_ref.
@@ -131,7 +131,7 @@ def _ends(starts: Floats) -> Floats:
 def differentiate(name: str, speed: Piecewise) -> Piecewise:
     """Return the derivative of a prescribed speed.
 
-    name: of the argument, for the refusal.
+    name: name of the argument, for the refusal.
     speed: in the unit of the kernels.
     Raises ParameterError where the speed jumps.
     """
@@ -171,7 +171,7 @@ def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
 def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """Return several functions over common pieces, in the layout of the kernels.
 
-    functions: of the same motions, or the same for all.
+    functions: piecewise polynomials of the same motions, or the same for all.
     end: last time, in T_ref.
     Returns (m, k, 2 + terms of all functions).  Where motions have times of their own, pieces between equal times have
     no length; the kernels skip them.
@@ -202,9 +202,9 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
 def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> Floats:
     """Return the terms of a function over finer pieces.
 
-    function: of one motion or m.
+    function: piecewise polynomial of one motion or of m motions.
     rows: number of motions with times of their own, or 1.
-    starts, ends: of the finer pieces, (rows, k).
+    starts, ends: when the finer pieces start and end, (rows, k).
     Returns (1 or m, k, terms).
     """
     piece = _piece_at(function.starts, starts)
@@ -237,7 +237,7 @@ def _substitute(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, e
 
     terms: (m, k, terms).
     first, last: start and end of each piece, (m, k); inf for one without end, which is constant.
-    starts, ends: of the part, (m, k).
+    starts, ends: start and end of each part, (m, k).
     """
     endless = np.isinf(last) | (last == first)
     length = np.where(endless, 1.0, last - first)

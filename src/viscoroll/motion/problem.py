@@ -146,7 +146,7 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
     """Return the time of the standstill before the start, infinite for a long one, in the unit of the roller.
 
     rested: as given.
-    units: of the roller.
+    units: units of the roller.
     Raises ParameterError for what is not one number >= 0.
     """
     if isinstance(rested, bool | np.bool_):
@@ -188,7 +188,7 @@ def integrate(
 
     count: their number.
     batch: law, whether bodies differ, kappa, mu, gamma, j, V0, omega0, each one number or (count,).
-    drive: of the motions.
+    drive: drive of the motions as the kernels take it.
     times: output times, ascending, in T_ref.
     limits: (rtol, threshold of rest, step limit).
     rows: indices into :data:`ROWS`.
@@ -205,7 +205,7 @@ def integrate(
 def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """Integrate one motion; returns all rows (rows, times), and status, steps, switches, onset and rest time.
 
-    problem: of one motion.
+    problem: checked problem of one motion.
     times: output times, ascending, in T_ref.
     notes: as of :func:`integrate`.
     """
@@ -231,7 +231,7 @@ def integrate_motions(
 
     parameters: (alpha or series, kappa, mu, j).
     starts: V0 and omega0, (n,).
-    gamma: of each motion, (n,); the times count in its unit.
+    gamma: time scale of each motion, (n,).
     t: output times, common to all.
     threads: to use.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss (8, n, times); status, steps, switches, onset

@@ -50,7 +50,7 @@ COMMANDS: dict[str, Command] = {}
 def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
     """Return a decorator that adds a function to :data:`COMMANDS`.
 
-    words: of the command, as "tables law", a key of :data:`.help_texts.HELP`.  options: as of :class:`Command`.
+    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.  options: as of :class:`Command`.
     """
 
     def add(run: CommandFunction) -> CommandFunction:
@@ -117,7 +117,7 @@ def roller_of_argument(text: str) -> Any:
 def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
     """Return the option of an output file; a path that cannot be written is refused before any work.
 
-    suffixes: allowed ones.  name: of the option; of another than -o the argument is name without dashes.
+    suffixes: allowed suffixes.  name: name of the option; without its dashes it names the argument, "output" for -o.
     required: whether it must be given.  more: text behind the suffixes in the help.
     """
 

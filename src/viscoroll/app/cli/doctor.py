@@ -72,7 +72,7 @@ def _check() -> str:
 def _version(name: str) -> str | None:
     """Return the version of a package; None if it is not installed.
 
-    name: of the package.
+    name: name of the package.
     """
     try:
         return metadata.version(name)
@@ -83,7 +83,7 @@ def _version(name: str) -> str | None:
 def _fault_of_cache(folder: Path) -> str:
     """Return why the cache of compiled functions is not used or cannot be written; "" if it can.
 
-    folder: of the compiled functions, which need not exist.
+    folder: folder of the compiled functions, which need not exist.
     """
     from ...kernels.compile.folder import refuse_writable_by_others
 

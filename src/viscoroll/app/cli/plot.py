@@ -40,7 +40,7 @@ def plot(arguments: Namespace) -> None:
 def _figure_of_netcdf(path: str) -> Any:
     """Return the figure of a result or a material; raise FileError for any other file.
 
-    path: of a netCDF file.
+    path: path of a netCDF file.
     """
     import xarray as xr
 
@@ -59,7 +59,7 @@ def _figure_of_netcdf(path: str) -> Any:
 def _figure_of_toml(path: str) -> Any:
     """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material.
 
-    path: of a TOML file.  Raises FileError.
+    path: path of a TOML file.  Raises FileError.
     """
     import numpy as np
 

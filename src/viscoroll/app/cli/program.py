@@ -59,8 +59,8 @@ class _StoreOnce(argparse.Action):
         """Store the value of an option or a positional argument; raise ArgumentError where the option had one
         before.
 
-        parser: not used.  namespace: of all arguments; its ``stored`` is the set of those that have a value.
-        values: the value.  name: of the option; None of a positional argument.
+        parser: not used.  namespace: values of all arguments; its ``stored`` is the set of those that have a value.
+        values: the value.  name: name of the option; None of a positional argument.
         The signature is that of ``argparse.Action``.
         """
         stored = vars(namespace).setdefault("stored", set())

@@ -30,7 +30,7 @@ def _low_high(text: str) -> tuple[float, ...]:
 def _print_size(path: Path) -> None:
     """Print the name and the size of a written file.
 
-    path: of the file.
+    path: path of the file.
     """
     print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 

@@ -26,8 +26,8 @@ class Column(NamedTuple):
     """A column of a known quantity.
 
     position, heading : index and heading in its table.
-    name : of its quantity, a key of :data:`.vocabulary.UNITS`.
-    mode : of its modulus, "tension", "shear", or "" where the heading does not say.
+    name : name of its quantity, a key of :data:`.vocabulary.UNITS`.
+    mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
     log : whether its numbers are logarithms to base 10.
     unit : in which its numbers are.
     stated : whether the file or the user gives the unit, or it is assumed.
@@ -113,8 +113,8 @@ def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
 def numbers_of(table: Table, column: Column) -> Numbers:
     """Return the numbers of a column's quantity in rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
 
-    table : of the column.
-    column : of a known quantity.
+    table : the table that has the column.
+    column : a column whose quantity is known.
     Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed.
     """
     name, unit = column.name, column.unit

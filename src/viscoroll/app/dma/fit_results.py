@@ -57,8 +57,8 @@ class SeriesFit(Result):
     points : number of points that were measured; above 1000 the means of 500 logarithmic bins were fitted, and they
         are the data and the misfit here.
     grid : shortest and longest time that the fit was allowed, s.
-    temperature : of the fit, degrees Celsius, None where it is not known.
-    source : of the data, in words.
+    temperature : temperature of the fit, degrees Celsius, None where it is not known.
+    source : source of the data, in words.
     misfit : root mean square of the relative errors, of each modulus.
     """
 

@@ -95,7 +95,12 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
 
 
 def _reaches(data: Data, spectrum: Spectrum, target: float) -> bool:
-    """Return whether no row of the data has a misfit above the target."""
+    """Return whether no row of the data has a misfit above the target.
+
+    data : the curve.
+    spectrum : the fit.
+    target : largest misfit of each row, dimensionless.
+    """
     return max(misfits(data, spectrum)) <= target
 
 
@@ -107,13 +112,12 @@ def _size(data: Data, spectrum: Spectrum) -> float:
 def _leave_out_mode(
     data: Data, spectrum: Spectrum, ends: tuple[float, float], good: Callable[[Spectrum], bool] | None
 ) -> Spectrum | None:
-    """Return the best spectrum of one mode less.
+    """Return the best spectrum with one mode less, None if none of the best candidates, refined, is acceptable.
 
     data : the curve.
-    spectrum : from which a mode goes.
+    spectrum : the spectrum from which a mode is left out.
     ends : shortest and longest time that is allowed.
     good : whether a spectrum is acceptable; None: any is.
-    Returns None if none of the best candidates, refined, is acceptable.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
@@ -128,7 +132,7 @@ def _leave_out_mode(
 def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
     """Return lists of times with one left out, or with two neighbours at their mean time.
 
-    spectrum : of whose times; the mean is of the logarithms, weighted by strength.
+    spectrum : the spectrum; means are of the logarithms of its times, weighted by strength.
     """
     tau, strength = spectrum.tau, spectrum.strength
     without = [np.delete(tau, n) for n in range(tau.size)]

@@ -37,36 +37,39 @@ class Band(NamedTuple):
 
 
 class Prediction(Values):
-    """Quantities of a record by name, each with ``.value``, ``.low`` and ``.high``, of the shape of its places."""
+    """Quantities of a record by name, each with ``.value``, ``.low`` and ``.high``, arrays over the points of the
+    record.
+    """
 
     def __getattr__(self, name: str) -> Band:
         return Band(*(super(Prediction, self).__getattr__(name + end) for end in ("", "_low", "_high")))
 
 
 class Identification(Result):
-    """Values that fit measurements best, how well they are known, and what the data do not say.
+    """Best values of the unknowns, their standard deviations and intervals, and the limits of the data.
 
     ``print`` shows a report; its intervals are profiles, which take about as long as the fit for each unknown.
 
     Attributes
     ----------
     cylinder : the :class:`Cylinder` of the best values.
-    values : of the unknowns by name, SI.
-    stderr : their standard deviations by the slopes at the best fit, and as far as ranges go; infinite where one does
-        not act.
+    values : values of the unknowns by name, SI.
+    stderr : their standard deviations by the slopes at the best fit, limited by the ranges; infinite for an unknown
+        that changes no residual.
     correlations : (n, n), in the order of ``values``.
-    chi2, dof : sum of the squared residuals over sigma, and what it should be; of robust fits outliers count less.
+    chi2, dof : sum of the squared residuals over sigma, and its expectation, the degrees of freedom; of robust fits
+        outliers count less.
     sigma : standard deviation of each record's quantity, as given or as estimated.
     minima : (chi2, values) of all minima near the best, the best first.
     does_not_act : names of unknowns that do not change what was measured.
-    undetermined : names of those whose interval tells little, wider than a factor of e^2 or than half their range, and
-        of what is correlated with these beyond 0.95; :meth:`products` says what of them is determined.
+    undetermined : names of unknowns whose interval is wider than a factor of e^2 or than half their range, and of
+        those that are correlated with these beyond 0.95; :meth:`products` gives the products that are determined.
     noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation; of
         robust fits both as a tenth of outliers changes them little.
-    misfit : names of those whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or, of robust
+    misfit : names of quantities whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or, of robust
         fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     records : the data by name.
-    planned : whether the records hold no values: standard deviations and intervals are what to expect.
+    planned : whether the records have no values: standard deviations and intervals are those to expect.
 
     Examples
     --------
@@ -82,7 +85,7 @@ class Identification(Result):
         """Collect the values and statistics of the best fit.
 
         problem : the least squares.
-        found : minima, the best first.
+        found : minima of chi2, the best first.
         """
         self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
@@ -174,7 +177,7 @@ class Identification(Result):
         draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
             unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
         level : confidence level of the bands, in (0, 0.9999].
-        seed : of the draws, >= 0.
+        seed : seed of the draws, >= 0.
 
         Returns
         -------
@@ -209,7 +212,7 @@ class Identification(Result):
         """Predict a record, with bands.
 
         record : the record.
-        called : its name among the data, "" of another record.
+        record_name : its name among the data, by which its own unknowns are found; "" of another record.
         level, draws, seed : as of :meth:`predict`.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
@@ -235,7 +238,7 @@ class Identification(Result):
         return Prediction(found, coordinates, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
-        """Return residuals over sigma of all records, in their order, and of the prior.
+        """Return residuals over sigma of all records, in their order, and of the prior, shape (residuals,).
 
         values : name -> value of unknowns; others are at their start.
         For optimisers and samplers of other packages; a motion that fails has residuals of 1e6.
@@ -243,12 +246,19 @@ class Identification(Result):
         return self._problem.residuals(self._coordinates(values))
 
     def jacobian(self, values: Mapping[str, float]) -> Floats:
-        """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences."""
+        """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences.
+
+        values : name -> value of unknowns; others are at their start.
+        """
         J = self._problem.jacobian(self._coordinates(values))
         return J / [unknown.slope(values.get(unknown.name, unknown.start)) for unknown in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
-        """Return the coordinates of values by name; raise ParameterError for unknown names and values out of range."""
+        """Return the coordinates of the unknowns, shape (unknowns,), that belong to values.
+
+        values : name -> value of unknowns; others are at their start.
+        Raises ParameterError for unknown names and values out of range.
+        """
         check_names("values", values, self.values, "an unknown")
         found = []
         for unknown in self._problem.unknowns:

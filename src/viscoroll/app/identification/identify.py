@@ -40,25 +40,25 @@ def identify(
     prior: Mapping[str, tuple[float, float]] | None = None, shift: Shift | Mapping[str, Shift] | None = None,
     robust: bool = False, starts: int = 8, seed: int = 0, progress: bool = False,
 ) -> Identification:  # fmt: skip
-    """Fit what is unknown of a cylinder and its bearing to measurements, and say what they do not tell.
+    """Fit unknown parameters of a cylinder and its bearing to measurements, with intervals and limits of the data.
 
     Parameters
     ----------
-    cylinder : what is known, and where the search starts.
-    unknown : range (low, high) of each, SI, by the names of run files: R, m, mu, j, g, load; E, nu, T_ref of the
-        material, E_1, tau_1 of its first, longest mode, over T_ref; the same of another half-space as base_E, base_E_1;
-        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega, both >= 0; V0,
-        omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times:
-        with mu they are the whole job for a material of a DMA.
-    data : :class:`Resistance`, :class:`Traction` and :class:`Coastdown`, all with values, or none: then what would be
-        learnt if the cylinder, without a bearing, were the truth.
-    prior : (value, standard deviation) of what is known beforehand; that of the logarithm, but for brake, drag, nu
-        and unknowns of records.
+    cylinder : the cylinder with all known parameters, and with the start values of the unknown ones.
+    unknown : name -> range (low, high) of each unknown parameter, SI, by the names of run files: R, m, mu, j, g, load;
+        E, nu, T_ref of the material; E_1, tau_1 of its first, longest mode, divided by E and T_ref; the same of another
+        half-space as base_E, base_E_1; brake, a constant torque of the bearing, N m/m, and drag, a torque for each unit
+        of omega, N m s/m, both >= 0; V0, omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole
+        relaxation curve and T_ref all its times: with mu they are all unknowns of a material that a DMA has measured.
+    data : records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.  All have values, or none has: then
+        the result states the standard deviations to expect if the cylinder, without a bearing, is the truth.
+    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand; the standard deviation is
+        that of the logarithm, but for brake, drag, nu and unknowns of records.
     shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function, 1 at the temperature
         of the cylinder; where its bodies differ {"material": ..., "base": ...}.
     robust : let outliers count less, as |r| in place of r^2, of data and prior.
-    starts : searches, the first from the cylinder, the others spread over the ranges.
-    seed : of the latter.
+    starts : number of searches, the first from the cylinder, the others from points spread over the ranges.
+    seed : seed of these points.
     progress : draw a progress bar if it takes longer than a second.
 
     Returns
@@ -68,7 +68,7 @@ def identify(
     Raises
     ------
     ParameterError
-        A name that is none, a range that does not hold the start, more unknowns than points, records without
+        An unknown name, a range that does not contain the start value, more unknowns than points, records without
         standard deviations where values are missing, records with and without values, two records of one name.
 
     Examples
@@ -138,7 +138,7 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
 
     problem : the least squares.
     count : number of searches, the first from the start of the problem.
-    seed : of the other starts.
+    seed : seed of the other starts.
     progress : whether a progress bar is drawn.
     """
     from tqdm import tqdm
@@ -166,7 +166,7 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
 
     problem : the least squares.
     count : number of starts, and one more, from which the first search began.
-    seed : of the hypercube.
+    seed : seed of the hypercube.
     """
     from scipy.stats import qmc
 

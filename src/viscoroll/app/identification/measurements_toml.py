@@ -36,7 +36,7 @@ _UNKNOWN = "unknown"
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     """Read the arguments of :func:`.identify.identify` from a file: cylinder, unknown, data, prior, shift.
 
-    path : of the TOML file.
+    path : path of the TOML file.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 def _record(path: Path, content: Any) -> Record:
     """Return the record of one [[data]].
 
-    path : of the TOML file, from whose folder files of data are found.
+    path : path of the TOML file, from whose folder files of data are found.
     content : the section.
     Raises FileError for unknown keys, wrong types, and values that make no record.
     """
@@ -90,8 +90,8 @@ def _record(path: Path, content: Any) -> Record:
 def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     """Read coordinates and quantities from a file of data, in SI units.
 
-    path : of the file.
-    kind : of the record, whose names the columns have where the section names none.
+    path : path of the file.
+    kind : class of the record, whose names the columns have where the section names none.
     section : the [[data]], with ``columns``, ``units``, ``decimal`` and ``encoding``.
     Returns name -> values.
 

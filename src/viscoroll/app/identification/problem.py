@@ -91,7 +91,7 @@ class Problem:
     """The least squares of an identification.
 
     cylinder, unknowns, records, shifts : as given.
-    names : of the unknowns.
+    names : names of the unknowns.
     start, low, high : coordinates of start and bounds, shape (unknowns,).
     y, sigma : all data and their standard deviations, one column after the other, shape (n,); those of a plan are
     the predictions at the start.
@@ -142,7 +142,10 @@ class Problem:
         return [i for i in range(middle.size) if i not in idle]
 
     def values(self, u: Floats) -> dict[str, float]:
-        """Return the values of the unknowns at coordinates u, by name."""
+        """Return the values of the unknowns by name, SI.
+
+        u : coordinates of the unknowns.
+        """
         return {unknown.name: float(unknown.to_value(x)) for unknown, x in zip(self.unknowns, u, strict=True)}
 
     def predicted(self, record: Record, u: Floats, record_name: str = "") -> dict[str, Floats]:
@@ -169,7 +172,10 @@ class Problem:
         return np.full(self.y.size, np.nan)
 
     def residuals(self, u: Floats) -> Floats:
-        """Return residuals over sigma of the data, then of the priors; :data:`FAILED` where there is no prediction."""
+        """Return residuals over sigma of the data, then of the priors; :data:`FAILED` where there is no prediction.
+
+        u : coordinates of the unknowns.
+        """
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAILED), -FAILED, FAILED)
         return np.append(r, ((u - self._mean) / self._sd)[self._has_prior])
 
@@ -181,7 +187,7 @@ class Problem:
         function : coordinates -> vector.
         u : coordinates.
         which : indices of coordinates.
-        step : of central differences; any other step than :data:`_STEP` is taken to one side.
+        step : step of central differences; any other step than :data:`_STEP` is taken to one side.
         Returns shape (vector, which).
         """
         columns = []
@@ -194,16 +200,25 @@ class Problem:
         return np.array(columns).T
 
     def jacobian(self, u: Floats) -> Floats:
-        """Return the derivatives of the residuals by all coordinates at u."""
+        """Return the derivatives of the residuals by all coordinates, (residuals, unknowns).
+
+        u : coordinates of the unknowns.
+        """
         return self.slopes(self.residuals, u, range(u.size))
 
     def cost(self, u: Floats) -> float:
-        """Return chi2 at u: the sum of squared residuals, or of a robust fit the sum of a loss that grows as |r|."""
+        """Return chi2: the sum of squared residuals, or of a robust fit the sum of a loss that grows as |r|.
+
+        u : coordinates of the unknowns.
+        """
         z = self.residuals(u) ** 2
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return residuals and their derivatives at u by the weight that each has in chi2."""
+        """Return (residuals, their derivatives), each row times the square root of its weight in chi2.
+
+        u : coordinates of the unknowns.
+        """
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
         return r * weight, J * weight[:, np.newaxis]
@@ -264,7 +279,10 @@ class Problem:
         return best
 
     def noise(self, u: Floats) -> dict[str, Noise]:
-        """Return statistics of the residuals at u of each column, by record and quantity."""
+        """Return statistics of the residuals of each column, by the words "quantity of record".
+
+        u : coordinates of the unknowns.
+        """
         found, r = {}, self.residuals(u)
         for column in self.columns:
             record = self.records[column.record]
@@ -281,6 +299,9 @@ class Problem:
         return found
 
     def at_bounds(self, u: Floats) -> list[int]:
-        """Return the indices of the unknowns that lie at an end of their range."""
+        """Return the indices of the unknowns that lie at an end of their range.
+
+        u : coordinates of the unknowns.
+        """
         width = self.high - self.low
         return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_BOUND * width).tolist()

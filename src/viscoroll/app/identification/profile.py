@@ -71,7 +71,7 @@ class Product(NamedTuple):
     """A product of powers of unknowns that the data determine where they cannot tell these apart.
 
     powers : exponents by name; those of brake, drag, V0, omega0 and t0 hold near the values found.
-    value : of the product.
+    value : value of the product.
     low, high : ends of its interval, divided by ``value``.
     near : whether this holds by slopes, within about a fifth of the values found, and other exponents farther off.
     """
@@ -90,7 +90,7 @@ class Likelihood:
     best : the best minimum.
     cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
     sd : standard deviations, shape (unknowns,).
-    correlations : of the coordinates, shape (unknowns, unknowns).
+    correlations : correlations of the coordinates, shape (unknowns, unknowns).
     others : other minima and the start, from which branches are sought.
     ends : points at the ends of all intervals, likewise; empty until an interval is open.
     """
@@ -113,7 +113,7 @@ class Likelihood:
     def profile(self, powers: Floats, delta_chi2: float) -> Profile:
         """Return the interval of a combination within which chi2 rises by no more than a bound.
 
-        powers : of the coordinates, shape (unknowns,).
+        powers : powers of the coordinates, shape (unknowns,).
         delta_chi2 : the bound.
         Beyond the ends of the interval the search goes on from other minima, the start, and the ends of other unknowns.
         """
@@ -209,7 +209,7 @@ class ProfileWalk:
     """A profile of chi2: minima with a combination of coordinates fixed, each from the one before.
 
     likelihood, problem, best : chi2 about the best minimum.
-    powers : of the combination, shape (unknowns,).
+    powers : powers of the combination, shape (unknowns,).
     delta_chi2 : bound of the rise of chi2 above the best.
     sd : standard deviation of the combination by slopes.
     slope : change of the coordinates with the combination, along the covariance.
@@ -232,12 +232,20 @@ class ProfileWalk:
         return u + self.slope * (d - self.distance(u))
 
     def minimum_at(self, d: float, u: Floats) -> Minimum:
-        """Return the minimum of chi2 at a distance d from the best, near u."""
+        """Return the minimum of chi2 with the combination fixed.
+
+        d : distance of the combination from that at the best.
+        u : coordinates from which the search starts, moved to that distance.
+        """
         self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _TOLERANCE, _EVALUATIONS))
         return self.visited[-1]
 
     def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
-        """Return whether the rise of chi2 at a minimum is below a part of the bound."""
+        """Return whether the rise of chi2 at a minimum is below a part of the bound.
+
+        minimum : the minimum.
+        part : factor of the bound.
+        """
         return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
 
     def profile(self) -> Profile:
@@ -289,10 +297,11 @@ class ProfileWalk:
         return end, found[min(found, key=lambda d: abs(d - end))]
 
     def search_beyond(self, d: float, reach: float) -> list[Minimum]:
-        """Return minima at an end or behind it where chi2 is below the bound, the farthest last.
+        """Search other branches of the fit at an end of the interval and behind it.
 
-        d : distance of the end.
+        d : distance of the end from the best minimum.
         reach : distance of the bound of the ranges.
+        Returns the minima where chi2 is below the bound, the farthest last.
         """
         found, problem = [], self.problem
         starts = [(u, _BEYOND) for u in self.likelihood.others] + [(u, _BEYOND[:1]) for u in self.likelihood.ends]

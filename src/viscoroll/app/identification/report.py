@@ -78,7 +78,10 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
-    """Return the words on the products that are determined, ``found``."""
+    """Return the words on the products that the data determine.
+
+    found : products, of :meth:`viscoroll.app.identification.Identification.products`.
+    """
     sure, near = (
         " and ".join(_product_text(product) for product in found if product.near is by_slopes)
         for by_slopes in (False, True)
@@ -99,7 +102,10 @@ def _product_text(product: Any) -> str:
 
 
 def _interval_limits(fit: Any) -> Iterator[str]:
-    """Yield sentences on ends of intervals of a ``fit`` that ranges, not data, make."""
+    """Yield sentences on ends of intervals that are set by ranges, not by the data.
+
+    fit : a :class:`viscoroll.app.identification.Identification`.
+    """
     limited: dict[str, list[str]] = {}
     problem = fit._problem
     for i, found in fit._likelihood.axes(fit._delta_chi2()).items():

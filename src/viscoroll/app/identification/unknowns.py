@@ -42,10 +42,10 @@ _UNIT = 0.1
 class Unknown(NamedTuple):
     """An unknown, which the search varies by a coordinate u: the logarithm of its value, or its value in a unit.
 
-    name : of the unknown.
+    name : name of the unknown.
     start : value from which the search starts.
     low, high : range of its value.
-    unit : of a linear coordinate; None: the coordinate is the logarithm.
+    unit : unit of a linear coordinate; None: the coordinate is the logarithm.
     mean, sd : mean and standard deviation of the coordinate as known before; sd is infinite without such knowledge.
     """
 
@@ -87,7 +87,7 @@ def unknowns_of(
 ) -> list[Unknown]:
     """Return the unknowns that are requested, and those that records leave open.
 
-    cylinder : from whose inputs the search starts.
+    cylinder : the cylinder from whose inputs the search starts.
     requested : name -> range.
     records : name -> record.
     priors : name -> (value, standard deviation).
@@ -115,7 +115,7 @@ def unknowns_of(
 def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     """Return an unknown after checks.
 
-    name, start : of the unknown.
+    name, start : name and start value of the unknown.
     span : (low, high).
     prior : (value, standard deviation), None without.
     Raises ParameterError for a range or a prior that is none.
@@ -136,7 +136,7 @@ def _pair(argument: str, name: str, numbers: Any) -> list[float]:
     """Return two numbers, each a value that the unknown may have.
 
     argument : "unknown" or "prior", of :func:`.identify.identify`.
-    name : of the unknown.
+    name : name of the unknown.
     numbers : the pair.
     Raises ParameterError for another number of them, and for a range that does not ascend.
     """
@@ -196,7 +196,7 @@ def _with_values(body: Material, prefix: str, values: Mapping[str, float]) -> Ma
     """Return a material with other values.
 
     body : the material.
-    prefix : of its names, "" or "base_".
+    prefix : prefix of the names of its unknowns, "" or "base_".
     values : name -> value of unknowns, of other bodies too.
     With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
     """

@@ -55,7 +55,7 @@ def run_ensemble(
 
     Parameters
     ----------
-    run : of :func:`read_run`.
+    run : a run of :func:`read_run`.
     path : folder of the results; it is created if it does not exist.
     cluster : None: threads of this process.  "local": processes of this machine.  "tcp://host:port": a running dask
         scheduler, whose workers see ``path`` on a shared disk.
@@ -119,7 +119,7 @@ def _evaluate_missing(
 ) -> Iterator[int]:
     """Submit the missing blocks, and yield the number of motions of each one that is finished.
 
-    store: of the run.  shared: the store, or dask's reference to it, as tasks take it.
+    store: the store of the run.  shared: the store, or dask's reference to it, as tasks take it.
     pool, workers: executor, and its number of workers.
     advance: function of the progress bar; it is called with the motions of blocks that were on disk.
     """

@@ -40,7 +40,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
     Parameters
     ----------
-    run : of :func:`read_run`.
+    run : a run of :func:`read_run`.
     values : every uncertain input by name, a number or (n,).
     count : number of motions, if all inputs are numbers.
     threads : as of :func:`viscoroll.ensemble`.
@@ -98,9 +98,9 @@ def warn_of_materials(run: Run) -> None:
 
 
 def _fraction_outside(run: Run) -> float:
-    """Return the share of motions whose transit frequency at the start is outside a measured band.
+    """Return the fraction of motions whose transit frequency at the start is outside a measured band.
 
-    run: in SI units, whose first motions are looked at.  A start at rest is inside: M is 0 there.
+    run: a run in SI units, whose first motions are examined.  A start at rest is inside: M is 0 there.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))
     roller: Any = roller_of(run.path, content)

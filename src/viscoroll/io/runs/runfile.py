@@ -138,7 +138,7 @@ class Run:
 
     Attributes
     ----------
-    path, text : of the file.
+    path, text : path and text of the file.
     settings : its section [run].
     inputs : its other sections, and which of their numbers are uncertain.
     t : output times, dimensionless or, with [cylinder], in s, (t,).
@@ -284,7 +284,7 @@ def read_run(path: str | PathLike[str]) -> Run:
 def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
     """Raise a ParameterError within as FileError of the section [run]; a context manager.
 
-    path: of the run file.  key: that is at fault; default: the name of the parameter.
+    path: path of the run file.  key: key that is at fault; default: the name of the parameter.
     """
     try:
         yield
@@ -295,6 +295,7 @@ def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
 def _check_inputs(run: Run) -> None:
     """Raise FileError for inputs that a motion refuses, before anything is drawn.
 
+    run: the run.
     Checked are the medians, the ends of each input beside the medians of the others, and combinations of ends.
     """
     inputs, medians = run.inputs, run.inputs.medians
@@ -317,7 +318,7 @@ def _check_inputs(run: Run) -> None:
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
     """Raise FileError, with its line, for motions that would be refused.
 
-    values: input -> number or (n,).  advice: last words of the message.
+    run: the run.  values: input -> number or (n,).  advice: last words of the message.
     """
     try:
         _begin_motions(run, values)
@@ -329,7 +330,7 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
 def _begin_motions(run: Run, values: dict[str, Any]) -> None:
     """Raise ParameterError, of a material FileError, for motions that would be refused; nothing is rolled.
 
-    values: input -> number or (n,).
+    run: the run.  values: input -> number or (n,).
     """
     content, settings = run.inputs.filled(values), run.settings
     roller = roller_of(run.path, content)
