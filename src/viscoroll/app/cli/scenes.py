@@ -21,7 +21,7 @@ _V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
-    """Return the scene and the speeds of a contact as arguments of a command.
+    """Return the arguments of a command on a contact: (scene, V, delta, omega).
 
     kind: type of a speed, a function of the argument's text.
     """

@@ -66,7 +66,8 @@ class Identification(Result):
         those that are correlated with these beyond 0.95; :meth:`products` gives the products that are determined.
     noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation; of
         robust fits both as a tenth of outliers changes them little.
-    misfit : names of quantities whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or, of robust
+    misfit : names of quantities whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or,
+    of robust
         fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     records : the data by name.
     planned : whether the records have no values: standard deviations and intervals are those to expect.
