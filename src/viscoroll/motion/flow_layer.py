@@ -129,11 +129,12 @@ def _layer_motions(
 
 
 def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
-    """Coefficients, over kappa V at onset, of the value of E near which delta passes 0; 1 where it does not.
+    """Fit the value of E near which delta passes 0 by polynomials of kappa V at onset; it is 1 where delta does not.
 
-    problem : the scene.  sign : sign of omega - V at onset.  onsets : octaves of kappa V at onset.
-
-    Returns (octaves, powers).
+    problem : the scene.
+    sign : sign of omega - V at onset.
+    onsets : octaves of kappa V at onset.
+    Returns the coefficients, (octaves, powers).
     """
     powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
     powers[:, 0] = 1.0

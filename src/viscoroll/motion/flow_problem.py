@@ -45,11 +45,10 @@ class FlowProblem(NamedTuple):
     threads: int | None
 
     def contact_states(self, V: Floats, delta: Floats) -> Floats:
-        """Return contact states.
+        """Return delta_star, moment, traction and stiffness of the contact at speeds and creepages.
 
         V, delta : speeds and creepages, dimensionless, of one shape.
-
-        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V.
+        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V, shape (4, ...).
         """
         _, kappa, mu, _ = self.parameters
         out = np.empty((4, V.size))

@@ -85,7 +85,8 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 def warn_of_materials(run: Run) -> None:
     """Warn of the share of motions that start outside the measured bands of the materials, or as their medians do.
 
-    run: in SI units with a start speed, or any other, of which the motion of the medians is rolled and may warn.
+    run: the run.  Where it is in SI units with a start speed, the starts are compared with the bands; in any case
+    the motion of the medians is rolled, which may warn too.
     """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)

@@ -148,7 +148,10 @@ class Inputs:
         return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())
 
     def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the sections with ``values``, by name, in place of the inputs."""
+        """Return the sections of the run file with values in place of the inputs.
+
+        values: name of an input -> number or (n,).
+        """
         return _filled(self.content, values)
 
 
