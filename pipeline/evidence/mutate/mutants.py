@@ -82,7 +82,7 @@ MOTION = [
     ("motion/rhs.py", "stick = max(1.0 - sign * d, 0.0)", "stick = max(1.0 - 0.999 * sign * d, 0.0)", _MOTION),
     ("motion/rhs.py", "dVdelta_star = L + u * dL\n", "dVdelta_star = L\n", _MOTION),
     ("motion/rhs.py", "H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)", "H_over_F2_secants(index, index, v, D / w, law)", _DRIVE),
-    ("motion/rhs.py", "- critical_creepage(V, scene) * abs(V)", "- 0.98 * critical_creepage(V, scene) * abs(V)", _MOTION),
+    ("motion/law.py", "- critical_creepage(V, scene) * abs(V)", "- 0.98 * critical_creepage(V, scene) * abs(V)", _MOTION),
     ("motion/collocation.py", "value = fma(t, value, nodes[row + k])", "value = fma(t, value, nodes[row + k] * (1.0 + 1e-7))", _MOTION),
     ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, ROW_LENGTH + 1.0)", "_ALL.powers() / np.arange(2.0, ROW_LENGTH + 2.0)", _MOTION),
     ("motion/asymptotics.py", "scene.j * omega_over_V * (half_space - force) - cylinder", "omega_over_V * (half_space - force) - scene.j * cylinder", "tests/motion/test_motion.py"),
@@ -118,11 +118,11 @@ DRIVE = [
     ("motion/output.py", "force * V, torque * omega", "force * V, torque * V", _DRIVEN),
     ("motion/output.py", "(omega - V) * rates.Q", "omega * rates.Q", _DRIVEN),
     ("motion/regimes.py", "return abs(torque) <= limit", "return abs(torque) <= 2.0 * limit", _DRIVE),
-    ("motion/regimes.py", "return State(0.0, -state.omega_or_d), Regime(full_slip, -direction, -sigma,", "return State(0.0, -state.omega_or_d), Regime(full_slip, -direction, sigma,", _EVENTS),
+    ("motion/regimes.py", "Regime(regime.full_slip, -regime.direction, -regime.sigma,", "Regime(regime.full_slip, -regime.direction, regime.sigma,", _EVENTS),
     ("motion/departure_from_rest.py", "* inverse_k - d_total * V_rate, slope, V_rate", "* inverse_k, slope, V_rate", _DRIVEN),
     ("motion/events.py", "if event == NO_EVENT or node < last or v_zero < v:", "if event == NO_EVENT or node < last:", "tests/motion/test_drive_events.py"),
-    ("motion/regime_solver.py", "if missed != NO_EVENT or (crossed == NO_EVENT and V_negative and not regime.full_slip):", "if crossed == NO_EVENT and V_negative and not regime.full_slip:", _EVENTS),
-    ("motion/regime_solver.py", "kinked = V_negative and (not regime.full_slip or crossed == STICK_EDGE or crossed == BELOW_REST_SPEED)", "kinked = V_negative and not regime.full_slip", "tests/motion/test_drive_events.py"),
+    ("motion/regime_solver.py", "if missed_event != NO_EVENT or (first_event == NO_EVENT and V_negative and not regime.full_slip):", "if first_event == NO_EVENT and V_negative and not regime.full_slip:", _EVENTS),
+    ("motion/regime_solver.py", "has_kink = V_negative and (not regime.full_slip or first_event == STICK_EDGE or first_event == BELOW_REST_SPEED)", "has_kink = V_negative and not regime.full_slip", "tests/motion/test_drive_events.py"),
 ]  # fmt: skip
 #: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
 COEFFICIENTS = [

@@ -298,7 +298,7 @@ def _significant_terms(values: Floats) -> Floats:
     to_terms = np.array([np.pad(poly2cheb(power), (0, count - 1 - k)) for k, power in enumerate(units)])
     of_both = terms[:, 1:] @ to_terms
     dropped = np.where(np.abs(of_both) < _NEGLIGIBLE * least[1:, :, None], of_both, 0.0)
-    # the dropped terms are subtracted: a conversion of the others to Chebyshev polynomials and back would add its rounding
+    # dropped terms are subtracted: converting the others to Chebyshev polynomials and back would add rounding errors
     terms[:, 1:] -= dropped @ powers_of_chebyshev(count, 0.0, 1.0)
     kept = np.where(of_both != dropped, np.arange(1, count + 1), 0).max(axis=-1, keepdims=True)
     terms[:, 1:][np.arange(count) >= kept] = 0.0
