@@ -284,8 +284,8 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     noted = noted[~np.isnan(noted[:, 1])]
     switches = tuple(Switch(float(when) * T, REGIMES[int(code)]) for when, code in noted if code >= 0.0)
     return Motion(
-        problem.roller, problem.drive, times, **rows, regime=codes.astype(np.int8), switches=switches, onset_time=onset_time * T,
-        rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
+        problem.roller, problem.drive, times, **rows, regime=codes.astype(np.int8), switches=switches,
+        onset_time=onset_time * T, rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
         reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.drive_error, _problem=problem,
     )  # fmt: skip
 

@@ -19,6 +19,8 @@ from .workspace import ROW_ONES, WORKSPACE_SIZE
 
 #: Columns of the information on each motion.
 INFO_COLUMNS = ("status", "steps", "switches", "onset_time", "rest_time")
+#: Number of these columns.
+N_INFO_COLUMNS = len(INFO_COLUMNS)
 
 
 class Drives(NamedTuple):
