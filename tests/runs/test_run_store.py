@@ -297,8 +297,9 @@ def test_an_interrupt_answers_at_once(tmp_path, whole):
         preexec_fn=_heeding,  # noqa: PLW1509 (nothing else runs in this process)
     )  # fmt: skip
     while not (tmp_path / "long.zarr/records/start").exists():
+        assert process.poll() is None, process.communicate()
         time.sleep(0.05)
-    time.sleep(1.0)
+    time.sleep(0.3)
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
