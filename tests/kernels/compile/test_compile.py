@@ -389,7 +389,8 @@ NOTICE = r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll 
 
 
 def test_who_waits_is_told_once_a_process(tmp_path):
-    code = "from viscoroll.kernels.compile.jit import kernel\nprint(kernel(lambda x: x)(1), kernel(lambda x: 2.0 * x)(50.0))"
+    calls = "print(kernel(lambda x: x)(1), kernel(lambda x: 2.0 * x)(50.0))"
+    code = f"from viscoroll.kernels.compile.jit import kernel; {calls}"
     first = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="")
     assert re.fullmatch(NOTICE, first.stderr)
     assert first.stdout == "1 100.0\n"
