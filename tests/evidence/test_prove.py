@@ -5,6 +5,8 @@ import csv
 from places import DATA
 from processes import made
 
+from pipeline.evidence.prove.table import TABLE
+
 CHECK_VALUES = DATA / "reference/check_values.csv"
 
 
@@ -17,3 +19,11 @@ def test_check_values_are_made_again(tmp_path):
             for folder in (tmp_path, CHECK_VALUES.parent)
         )
         assert again == kept[:lines]
+
+
+def test_draws_of_a_proof_are_its_own():
+    """They follow from a key that no other proof has."""
+    assert len({proof.key() for proof in TABLE}) == len(TABLE)
+    first = [proof.random(1).integers(1 << 62) for proof in TABLE]
+    assert len(set(first)) == len(TABLE)
+    assert [proof.random(1).integers(1 << 62) for proof in TABLE[::-1]] == first[::-1]

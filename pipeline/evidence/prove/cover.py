@@ -77,6 +77,6 @@ PROOFS = [
     Proof(
         "covers", "cover_states", "one and three modes, ν = 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
         {"": ("δ0 of a cover against boundary elements, relative", _BOUND)},
-        free_creep,
+        free_creep, "free creep",
     ),
 ]  # fmt: skip
