@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.core.plots.style import new_figure, save
-from viscoroll.materials.law_store import errors_of
+from viscoroll.materials.law_file import stated_errors
 
 from . import benchmark_integrator, stage
 from .runtime import least_seconds
@@ -73,7 +73,7 @@ def laws(scene: vr.Scene, settings: Benchmark) -> Iterator[Law]:
             yield Law(f"grid, {n} by {n}", splines, settings.rtol, path.stat().st_size / 1e3, grid.Q.spline_error)
     path = stage.ROOT / settings.law
     rows = vr.law(scene.replace(material=vr.load_law(path))).jitted
-    worst = max(errors_of(vr.tables.load(path)).values())
+    worst = max(stated_errors(vr.tables.load(path)).values())
     yield Law("rows", rows, settings.rtol, path.stat().st_size / 1e3, worst)
     yield Law("root solves", benchmark_integrator.RootSolves(scene), settings.root_solves)
 

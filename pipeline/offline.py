@@ -20,8 +20,8 @@ import xarray as xr
 import viscoroll as vr
 from viscoroll.core.errors import FileError
 from viscoroll.io.config import preset
-from viscoroll.materials.file import SECTIONS, materials_of
-from viscoroll.materials.law_store import errors_of
+from viscoroll.materials.law_file import stated_errors
+from viscoroll.materials.material_toml import SECTIONS, parse_materials
 
 from . import stage
 
@@ -98,7 +98,7 @@ def made(outcome: stage.Outcome, path: Path, make: Callable[[], xr.Dataset]) -> 
 
 def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[], xr.Dataset]) -> None:
     """Build, save and report a law."""
-    errors = errors_of(made(outcome, path, make))
+    errors = stated_errors(made(outcome, path, make))
     off_N, worst = errors.pop("N"), max(errors.values())
     outcome.headline[f"{path.stem}: largest relative error (allowed {settings.allowed:g})"] = worst
     outcome.headline[f"{path.stem}: of N, over its largest (allowed {settings.allowed_N:g})"] = off_N
@@ -107,7 +107,7 @@ def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[
 
 def bodies(config: Path, law: Law) -> tuple[vr.Material | None, vr.Material | None]:
     """The material and that of the base."""
-    found = materials_of(config, {name: each for name in SECTIONS if (each := getattr(law, name)) is not None})
+    found = parse_materials(config, {name: each for name in SECTIONS if (each := getattr(law, name)) is not None})
     if law.dma:
         path = config.parent / law.dma
         try:

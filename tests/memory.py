@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from viscoroll.materials import law_table
+from viscoroll.materials.law import table
 from viscoroll.motion import flow
 from viscoroll.motion.ensemble_result import Ensemble
 
@@ -13,7 +13,7 @@ from viscoroll.motion.ensemble_result import Ensemble
 def forget() -> None:
     """Neither a table nor a flow map is at hand; those on disk and compiled kernels stay."""
     flow._map.cache_clear()
-    law_table._made.cache_clear()
+    table._made.cache_clear()
 
 
 def taken_beside(call: Callable[[], Ensemble]) -> int:

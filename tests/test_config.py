@@ -7,7 +7,7 @@ import pytest
 
 import viscoroll as vr
 from viscoroll.io.config import read_law_source, read_roller
-from viscoroll.materials.file import read_materials
+from viscoroll.materials.material_toml import read_materials
 
 CYLINDER = "[cylinder]\nR = 0.1\nm = 35.5\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\nmu = 0.2\n"
 SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"

@@ -16,7 +16,7 @@ from many import MATERIALS, states
 import viscoroll as vr
 from pipeline.evidence.truth.enclosures import INPUTS, contact_enclosure, slopes
 from viscoroll.contact_law.contact_fields import FIELDS, SLOPES, SLOPES_OF_BODIES
-from viscoroll.materials import law_each
+from viscoroll.materials.law import per_element
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
@@ -80,7 +80,7 @@ def test_a_material_each_is_that_material_alone(name):
 def test_a_law_keeps_alive_what_its_kernels_have_the_addresses_of():
     alpha = np.array([3.0, 200.0])
     held = weakref.ref(alpha)
-    law = law_each.law_of_alphas(alpha)
+    law = per_element.record_of_alphas(alpha)
     del alpha
     assert held() is not None
     del law

@@ -1,6 +1,10 @@
 """Covers of finite thickness: limits, closed forms, more terms, balances; against boundary elements: make prove."""
 
+import ctypes
 import dataclasses
+import json
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -12,8 +16,8 @@ from refusals import refused
 
 import viscoroll as vr
 from pipeline.evidence.prove import layer
-from viscoroll.materials.cover_rows import at_speed
-from viscoroll.materials.cover_solve import CoverModes, solve
+from viscoroll.materials.law.cover_rows import solve_at_speed
+from viscoroll.materials.law.cover_solve import CoverModes, solve
 
 ONE, THREE = vr.Prony([10.0], [1.0 / 11.0]), vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003])
 KAPPA, MU = 10.0, 0.3
@@ -48,9 +52,8 @@ def test_a_thick_cover_is_a_half_space(p):
 @pytest.mark.parametrize("cover", COVERS)
 def test_rows_are_the_solve(cover):
     """With twice as many terms of the pressure."""
-    modes = CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu)
     u = 10.0 ** np.linspace(-2.5, 3.0, 12)
-    truth = np.array([at_speed(modes, cover.thickness, each, orders=60) for each in u]).T
+    truth = np.array([solve_at_speed(cover, each, orders=60) for each in u]).T
     found = vr.contact(scene_on(cover), u / KAPPA, delta=0.0)
     assert close(found.lam, truth[0], rel=tol.COVER_ROWS)
     assert close(2.0 * KAPPA / MU * found.delta_star, truth[1], rel=tol.COVER_ROWS)
@@ -199,6 +202,116 @@ def test_a_law_on_disk(tmp_path):
     refused(lambda: found.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "layer of 0.5", "0.49")
 
 
+@pytest.mark.parametrize("p", [ONE, THREE])
+def test_pressure_of_a_thick_cover_is_that_of_a_half_space(p):
+    """At rest, slow, fast, backwards; outside of the contact 0.  There is no shear stress."""
+    half, cover = scene_on(vr.Bodies(p, vr.Prony.elastic(), 1.0)), scene_on(vr.Cover(p, nu=0.5, thickness=1e9))
+    x, V = np.meshgrid(np.linspace(-1.5, 2.5, 101), [0.0, 1e-6, 1e-3, 0.1, 10.0, -1.0])
+    known, found = vr.stress(half, x, V, delta=0.0), vr.stress(cover, x, V, delta=0.0)
+    assert close(found.p, known.p, rel=tol.COVER_PRESSURE, scale=known.p.max())
+    assert list(found.keys()) == ["p"]
+
+
+#: a layer beside a body that relaxes too, and one that is elastic itself there
+TWO_RELAXING = vr.Cover(THREE, nu=0.3, thickness=0.4, part=0.6, other=ONE)
+BESIDE = "lam", "zeta", "epsilon", "delta_star", "delta", "M"
+ELASTIC_LAYER = vr.Cover(1.0, nu=0.5, thickness=0.8, part=0.3, other=THREE, on="base")
+
+
+@pytest.mark.parametrize("cover", [*COVERS, TWO_RELAXING, ELASTIC_LAYER])
+@pytest.mark.parametrize("V", [0.0, 2e-3, 0.04, 0.2])
+def test_pressure_of_a_cover_makes_the_parabola(cover, V):
+    """Its integral is the load, its moment M, and the slope that both bodies take on, by Fourier's transform with the
+    kernel of the layer, is x/R in the contact.
+
+    Much faster the memory would reach round the period of the transform."""
+    scene = scene_on(cover)
+    c = vr.contact(scene, V, delta=0.0, fields=("lam", "epsilon", "M", "zeta"))
+    nodes = np.pi * np.arange(1, 400) / 400.0
+    y, weights = np.cos(nodes), np.sin(nodes) * np.pi / 400.0
+
+    def p(y):
+        return vr.stress(scene, 0.5 * c.lam * (c.epsilon + y), V, delta=0.0).p
+
+    load = 1.0 / (32.0 * KAPPA)
+    assert close(0.5 * c.lam * weights @ p(y), load, rel=tol.COVER_PRESSURE)
+    moment = 0.25 * c.lam**2 * weights @ (p(y) * (y + c.epsilon)) / (load * KAPPA)
+    assert close(moment, c.M, rel=tol.COVER_MOMENT, scale=max(abs(c.M), c.lam))
+    count, cells = 1 << 17, 256
+    grid = (np.arange(count) - count // 2 + 0.5) / cells
+    v = 2.0 * np.pi * np.fft.rfftfreq(count, 1.0 / cells)
+    u, kap = np.minimum(v * 2.0 * cover.thickness / c.lam, 40.0), 3.0 - 4.0 * cover.nu
+    layer_of = (2.0 * kap * np.sinh(2.0 * u) - 4.0 * u) / (2.0 * kap * np.cosh(2.0 * u) + 4.0 * u * u + 1.0 + kap * kap)
+
+    def compliance(series):
+        b = 1.0 / series.T
+        return 1.0 / series.alpha + (series.J * b / (b - 1j * (v / c.zeta)[:, None])).sum(axis=1)
+
+    def slope(pressure, kernel):
+        return np.fft.irfft(-1j * kernel * np.fft.rfft(pressure), count)
+
+    kernel = cover.part * compliance(cover.layer) * layer_of + (1.0 - cover.part) * compliance(cover.other)
+    near = np.abs(grid) < 0.8
+    hertz = slope(np.sqrt(np.maximum(1.0 - grid**2, 0.0)) / (8.0 * np.pi * KAPPA), np.ones(v.size))
+    unit = np.mean(hertz[near] / grid[near])
+    found = slope(p(grid), kernel)[near]
+    assert close(found, unit * c.lam * (grid + c.epsilon)[near], rel=tol.COVER_SLOPE, scale=abs(unit) * c.lam)
+
+
+def test_a_layer_beside_a_body_that_relaxes():
+    """Thick it is a half-space; in SI units it is that of its scene; what needs the split of M is left out."""
+    pair = vr.Bodies(THREE, ONE, 0.6)
+    V = 10.0 ** np.linspace(-8.0, 1.0, 19)
+    thick = scene_on(vr.Cover(THREE, nu=0.5, thickness=1e10, part=0.6, other=ONE))
+    known, found = vr.contact(scene_on(pair), V, delta=0.0), vr.contact(thick, V, delta=0.0)
+    assert tuple(found.keys()) == BESIDE
+    for name in BESIDE:
+        assert close(found[name], known[name], rel=tol.COVER_THICK, what=name)
+    thin = dataclasses.replace(RUBBER, thickness=0.01)
+    roller = vr.Cylinder(R=0.1, m=30.0, material=vr.Material(1e7, 0.3, ONE, 0.02), base=thin, mu=0.5, load=2e3)
+    assert roller.scene().material.other == ONE
+    assert roller.scene().material.layer == THREE.slower(0.1 / 0.02)
+    assert set(roller.contact(1.0, delta=0.0).keys()) == {*BESIDE, "length", "C_rr"}
+
+
+#: evaluates the header for arrays of states, as the fields and slopes below
+C_STATES = """#include "cover.h"
+void states(int n, double kappa, double mu, const double *V, const double *slip, double *out) {
+  for (int i = 0; i < n; i++) {
+    vr_state s, t = vr_contact(&cover, kappa, mu, V[i], slip[i]);
+    vr_slopes d;
+    vr_contact_slopes(&cover, kappa, mu, V[i], slip[i], &s, &d);
+    double all[] = {s.lam, s.epsilon, s.delta_star, s.delta_0, t.beta, t.Q, s.M, s.M_half_space, s.M_cylinder, d.dQ_dV,
+                    d.dQ_domega, d.dM_dV};
+    for (int k = 0; k < 12; k++) out[12 * i + k] = all[k];
+  }
+}
+"""
+C_FIELDS = ("lam", "epsilon", "delta_star", "delta_0", "beta", "Q", "M", "M_half_space", "M_cylinder")
+C_FIELDS += ("dQ_dV", "dQ_domega", "dM_dV")
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
+@pytest.mark.parametrize("cover", COVERS)
+def test_the_header_of_C_is_the_contact(tmp_path, cover):
+    """In rows and behind them, forwards and backwards, below and above full slip, with slopes; N is NaN."""
+    vr.tables.export(vr.tables.law(cover), tmp_path / "cover.h")
+    (tmp_path / "states.c").write_text(C_STATES)
+    flags = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC", "states.c", "-lm", "-o", "states.so")
+    subprocess.run([shutil.which("cc"), *flags], cwd=tmp_path, check=True)
+    scene, speeds = scene_on(cover), 10.0 ** np.linspace(-6.0, 14.0, 61)
+    V, part = (each.ravel() for each in np.meshgrid([*speeds, *-speeds], [-1.4, -0.6, -0.05, 1e-2, 0.3, 0.97, 1.2]))
+    limit = vr.contact(scene, V, delta=0.0, fields=("delta_star", "delta_0"))
+    omega = V * (1.0 + limit.delta_0 + part * limit.delta_star)
+    slip, out = omega - V, np.empty((V.size, len(C_FIELDS)))
+    pointers = (ctypes.c_void_p(array.ctypes.data) for array in (V, slip, out))
+    ctypes.CDLL(str(tmp_path / "states.so")).states(V.size, ctypes.c_double(KAPPA), ctypes.c_double(MU), *pointers)
+    known = vr.contact(scene, V, omega=omega, slopes=True, fields=C_FIELDS)
+    for name, values in zip(C_FIELDS, out.T, strict=True):
+        scale = np.abs(known[name]).max() if name in ("Q", "beta", "delta_0") else np.abs(known[name])
+        assert close(values, known[name], rel=tol.COVER_IN_C, scale=scale, what=name)
+
+
 def test_a_bound_law_is_the_contact():
     """To the bit, at any speed."""
     scene = scene_on(COVERS[1])
@@ -252,3 +365,12 @@ def test_a_thickness_in_SI_units():
         assert close(
             *(each.V[-1] * unit for each, unit in zip(tilted, (1.0, roller.scale["V"]), strict=True)), rel=1e-9
         )
+
+
+def test_a_law_as_JSON(tmp_path):
+    """Numbers with the same bits; a cover has no attribute for two bodies."""
+    law = vr.tables.law(COVERS[0])
+    vr.tables.export(law, tmp_path / "cover.json")
+    content = json.loads((tmp_path / "cover.json").read_text())
+    for name in ("lam", "limit", "free"):
+        assert np.array_equal(content[name], law[name].values)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.table import law_table
 from viscoroll.motion.ensemble import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")

@@ -14,10 +14,10 @@ from drives import DMA, ON_DMA
 from refusals import refused
 from run_files import FILES
 from scipy import stats
-from viscoroll.app.identification.file import read_measurements
 
 import viscoroll as vr
 from viscoroll import fmu
+from viscoroll.app.identification.measurements_toml import read_measurements
 from viscoroll.contact_law.validity.free_rolling import FreeRolling
 from viscoroll.contact_law.validity.steadiness import Steadiness
 from viscoroll.core import errors
@@ -25,9 +25,9 @@ from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.runs import read_run
 from viscoroll.io.sampling import sample
-from viscoroll.materials.file import read_materials
-from viscoroll.materials.law_file import table_of
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.netcdf import law_table_of
+from viscoroll.materials.law.table import law_table
+from viscoroll.materials.material_toml import read_materials
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text()
 LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]
@@ -48,9 +48,9 @@ NAMES = vars(experiments) | {
     "SERIES": vr.Prony([2.0, 6.0], [1.0, 1e-4]), "MANY": vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
-    "read_body": read_roller, "read_bodies": read_law_source, "read_materials": read_materials, "sample": sample,
+    "read_roller": read_roller, "read_law_source": read_law_source, "read_materials": read_materials, "sample": sample,
     "FreeRolling": FreeRolling, "Steadiness": Steadiness, "Scale": Scale,
-    "law_table": law_table, "table_of": table_of,
+    "law_table": law_table, "law_table_of": law_table_of,
     "SOFT": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0),
     "STEEL": vr.Material.elastic(2e11, 0.3),
     "COVERED": vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0),

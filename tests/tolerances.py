@@ -76,7 +76,7 @@ CONTINUITY_Q = 1e-15
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 
-# --- materials/law_axis.py (test_law_axis.py) ---
+# --- materials/law/alpha_axis.py (test_law_axis.py) ---
 #: M/V, eta/F and H/F^2 by the axis of alpha, relative; measured 4.9e-15.
 AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.
@@ -469,6 +469,15 @@ COVER_THIN = 0.08
 COVER_FAST = 1e-6
 #: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as large as that.
 COVER_NU = 1e-5
+#: Pressure of a thick cover against a half-space's, over its largest; and the integral of the pressure, over the load.
+COVER_PRESSURE = 1e-11
+#: The moment of the pressure against M, over the larger of M and lam: M is a difference of both.
+COVER_MOMENT = 1e-10
+#: The slope by transforms on a grid of 256 cells for half a contact, over lam: roots at the edges cost cells^(-3/2).
+COVER_SLOPE = 1e-3
+#: The header of C against contact: states and slopes, over their condition number where omega - V is rounded; Q and
+#: delta_0 over their largest.
+COVER_IN_C = 1e-11
 #: Differences over a millionth of V: their second order, and rounding over a millionth.
 COVER_SLOPES = 1e-6
 #: Motions whose energy is looked at.

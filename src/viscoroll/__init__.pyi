@@ -38,7 +38,7 @@ from .io import sampling as sampling
 from .io import tables as tables
 from .materials.bodies import Bodies as Bodies
 from .materials.cover import Cover as Cover
-from .materials.law_file import load_law as load_law
+from .materials.law.netcdf import load_law as load_law
 from .materials.material import Material as Material
 from .materials.measured import Measured as Measured
 from .materials.prony import Prony as Prony

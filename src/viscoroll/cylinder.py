@@ -17,7 +17,7 @@ from .core.errors import ParameterError, exactly_one_error
 from .core.results import Result, SummaryRow, format_value
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
-from .materials.law_table import LawTable
+from .materials.law.table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony

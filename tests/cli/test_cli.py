@@ -20,8 +20,8 @@ from processes import printed, python
 
 import viscoroll as vr
 from viscoroll.app.cli import arguments, main
-from viscoroll.materials.file import read_materials
-from viscoroll.materials.law_store import checksum, content_of
+from viscoroll.materials.law_file import checksum, dataset_content
+from viscoroll.materials.material_toml import read_materials
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -383,7 +383,7 @@ def test_tables_validate(run, capsys, tables):
     assert "EXCEEDED" not in run("tables", "validate", str(tables / "rubber.nc"), "-n", "500")
     wrong = vr.tables.load(tables / "rubber.nc")
     wrong["press"].values[9] *= 1.0 + tol.CLI_WRONG
-    vr.tables.save(wrong.assign_attrs(sha256_of_numbers=checksum(content_of(wrong).numbers)), "wrong.nc")
+    vr.tables.save(wrong.assign_attrs(sha256_of_numbers=checksum(dataset_content(wrong).numbers)), "wrong.nc")
     assert main(["tables", "validate", "wrong.nc", "-n", "500"]) == 1
     out, err = capsys.readouterr()
     assert err == ""

@@ -1,6 +1,7 @@
 """FMUs as a tool drives them: the rules of the standard, forces and motions of the package, refusals in words."""
 
 import ctypes
+import dataclasses
 import shutil
 import sys
 from contextlib import contextmanager
@@ -27,6 +28,10 @@ CYLINDERS = {
     "alike": vr.Cylinder(R=0.1, m=35.5, material=RUBBER, mu=0.3),
     "unlike": vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0),
 }
+#: a steel roller with a rubber cover
+COVERED = vr.Cylinder(
+    R=0.05, m=9.0, material=dataclasses.replace(RUBBER, thickness=5e-3), base=vr.Material.rigid(), mu=0.6, load=2000.0
+)
 OUTPUTS = ("force", "torque", "moment_half_space", "moment_cylinder")
 
 
@@ -39,7 +44,7 @@ def built(tmp_path_factory):
         if key not in made:
             name, model, version = key
             made[key] = folder / f"{name}-{model}-{version}.fmu"
-            fmu.build(CYLINDERS[name], made[key], model, version)
+            fmu.build((CYLINDERS | {"covered": COVERED})[name], made[key], model, version)
         return str(made[key])
 
     return path
@@ -151,9 +156,9 @@ THROWS = {"thrown": (1.0, 0.0, 0.0, 0.0), "driven": (-0.5, 20.0, 0.02, 0.1)}
 
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("throw", THROWS)
-@pytest.mark.parametrize("name", CYLINDERS)
+@pytest.mark.parametrize("name", [*CYLINDERS, "covered"])
 def test_roller_by_co_simulation_is_that_of_roll(built, name, throw, version):
-    cylinder = CYLINDERS[name]
+    cylinder = (CYLINDERS | {"covered": COVERED})[name]
     V0, omega0, force, torque = THROWS[throw]
     force, torque, t = force * cylinder.load, torque * cylinder.load * cylinder.R, np.linspace(0.0, 0.5, 11)
     exact = cylinder.roll(V0, omega0, t, rtol=1e-11, force=force, torque=torque)
@@ -165,6 +170,25 @@ def test_roller_by_co_simulation_is_that_of_roll(built, name, throw, version):
     assert close(found["time"], t, rel=tol.FMU_ROUNDED, scale=1.0)
     for column, values in {"v": exact.V, "omega": exact.omega, "x": exact.x}.items():
         assert close(found[column], values, rel=tol.FMU_ROLLER, scale=np.abs(values).max()), column
+
+
+def test_the_law_of_a_cover_holds_at_its_load(built, tmp_path):
+    """Another load would be another law; a law on disk starts at a load that is its own."""
+    with opened(built("covered", "Roller", 2), "CoSimulation", v0=1.0) as roller:
+        for given in ({"load": 2100.0}, {"R": 0.06}):
+            roller.set(**given)
+            with pytest.raises(fmpy.fmi1.FMICallException):
+                roller.step(0.0, 0.1)
+            assert "contact length at rest, in m," in roller.said[-1]
+            roller.set(load=2000.0, R=0.05)
+        roller.set(load=1000.0, width=0.5)
+        roller.step(0.0, 0.1)
+    path = tmp_path / "law.nc"
+    vr.tables.save(vr.tables.law(COVERED), path)
+    fmu.build(vr.load_law(path), tmp_path / "roller.fmu")
+    with opened(str(tmp_path / "roller.fmu"), "CoSimulation", v0=1.0) as roller:
+        roller.step(0.0, 0.1)
+        assert close(roller.get("load") * roller.get("R"), COVERED.load * COVERED.R, rel=tol.FMU_ROUNDED)
 
 
 def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
@@ -341,7 +365,8 @@ def test_what_is_out_of_range_is_refused_in_words(built, version):
         element.get("force")
 
 
-def test_program(tmp_path):
+@pytest.mark.filterwarnings("always::viscoroll.ModelWarning")  # printed by the program
+def test_program(tmp_path, capsys):
     """The same bytes for the same cylinder, so that they can be kept."""
     law, roller = tmp_path / "law.nc", tmp_path / "roller.fmu"
     vr.tables.save(vr.tables.law(CYLINDERS["unlike"].pair), law)
@@ -352,6 +377,11 @@ def test_program(tmp_path):
     starts = {v.name: v.start for v in about.modelVariables}
     assert float(starts["E_prime"]) == CYLINDERS["unlike"].E_prime
     assert float(starts["T_ref"]) == RUBBER.T_ref
+    scene = tmp_path / "scene.toml"
+    scene.write_text("[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n")
+    capsys.readouterr()
+    assert main(["fmu", str(scene), "-o", str(roller)]) == 0
+    assert "of a dimensionless scene it takes the law, not kappa" in capsys.readouterr().err
     toml = "docs/examples/rubber.toml"
     assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement"]) == 0
     assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"

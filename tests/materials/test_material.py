@@ -13,8 +13,8 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.core.files import write_dataset
-from viscoroll.materials.file import as_toml, read_materials
-from viscoroll.materials.store import as_dataset
+from viscoroll.materials.material_netcdf import material_as_dataset
+from viscoroll.materials.material_toml import material_as_toml, read_materials
 
 RUBBER = vr.Material(
     E=2.3e5,
@@ -219,7 +219,7 @@ def test_a_material_stored_is_read_to_the_bit(tmp_path):
         assert read_materials(path) == {"material": material}
         (tmp_path / "scene.toml").write_text(f'[material]\nfile = "{n}.nc"\n')
         assert read_materials(tmp_path / "scene.toml") == {"material": material}
-        (tmp_path / "scene.toml").write_text(as_toml(material))
+        (tmp_path / "scene.toml").write_text(material_as_toml(material))
         assert read_materials(tmp_path / "scene.toml") == {"material": material}
 
 
@@ -235,8 +235,8 @@ def test_what_other_programs_read(tmp_path):
 def test_a_material_of_another_toml_file(tmp_path):
     """As ``material fit -o dma.toml`` leaves it, for either body; the layer may be given beside it."""
     rubber, belt = STORED[0], STORED[1]
-    (tmp_path / "dma.toml").write_text(as_toml(rubber))
-    (tmp_path / "two.toml").write_text(as_toml(rubber) + as_toml(belt, "base"))
+    (tmp_path / "dma.toml").write_text(material_as_toml(rubber))
+    (tmp_path / "two.toml").write_text(material_as_toml(rubber) + material_as_toml(belt, "base"))
     scene = tmp_path / "scene.toml"
     scene.write_text('[material]\nfile = "dma.toml"\n[base]\nfile = "dma.toml"\nthickness = 0.006\n')
     thin = dataclasses.replace(rubber, thickness=0.006)
@@ -267,7 +267,7 @@ def test_what_was_measured_goes_with_the_temperature():
 def test_edited_materials(tmp_path):
     path = tmp_path / "rubber.nc"
     STORED[0].to_netcdf(path)
-    data = as_dataset(STORED[0])
+    data = material_as_dataset(STORED[0])
     for changed in (data.assign(E=-data.E), data.drop_vars("tau"), data.assign_attrs(given="both", schema="other")):
         write_dataset(changed, path, sealed=True)
         refused(lambda: vr.Material.from_netcdf(path), "no material", error=vr.FileError)

@@ -172,9 +172,9 @@ def test_a_store_holds_the_run(read, tmp_path, file):
 
 def test_names_of_inputs():
     about = attributes("base_tau_1", si=True)
-    assert about == {"long_name": "base: relaxation time 1 over T_ref", "units": "1"}
+    assert about == {"long_name": "base: relaxation time 1 divided by T_ref", "units": "1"}
     assert attributes("base_E", si=True)["units"] == "Pa"
-    assert attributes("E_2", si=False)["long_name"] == "strength 2 of relaxation over the long-time modulus"
+    assert attributes("E_2", si=False)["long_name"] == "strength 2 of relaxation, divided by the long-time modulus"
 
 
 # --- which method ---

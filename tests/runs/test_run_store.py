@@ -134,13 +134,13 @@ def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
 
 def test_what_a_killed_worker_leaves_is_removed(run_file, tmp_path, whole, monkeypatch):
     """It dies in a write while the run goes on with another worker."""
-    store, work = tmp_path / "store.zarr", Store.work
+    store, work = tmp_path / "store.zarr", Store.evaluate
 
     def killed_before(self, block):
         (store / "records" / f".1-{block}.tmp-x").touch()
         return work(self, block)
 
-    monkeypatch.setattr(Store, "work", killed_before)
+    monkeypatch.setattr(Store, "evaluate", killed_before)
     run_ensemble(read_run(run_file), store)
     assert content(store) == content(whole)
 

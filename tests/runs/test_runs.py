@@ -160,3 +160,35 @@ def test_an_estimate_does_not_scale_up_what_happens_once(run, monkeypatch):
     assert estimate(run, threads=1).seconds == 5.0
     assert estimate(run, threads=2).seconds == 3.0  # three blocks for one of the two
     assert estimate(run, threads=9).seconds == 1.0
+
+
+LOADS = ("2e3", '{ distribution = "uniform", loc = 1e3, scale = 1e3 }')
+
+
+def test_an_estimate_states_the_time_of_the_laws_of_covers(tmp_path):
+    """One law for one thickness over l0, fourteen for each octave of it, once however many the motions are."""
+    text = """
+[cylinder]
+R = 0.1
+m = 30.0
+mu = 0.5
+load = {load}
+[material]
+E = 2e6
+nu = 0.49
+thickness = 0.01
+prony = {{ E = [2.0], tau = [0.1] }}
+[base]
+E = 2e11
+nu = 0.3
+[start]
+V0 = 1.0
+omega0 = {{ distribution = "uniform", loc = 9.0, scale = 2.0 }}
+[run]
+n = 20
+t = 0.1
+"""
+    one, many = (estimate(run_of(text.format(load=load), tmp_path), threads=1) for load in LOADS)
+    assert "once for the laws of covers" in str(one)
+    assert 0.0 < one.law_seconds < one.seconds
+    assert many.law_seconds > 5.0 * one.law_seconds

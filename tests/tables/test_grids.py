@@ -20,7 +20,7 @@ import viscoroll as vr
 from viscoroll.core import files
 from viscoroll.io.tables import schema
 from viscoroll.io.tables.check import NODES_ALLOWED, check_table
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.table import law_table
 
 V, DELTA, ALPHA = np.geomspace(1e-2, 2.0, 21), np.linspace(-0.04, 0.04, 33), np.array([1.0, 2.0, 4.0, 8.0, 16.0])
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)

@@ -17,9 +17,10 @@ import viscoroll as vr
 from viscoroll.core import files
 from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.tables.check import check_table
-from viscoroll.materials.law_file import table_of
-from viscoroll.materials.law_store import checksum
-from viscoroll.materials.law_table import FUNCTIONS, LawTable, law_table
+from viscoroll.materials.law.netcdf import law_table_of
+from viscoroll.materials.law.pack import FUNCTIONS
+from viscoroll.materials.law.table import LawTable, law_table
+from viscoroll.materials.law_file import checksum
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
 RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber"', density=1100.0)
@@ -51,7 +52,7 @@ def copy(saved: Path, tmp_path: Path) -> Path:
 
 def same(one: LawTable, other: LawTable) -> None:
     for field in fields(LawTable):
-        name = "coefficients" if field.name == "given_coefficients" else field.name
+        name = "coefficients" if field.name == "steady_coefficients" else field.name
         first, second = getattr(one, name), getattr(other, name)
         equal = np.array_equal(first, second) if isinstance(first, np.ndarray) else first == second
         assert equal, name
@@ -62,7 +63,7 @@ def same(one: LawTable, other: LawTable) -> None:
 
 @pytest.mark.parametrize("name", GIVEN)
 def test_a_file_has_the_bits_of_its_material(tmp_path, name):
-    path, table = tmp_path / "law.nc", table_of(*GIVEN[name])
+    path, table = tmp_path / "law.nc", law_table_of(*GIVEN[name])
     vr.tables.save(vr.tables.law(*GIVEN[name]), path)
     loaded = vr.load_law(path)
     same(loaded, table)
@@ -111,7 +112,7 @@ def test_attributes_are_complete(saved):
 def test_a_cylinder_of_a_law(tmp_path, name):
     vr.tables.save(vr.tables.law(*GIVEN[name]), tmp_path / "law.nc")
     law = vr.load_law(tmp_path / "law.nc")
-    pair = table_of(*GIVEN[name]).pair
+    pair = law_table_of(*GIVEN[name]).pair
     by_law = vr.Cylinder(R=0.1, m=30.0, mu=0.3, material=law, plane=pair.plane)
     own = by_law.replace(material=pair.cylinder, base=pair.base)
     assert by_law.scene() == own.scene()
@@ -123,7 +124,7 @@ def test_a_cylinder_of_a_law(tmp_path, name):
 def test_a_scene_keeps_its_law():
     table = law_table(SERIES)
     scene = vr.Scene(kappa=20.0, mu=0.3, material=table)
-    assert scene.table is scene.replace(mu=0.2).table is table_of(table) is table
+    assert scene.table is scene.replace(mu=0.2).table is law_table_of(table) is table
     assert scene.replace(alpha=3.0).table is not table
     assert vr.Scene(kappa=20.0, mu=0.3, material=law_table(11.0)).alpha == 11.0
 
@@ -134,7 +135,7 @@ def test_scene_files_and_material_files(saved, tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(f'[material]\nfile = "rubber.nc"\n{cylinder}')
     assert read_roller(path).material == RUBBER
-    assert read_law_source(path) == table_of(RUBBER).pair
+    assert read_law_source(path) == law_table_of(RUBBER).pair
     vr.tables.save(vr.tables.law(RUBBER, STEEL), tmp_path / "rubber.nc")
     refused(partial(read_roller, path), "line 2", "law of a pair: give one material", error=vr.FileError)
     vr.tables.save(vr.tables.law(11.0), tmp_path / "rubber.nc")

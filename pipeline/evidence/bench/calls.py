@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.materials.law_table import made
+from viscoroll.materials.law.table import make_table
 from viscoroll.motion import flow
 
 from ..timing import seconds_of, timed
@@ -118,7 +118,7 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     for (name, kind), ns in timed(calls, sizes["repeats"]).items():
         rows.setdefault(name, {"material": name, "table_ms": None})[kind] = ns
     for name, material in materials.items():
-        rows[name]["table_ms"] = 1e3 * seconds_of(partial(made, material))[0]
+        rows[name]["table_ms"] = 1e3 * seconds_of(partial(make_table, material))[0]
     return [*rows.values()]
 
 

@@ -19,7 +19,7 @@ import viscoroll as vr
 from viscoroll.app.cli.program import parser
 from viscoroll.io.config import CylinderSection, SceneSection
 from viscoroll.io.runs.runfile import DriveSection, RunSection, StartSection
-from viscoroll.materials.file import MaterialSection
+from viscoroll.materials.material_toml import MaterialSection
 
 from ...stage import ROOT
 from ..results import Results, table

@@ -145,7 +145,7 @@ def merged(name: str) -> dict[str, float]:
     store = Store(Path(f"{name}.zarr").absolute(), read_run(f"{name}.toml"))
     size = max(path.stat().st_size for path in store.root.glob("records/0*"))
     begun = time.process_time()
-    store.end()
+    store.finish()
     return {"record_bytes": size, "merge_s_a_block": (time.process_time() - begun) / store.run.blocks}
 
 

@@ -20,7 +20,7 @@ from viscoroll.kernels.rows.contact import signed_traction
 from viscoroll.kernels.rows.contact_states import State
 from viscoroll.kernels.rows.evaluate import length_and_moment, locate_row, moment_factor
 from viscoroll.kernels.rows.record import Law
-from viscoroll.materials.law_table import law_table
+from viscoroll.materials.law.table import law_table
 
 #: share of rtol that the absolute tolerance is
 ATOL_SHARE = 1e-3

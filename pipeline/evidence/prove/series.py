@@ -18,7 +18,7 @@ import viscoroll as vr
 from viscoroll.contact_law.contact_fields import OF_BODIES
 from viscoroll.kernels.rows.modes import modes_loop
 from viscoroll.kernels.rows.series import FUNCTIONS, new_workspace
-from viscoroll.materials.law_modes import series_of
+from viscoroll.materials.law.evaluate import modes_record
 
 from ..truth.enclosures import INPUTS, enclosed, slopes, zone_of
 from ..truth.material import Material, material_of
@@ -40,7 +40,7 @@ def random_series(random: np.random.Generator, modes: int) -> vr.Prony:
 
 def of_z(p: vr.Prony, z: float) -> list[float]:
     """g, h and m, by the modes."""
-    series, found, place = series_of(p.modes), np.empty((2 * FUNCTIONS + 1, 1)), np.array([z])
+    series, found, place = modes_record(p.modes), np.empty((2 * FUNCTIONS + 1, 1)), np.array([z])
     place.flags.writeable = False
     modes_loop(series, np.empty(0), new_workspace(p.E.size), place, found)
     shift, rise, half_space, cylinder = found[:FUNCTIONS, 0].tolist()

@@ -107,7 +107,7 @@ def contact(
     condition number, and the error of grip twice that.  The error of N is 2e-14 of its largest value
     (``tests/kernels/rows/test_unsteady.py``).
 
-    The law of one material is evaluated from polynomials of one variable (:mod:`.materials.law_table`), which are
+    The law of one material is evaluated from polynomials of one variable (:mod:`.materials.law.table`), which are
     computed at first use in some milliseconds and kept.  The result of a state does not depend on other states of the
     call.
 
@@ -119,8 +119,10 @@ def contact(
         raise exactly_one_error("delta", "omega", both=delta is not None)
     if slopes is not False:
         slopes = check_bool("slopes", slopes)
-    cover = type(scene.material) is Cover
-    names = field_names(fields, slopes, method, like=scene.like_bodies, si=scale.si, cover=cover)
+    cover = scene.material if type(scene.material) is Cover else None
+    split = cover is None or cover.other.alpha == 1.0
+    like, of_cover = scene.like_bodies, cover is not None
+    names = field_names(fields, slopes, method, like=like, si=scale.si, cover=of_cover, split=split)
     creep_name = "omega" if delta is None else "delta"
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])

@@ -33,12 +33,14 @@ FREE_CREEP = "delta_0"
 _MULTIPLES = {"length": "lam", "C_rr": "M"}
 #: Field of like bodies -> the field of which it is half.
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
+#: Fields that are known if both bodies relax and one of them is a layer.
+_BEFORE_THE_SPLIT = ("lam", "length", "zeta", "epsilon", "delta_star", "delta", "M", "C_rr", "dM_dV")
 #: All fields.
 _KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES)
 
 
 def field_names(
-    fields: Iterable[str] | None, slopes: bool, method: str, *, like: bool, si: bool, cover: bool
+    fields: Iterable[str] | None, slopes: bool, method: str, *, like: bool, si: bool, cover: bool, split: bool = True
 ) -> tuple[str, ...]:
     """Return the names of the fields of a call.
 
@@ -48,6 +50,7 @@ def field_names(
     like : whether both bodies are of one material.
     si : whether the roller is a cylinder.
     cover : whether it has a cover of finite thickness.
+    split : whether it is known how slip and M are split between the bodies; not if the body beside a cover relaxes.
 
     Raises
     ------
@@ -71,6 +74,13 @@ def field_names(
                 raise ParameterError("fields", repr(name), "computed by method='table' alone: it is not in the paper")
     if not cover:
         return names
+    if not split:
+        known = tuple(name for name in names if name in _BEFORE_THE_SPLIT)
+        if fields is None or known == names:
+            return known
+        unknown = next(name for name in names if name not in known)
+        allowed = f"of {', '.join(_BEFORE_THE_SPLIT)} where the body beside a layer relaxes: the rest is not known"
+        raise ParameterError("fields", repr(unknown), allowed)
     if UNSTEADY in names:
         allowed = "left out for a cover: N of a layer of finite thickness is not known"
         raise ParameterError("fields", repr(UNSTEADY), allowed)

@@ -14,9 +14,9 @@ from ..core.blocks import block_reader, run_blocks
 from ..core.checks import broadcast_shape, extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
-from ..materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
-from ..materials.law_modes import by_modes
-from ..materials.law_table import LawTable
+from ..materials.law.evaluate import evaluate_by_modes
+from ..materials.law.per_element import record_of_alphas, record_of_materials, sort_by_octave
+from ..materials.law.table import LawTable
 from ..materials.prony import Prony
 from .contact_fields import UNSTEADY, complete, computed_fields, kernel_rows
 from .parameters import Parameters
@@ -132,7 +132,7 @@ def evaluate_law(
         else:
             zeta = np.empty((1, stop - start))
             loop(law, request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0), workspace, stop - start)
-            N[:] = by_modes(alpha, zeta[0]).N
+            N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
     if count <= _TOGETHER and record:
         numbers = np.empty((len(arrays), *(shape or (1,))))
@@ -167,10 +167,10 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
-        return law_of_materials(material, alpha.astype(np.int64)), order
+        return record_of_materials(material, alpha.astype(np.int64)), order
     if direct:
         return alpha, _NO_ORDER
-    return law_of_alphas(alpha), order_of_alphas(alpha, parts[0], parts[2])
+    return record_of_alphas(alpha), sort_by_octave(alpha, parts[0], parts[2])
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:

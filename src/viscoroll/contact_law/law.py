@@ -13,7 +13,7 @@ from ..core.array_types import Floats, Numbers
 from ..core.checks import check_array, check_bool
 from ..core.errors import ParameterError
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
-from ..materials.law_grid import LawGrid
+from ..materials.law.grid import LawGrid
 from .contact import contact
 from .contact_table import refuse_overflow
 from .parameters import Roller, refuse_arrays, resolve_model

@@ -16,8 +16,8 @@ from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
-from ..materials.law_grid import LawGrid
-from ..materials.law_table import LawTable, law_table
+from ..materials.law.grid import LawGrid
+from ..materials.law.table import LawTable, law_table
 from ..materials.prony import Prony
 from ..materials.prony_forms import HIGHEST_ALPHA
 
@@ -235,6 +235,10 @@ def scale_of(roller: Any) -> Scale:
     return roller.scale if isinstance(roller, Roller) else DIMENSIONLESS
 
 
+#: Functions that answer if both bodies relax and one of them is a layer: they need neither the split of M nor slip.
+_BEFORE_THE_SPLIT = ("contact", "stress", "validity", "resistance_extrema")
+
+
 def resolve_model(
     roller: Any, call: str, *, moves: bool = False, slope: Any = None
 ) -> tuple[Roller, Parameters, Scale]:
@@ -255,6 +259,8 @@ def resolve_model(
     if slope is not None:
         roller = roller.on_slope(slope)
     scene = roller.scene()
+    if scene.cover is not None and call not in _BEFORE_THE_SPLIT:
+        scene.cover.refuse_unknown_split(call)
     if moves and scene.gamma is None:
         sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
         raise ParameterError("gamma", None, "a number > 0", sentence)

@@ -13,10 +13,11 @@ from ..core.checks import broadcast_shape, check_array
 from ..core.errors import exactly_one_error
 from ..core.labels import strip_labels
 from ..core.results import Values
-from ..materials.bodies import one_series
-from ..materials.law_modes import kernel_series
+from ..materials.bodies import total_series
+from ..materials.law.cover_pressure import pressure
+from ..materials.law.evaluate import series_record
 from .contact_table import evaluate_contact
-from .parameters import Parameters, Roller, refuse_cover, resolve_model
+from .parameters import Parameters, Roller, resolve_model
 from .validity.model_warnings import warn_of_contact
 
 #: Points of a block: some milliseconds of work.
@@ -45,7 +46,7 @@ def stress(
     -------
     Values
         ``p``: pressure divided by E', >= 0.  ``tau``: shear stress on the cylinder divided by E', of the sign of
-        omega - V, |tau| <= mu p.  Of a Cylinder in Pa.
+        omega - V, |tau| <= mu p.  Of a Cylinder in Pa.  Of a cover ``p`` alone: its shear stress is not known.
 
     Raises
     ------
@@ -70,7 +71,6 @@ def stress(
     from ..kernels.rows.stress import Points
 
     _, scene, scale = resolve_model(roller, "stress")
-    refuse_cover(scene, "the stresses are not computed")
     if (delta is None) == (omega is None):
         raise exactly_one_error("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"
@@ -102,7 +102,8 @@ def stress(
 
     run_blocks(work, p.size, _BLOCK)
     unit = scale["p"]
-    found = {name: unit * (row.reshape(shape) if shape else row.item()) for name, row in (("p", p), ("tau", tau))}
+    rows = {"p": p} if scene.cover is not None else {"p": p, "tau": tau}
+    found = {name: unit * (row.reshape(shape) if shape else row.item()) for name, row in rows.items()}
     return Values(found, given, si=scale.si, title="Stresses", labels=labels)
 
 
@@ -116,11 +117,30 @@ def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats)
 
     ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
     for first, last in pairwise([0, *ends, p.size]):
+        part = points._make(each[first:last] if each.size > 1 else each for each in points)
+        if scene.cover is not None:
+            p[first:last] = _cover_pressure(scene, int(alpha[min(first, alpha.size - 1)]), part)
+            continue
         material: Any = alpha if scene.series is None else scene.series
         if scene.material_array is not None:
-            material = one_series(scene.material_array[int(alpha[min(first, alpha.size - 1)])])
-        series, alphas = kernel_series(material)
-        part = points._make(each[first:last] if each.size > 1 else each for each in points)
+            material = total_series(scene.material_array[int(alpha[min(first, alpha.size - 1)])])
+        series, alphas = series_record(material)
         stress_loop(
             series, alphas, new_memory_weights(series), new_memory_weights(series), part, p[first:last], tau[first:last]
         )
+
+
+def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
+    """Return p/E' at points on a cover, by one solve for each state of the contact.
+
+    scene: with the cover.  index: which of its covers, if there are many.  points: as the kernels take them.
+    """
+    cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
+    x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
+    states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
+    found = np.empty(x.size)
+    for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
+        place = which.ravel() == n
+        y = 2.0 * x[place] / lam - epsilon
+        found[place] = pressure(cover.modes, zeta, 0.5 * lam / cover.thickness, y) / (8.0 * np.pi * kappa * lam)
+    return found

@@ -16,7 +16,15 @@ import msgspec
 from ..core.errors import FileError, ParameterError, unknown_name_error
 from ..core.sections import as_struct, check_keys, read_toml, section_error
 from ..cylinder import Cylinder
-from ..materials.file import SECTIONS, SUFFIX, CreepSection, PronySection, materials_of, read_materials, series_of
+from ..materials.material_netcdf import SUFFIX
+from ..materials.material_toml import (
+    SECTIONS,
+    CreepSection,
+    PronySection,
+    parse_materials,
+    parse_series,
+    read_materials,
+)
 from ..materials.pair import Pair
 from ..presets import PRESETS
 from ..scene import Scene
@@ -87,7 +95,7 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
     content = read_toml(path)
     check_sections(path, content, dict.fromkeys(more))
     try:
-        roller = make_roller(path, content, materials_of(path, content))
+        roller = make_roller(path, content, parse_materials(path, content))
         roller.scene()  # refuses parameters that leave the range of doubles
     except ParameterError as error:
         raise locate_error(path, content, error) from error
@@ -123,7 +131,7 @@ def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, A
     if "cylinder" in content:
         return Cylinder(**content["cylinder"], **materials)
     given = dict(content.get("scene", {}))
-    if (series := series_of(path, "scene", given)) is not None:
+    if (series := parse_series(path, "scene", given)) is not None:
         given["material"] = series
     given = {name: value for name, value in given.items() if name not in ("prony", "creep")}
     if "preset" in content:

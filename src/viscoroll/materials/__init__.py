@@ -1,1 +1,1 @@
-"""Materials: their series, pairs of bodies, files, and the tables that kernels read."""
+"""Materials: series, pairs of bodies, covers and files; and their laws as tables that kernels read."""

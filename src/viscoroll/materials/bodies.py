@@ -1,7 +1,7 @@
 """Two bodies in contact: :class:`Bodies`, a cylinder of one linear viscoelastic material on a half-space of another.
 
-The contact law knows the sum of their compliances alone, J = share J_1 + (1 - share) J_2, one series again.  What the
-rolling resistance M takes of each body is the share of its creep modes in M.
+The contact law depends on the sum of their compliances alone, J = share J_1 + (1 - share) J_2, which is one series
+again.  The part of the rolling resistance M that a body has is that of its creep modes.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array, read_only
 from ..core.errors import ParameterError
-from .prony import Block, OneOrMany, Prony, descending, series_of_alpha
+from .prony import Block, OneOrMany, Prony, series_of_alpha, sort_modes
 from .prony_forms import MOST_MODES
 
 
@@ -29,24 +29,30 @@ class Bodies(OneOrMany):
     ----------
     cylinder, base : their series, times over one T_ref.
     share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2), in [0, 1]; 0: the cylinder is
-        rigid, 1: the half-space is.
-        Where a body is n series, or ``share`` is an array (n,), these are n pairs, ``p[i]`` one of them and ``p[i:k]``
-        some; what is single is that of all.
+        rigid, 1: the half-space is rigid.
+        If a body is n series, or ``share`` is an array (n,), these are n pairs: ``p[i]`` is one of them, ``p[i:k]`` are
+        some; a single series or number is that of all pairs.
 
     Attributes
     ----------
     shape : (), or (n,).
-    alpha : instantaneous over long-time stiffness of the pair, of each.
+    alpha : instantaneous divided by long-time stiffness of the pair, for each.
 
     Raises
     ------
     ParameterError
-        What is no series, numbers of them that differ, a share outside [0, 1], n pairs of more than 64 modes.
+        A body that is no series, different numbers of series, a share outside [0, 1], n pairs of more than 64 modes.
 
     Notes
     -----
     Plane strain, constant Poisson ratios.  No coupling: like bodies, both incompressible, or an incompressible body on
-    a rigid one.  Immutable, hashable, equal where what was given is.
+    a rigid one.  Immutable, hashable, equal where the parameters are.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.Bodies(vr.Prony([4.0], [1.0]), vr.Prony.elastic(), share=0.5).alpha
+    1.6666666666666667
     """
 
     cylinder: Prony
@@ -74,13 +80,14 @@ class Bodies(OneOrMany):
 
     @property
     def like(self) -> bool:
-        """Whether the two deform alike, in every pair: M is shared evenly, as the paper has it, and one series is that
-        of both."""
+        """Whether both bodies deform alike in every pair: then each has half of M, as in the paper, and one series
+        is that of both.
+        """
         return self.cylinder.shape == self.shape and self._same and bool(np.all(self.share == 0.5))
 
     @cached_property
     def alpha(self) -> Any:
-        """Instantaneous over long-time stiffness of the pair, of each."""
+        """Instantaneous divided by long-time stiffness of the pair, for each."""
         first, second = self.cylinder.alpha, self.base.alpha
         found = first if self._same else 1.0 / (self.share / first + (1.0 - self.share) / second)
         return np.broadcast_to(found, self.shape) if self.shape else found
@@ -90,35 +97,36 @@ class Bodies(OneOrMany):
         return Bodies(*(each[which] if np.shape(each) else each for each in parts))
 
     @cached_property
-    def _both(self) -> tuple[NDArray, ...]:
-        """Creep of both bodies together, strengths and times, and what of the strengths is the half-space's."""
-        share, rest = (np.asarray(part)[..., np.newaxis] for part in (self.share, 1.0 - np.asarray(self.share)))
-        parts = share * self.cylinder.J, rest * self.base.J
+    def _creep(self) -> tuple[NDArray, ...]:
+        """Creep of both bodies together: strengths, times, and the half-space's part of the strengths; (..., modes)."""
+        share = np.asarray(self.share)[..., np.newaxis]
+        parts = share * self.cylinder.J, (1.0 - share) * self.base.J
         bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.base.T)
         own, J, T = (
-            np.concatenate([np.broadcast_to(e, (*self.shape, e.shape[-1])) for e in each], -1) for each in bodies
+            np.concatenate([np.broadcast_to(body, (*self.shape, body.shape[-1])) for body in both], -1)
+            for both in bodies
         )
-        return tuple(descending(J, T, own))
+        return tuple(sort_modes(J, T, own))
 
     @cached_property
     def total(self) -> Prony:
         """The series that stands for both in the contact law."""
         if not self._same:
-            return Prony.creep(*self._both[:2], alpha=self.alpha)
+            return Prony.creep(*self._creep[:2], alpha=self.alpha)
         one = self.cylinder
         return one if one.shape == self.shape else one.repeated(len(self))
 
     @cached_property
     def half_space_weights(self) -> Floats:
-        """What of the strength of each creep mode of ``total``, slowest first, is the half-space's."""
+        """The half-space's part of the strength of each creep mode of ``total``, slowest first, (..., modes)."""
         J = self.total.J
         if self._same:
             return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
-        own = self._both[2][..., : J.shape[-1]]
+        own = self._creep[2][..., : J.shape[-1]]
         return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """The pairs ``which``, those of as many modes together."""
+        """Yield pairs in blocks of equal numbers of modes; ``which``: indices of the pairs, (m,)."""
         some = self[which]
         for block in some.total.blocks(np.arange(len(some))):
             yield block._replace(weights=some.half_space_weights[block.rows, : block.modes.J.shape[-1]])
@@ -127,12 +135,6 @@ class Bodies(OneOrMany):
     def _key(self) -> tuple[Any, ...]:
         return self.cylinder, self.base, np.shape(self.share), np.asarray(self.share).tobytes()
 
-    def __eq__(self, other: object) -> bool:
-        return self._key == other._key if isinstance(other, Bodies) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._key)
-
     def __repr__(self) -> str:
         if self.shape:
             modes = (body.E.shape[-1] for body in (self.cylinder, self.base))
@@ -140,8 +142,8 @@ class Bodies(OneOrMany):
         return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r})"
 
 
-def one_series(given: float | Prony | Bodies) -> Prony:
-    """The series of a material by its alpha, of a series, or of both bodies together."""
-    if isinstance(given, Bodies):
-        return given.total
-    return given if isinstance(given, Prony) else series_of_alpha(given)
+def total_series(material: float | Prony | Bodies) -> Prony:
+    """Return the series of ``material``: of an alpha, of a series itself, or of both bodies together."""
+    if isinstance(material, Bodies):
+        return material.total
+    return material if isinstance(material, Prony) else series_of_alpha(material)

@@ -14,12 +14,10 @@ from ..core.checks import check_array, check_number, read_only
 from ..core.errors import ParameterError
 from ..core.results import format_value
 from .bodies import Bodies
-from .cover_rows import CoverRows, cover_rows
-from .cover_solve import CoverModes
 from .prony import Prony, series_of_alpha
 from .prony_forms import HIGHEST_ALPHA
 
-#: thickness over l0 beyond which a body is a half-space to rounding at any speed of interest
+#: thickness divided by l0 beyond which a body is a half-space to rounding at any speed of interest
 _THICKEST = 1e15
 
 
@@ -27,21 +25,24 @@ _THICKEST = 1e15
 class Cover(Bodies):
     """A viscoelastic layer bonded to a rigid core or bed, rolling against a rigid or elastic body.
 
-    It stands as ``material`` of a :class:`viscoroll.Scene`.  In SI units give ``thickness`` to a
-    :class:`viscoroll.Material`.
+    It is the ``material`` of a :class:`viscoroll.Scene`.  In SI units a :class:`viscoroll.Material` has a
+    ``thickness`` instead.
 
     Parameters
     ----------
-    series : the layer's :class:`Prony` series, times over T_ref; or its alpha >= 1, with T_epsilon for the unit of
-        time.
+    series : the layer's :class:`Prony` series, times in units of T_ref; or its alpha >= 1, with T_epsilon for the
+        unit of time.
     nu : Poisson's ratio of the layer, in [0, 0.5], constant in time.
-    thickness : h/l0, dimensionless, > 0: over the contact length at rest that the same bodies would have as
-        half-spaces.  So thin that half the contact at rest is longer than six thicknesses it is refused.  An array (n,)
-        makes n covers, ``cover[i]`` one of them, for an array parameter of a scene or for the motions of an ensemble.
+    thickness : h/l0, dimensionless, > 0; l0 is the contact length at rest that the same bodies would have as
+        half-spaces.  Half the contact at rest may be at most six thicknesses long.  An array (n,) makes n covers, of
+        which ``cover[i]`` is one, for an array parameter of a scene or for the motions of an ensemble.
     on : "cylinder" (a covered roller; default) or "base" (a belt or lining that a roller runs on).
     part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1 (default): the other
-        body is rigid, else it is an elastic half-space.
+        body is rigid; below 1 it is an elastic half-space.
     other_nu : Poisson's ratio of the other body; only where ``part`` < 1.
+    other : series of the other body if it relaxes too, times in units of T_ref; default: elastic.  How slip and M are
+        split between the bodies is then not known: :func:`contact` gives lam, zeta, epsilon, delta_star, M and C_rr
+        alone.
 
     Raises
     ------
@@ -81,6 +82,7 @@ class Cover(Bodies):
         on: Literal["cylinder", "base"] = "cylinder",
         part: float = 1.0,
         other_nu: float = 0.5,
+        other: Prony | None = None,
     ) -> None:
         if isinstance(series, Real) and not isinstance(series, bool):
             series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
@@ -88,48 +90,49 @@ class Cover(Bodies):
             raise ParameterError("series", f"{series!r:.60}", "a Prony series of one material, or an alpha")
         if on not in ("cylinder", "base"):
             raise ParameterError("on", repr(on), "'cylinder' or 'base'")
-        for name, value in (("nu", nu), ("other_nu", other_nu)):
-            object.__setattr__(self, name, check_number(name, value, low=0.0, high=0.5))
+        ratios = {"nu": nu, "other_nu": other_nu}
+        values: dict[str, Any] = {name: check_number(name, nu, low=0.0, high=0.5) for name, nu in ratios.items()}
         part = check_number("part", part, low=0.0, strict=True, high=1.0)
-        other, cylinder = Prony.elastic(), on == "cylinder"
-        object.__setattr__(self, "cylinder", series if cylinder else other)
-        object.__setattr__(self, "base", other if cylinder else series)
-        object.__setattr__(self, "share", part if cylinder else 1.0 - part)
         given = check_array("thickness", thickness, low=0.0, strict=True, high=_THICKEST)
         if given.ndim > 1:
             raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
-        object.__setattr__(self, "thickness", read_only(given))
-        object.__setattr__(self, "on", on)
+        other = Prony.elastic() if other is None else other
+        bodies = (series, other) if on == "cylinder" else (other, series)
+        share = part if on == "cylinder" else 1.0 - part
+        values |= dict(zip(("cylinder", "base"), bodies, strict=True), share=share, thickness=read_only(given), on=on)
+        self.__dict__.update(values)
         super().__post_init__()
-        object.__setattr__(self, "shape", given.shape)
+        self.__dict__["shape"] = given.shape
 
     @property
     def like(self) -> bool:
-        """Never: all of M is the layer's."""
+        """False: all of M is the layer's."""
         return False
 
     @property
     def layer(self) -> Prony:
-        """The series of the layer alone."""
+        """Series of the layer alone."""
         return self.cylinder if self.on == "cylinder" else self.base
 
     @property
-    def part(self) -> float:
-        """The layer's part of the long-time compliance."""
-        return float(self.share if self.on == "cylinder" else 1.0 - self.share)
+    def other(self) -> Prony:
+        """Series of the other body."""
+        return self.base if self.on == "cylinder" else self.cylinder
 
     @property
-    def modes(self) -> CoverModes:
-        """What the solve takes of it."""
-        return CoverModes(self.layer, self.total, self.part, self.nu, self.other_nu)
+    def part(self) -> float:
+        """The layer's part of the long-time compliance, in (0, 1]."""
+        return float(self.share if self.on == "cylinder" else 1.0 - self.share)
 
-    def rows(self, thickest: float | None = None) -> CoverRows:
-        """The law over speed, of one cover; 0.1 to 0.3 s.  ``thickest`` : as of :func:`.cover_rows.cover_rows`."""
-        return cover_rows(self.modes, self.thickness, 1.0 if self.on == "base" else -1.0, thickest)
+    def refuse_unknown_split(self, call: str) -> None:
+        """Raise ParameterError if the other body relaxes; ``call``: function that needs slip and both parts of M."""
+        if self.other.alpha > 1.0:
+            allowed = f"rigid or elastic: how M and slip are split, which {call} needs, is not known; contact gives M"
+            raise ParameterError("body beside the layer", "one that relaxes", allowed)
 
     def of_thickness(self, thickness: ArrayLike) -> Cover:
-        """The same bodies with another thickness over l0."""
-        more: dict[str, Any] = {"on": self.on, "part": self.part, "other_nu": self.other_nu}
+        """Return the same bodies with another ``thickness``, divided by l0, a number or an array (n,)."""
+        more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
         return Cover(self.layer, nu=self.nu, thickness=thickness, **more)
 
     def __getitem__(self, which: Any) -> Cover:
@@ -138,8 +141,9 @@ class Cover(Bodies):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         thickness = np.shape(self.thickness), np.asarray(self.thickness).tobytes()
-        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu
+        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu, self.other
 
     def __repr__(self) -> str:
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
+        other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
         return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={format_value(self.thickness)}, on={self.on!r}{other})"

@@ -1,4 +1,4 @@
-"""Materials as other programs state them: the constructors that :class:`Material` has from here.
+"""Materials as finite element programs state them: constructors of :class:`Material`.
 
 All of these programs relax the shear modulus, G(t), and may relax the bulk modulus, K(t).  Where the bulk terms are not
 given, Poisson's ratio is taken constant in time, so that E(t) = 2 (1 + nu) G(t) relaxes alike.  Where they are given
@@ -20,12 +20,12 @@ from ..core.scale import SI
 from .bodies import Bodies
 from .prony import Prony
 
-#: keywords that every constructor hands on to :class:`Material`
-_MORE = ("name", "density", "thickness", "measured", "temperature")
+#: keywords that every constructor passes to :class:`Material`
+_MATERIAL_KEYWORDS = ("name", "density", "thickness", "measured", "temperature")
 
 
 class FromPrograms:
-    """Constructors of :class:`Material`; times in s, so that T_ref = 1 s and they stay as they are given."""
+    """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given."""
 
     @classmethod
     def abaqus(
@@ -39,7 +39,7 @@ class FromPrograms:
         long_term: bool = False,
         **more: Any,
     ) -> Any:
-        """The material of ``*VISCOELASTIC, TIME=PRONY`` under ``*ELASTIC``.
+        """Make the material of ``*VISCOELASTIC, TIME=PRONY`` under ``*ELASTIC``.
 
         g_R(t) = G(t)/G0 = 1 - sum g_i (1 - exp(-t/tau_i)), so that E_i = g_i/(1 - sum g), and k_R(t) = K(t)/K0 alike:
         Abaqus 2017, Materials, "Time domain viscoelasticity" (abaqus-docs.mit.edu, simamat-c-timevisco).
@@ -49,10 +49,10 @@ class FromPrograms:
         E0 : modulus of ``*ELASTIC``, Pa: the instantaneous one, or the long-time one where
             ``long_term`` (``MODULI=LONG TERM``).
         nu : Poisson's ratio of ``*ELASTIC``.  Without ``k`` it is taken constant in time, as k_i = g_i make it.
-        g : g_i, shares of the instantaneous shear modulus, >= 0, of a sum below 1; or the table (n, 3) of
+        g : g_i, fractions of the instantaneous shear modulus, >= 0, of a sum below 1; or the table (n, 3) of
             ``*VISCOELASTIC``, a row (g_i, k_i, tau_i) each, without ``tau`` and ``k``.
         tau : relaxation times tau_i, s, > 0.
-        k : k_i, shares of the instantaneous bulk modulus, >= 0, of a sum below 1, at the same times; zeros are a
+        k : k_i, fractions of the instantaneous bulk modulus, >= 0, of a sum below 1, at the same times; zeros are a
             constant bulk modulus, which is also what Abaqus takes where they are left out.  Where they differ from g,
             nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.
         more : ``name``, ``density``, ``thickness``, ``measured``, ``temperature`` of the material.
@@ -74,13 +74,13 @@ class FromPrograms:
                 sentence = f"tau is not given: give tau, or rows (g_i, k_i, tau_i) for g, here of shape {table.shape}"
                 raise ParameterError("tau", None, "one time for each g", sentence)
             g, k, tau = table.T
-        return cls._relative(E0, nu, "g", g, tau, k, check_bool("long_term", long_term), more)
+        return cls._from_fractions(E0, nu, "g", g, tau, k, check_bool("long_term", long_term), more)
 
     @classmethod
     def ansys(
         cls, E0: float, nu: float, alpha: ArrayLike, tau: ArrayLike, *, k: ArrayLike | None = None, **more: Any
     ) -> Any:
-        """The material of ``TB,PRONY,,,,SHEAR`` (and ``BULK``) under ``MP,EX`` and ``MP,PRXY``.
+        """Make the material of ``TB,PRONY,,,,SHEAR`` (and ``BULK``) under ``MP,EX`` and ``MP,PRXY``.
 
         G(t) = G0 (alpha_inf + sum alpha_i exp(-t/tau_i)), alpha_inf = 1 - sum alpha_i, K(t) alike: Mechanical APDL,
         Material Reference, "Viscoelasticity", whose elastic constants are those of t = 0.
@@ -100,13 +100,13 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths, an unknown keyword.
         """
-        return cls._relative(E0, nu, "alpha", alpha, tau, k, False, more)
+        return cls._from_fractions(E0, nu, "alpha", alpha, tau, k, False, more)
 
     @classmethod
     def comsol(
         cls, E: float, nu: float, G: ArrayLike, tau: ArrayLike, *, K: ArrayLike | None = None, **more: Any
     ) -> Any:
-        """The material of a generalized Maxwell node under Linear Elastic Material.
+        """Make the material of a generalized Maxwell node under Linear Elastic Material.
 
         G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural Mechanics
         Module User's Guide, "Linear Viscoelasticity" (doc.comsol.com, sme_ug_theory).
@@ -126,10 +126,10 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths, an unknown keyword.
         """
-        E, nu = check_number("E", E, unit=SI, low=0.0, strict=True), poisson(nu)
-        strengths, times = pairs("G", G, "tau", tau)
-        bulk = None if K is None else pairs("K", K, "tau", times)[0]
-        return cls._of_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
+        E, nu = check_number("E", E, unit=SI, low=0.0, strict=True), check_poisson(nu)
+        strengths, times = check_pairs("G", G, "tau", tau)
+        bulk = None if K is None else check_pairs("K", K, "tau", times)[0]
+        return cls._from_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
 
     @classmethod
     def lsdyna(
@@ -144,7 +144,7 @@ class FromPrograms:
         K: ArrayLike | None = None,
         **more: Any,
     ) -> Any:
-        """The material of ``*MAT_GENERAL_VISCOELASTIC`` (076), or of ``*MAT_VISCOELASTIC`` (006) as one pair.
+        """Make the material of ``*MAT_GENERAL_VISCOELASTIC`` (076), or of ``*MAT_VISCOELASTIC`` (006) as one pair.
 
         G(t) = sum G_i exp(-beta_i t), G_i absolute and beta_i = 1/tau_i; a pair with beta = 0 is the
         long-time modulus: LS-DYNA Keyword Manual, Vol. II.  In 006 G(t) = G_inf + (G0 - G_inf) exp(-beta t)
@@ -169,11 +169,11 @@ class FromPrograms:
             A value out of range, lists of different lengths, no long-time modulus or several, both or
             neither of nu and bulk, an unknown keyword.
         """
-        strengths, rates = pairs("G", G, "beta", beta, strict=False)
+        strengths, rates = check_pairs("G", G, "beta", beta, strict=False)
         resting = rates == 0.0
-        rest = _long_time(strengths, G0, G_inf, strengths[resting])
+        rest = _long_time_shear(strengths, G0, G_inf, strengths[resting])
         strengths, times = strengths[~resting], 1.0 / rates[~resting]
-        terms = None if K is None else pairs("K", K, "beta", rates, strict=False)[0]
+        terms = None if K is None else check_pairs("K", K, "beta", rates, strict=False)[0]
         if terms is not None:
             if terms[resting].any():
                 if nu is not None or bulk is not None:
@@ -186,69 +186,78 @@ class FromPrograms:
             bulk = check_number("bulk", bulk, unit=SI, low=0.0, strict=True)
             nu = (3.0 * bulk - 2.0 * rest) / (6.0 * bulk + 2.0 * rest)
             terms = np.zeros_like(strengths) if terms is None else terms
-        return cls._of_moduli(rest, poisson(nu), strengths, times, terms, more, bulk)
+        return cls._from_moduli(rest, check_poisson(nu), strengths, times, terms, more, bulk)
 
     @classmethod
-    def _relative(
-        cls,
-        E: float,
-        nu: float,
-        name: str,
-        shares: ArrayLike,
-        tau: ArrayLike,
-        bulk: ArrayLike | None,
-        long: bool,
-        more: dict[str, Any],
-    ) -> Any:
-        """From shares of the instantaneous moduli; ``long``: E is the long-time modulus."""
-        E, nu = check_number("E0", E, unit=SI, low=0.0, strict=True), poisson(nu)
-        values, times = pairs(name, shares, "tau", tau)
-        left = _left(name, values)
+    def _from_fractions(
+        cls, E: float, nu: float, name: str, fractions: ArrayLike, tau: ArrayLike, bulk: ArrayLike | None,
+        long_term: bool, more: dict[str, Any],
+    ) -> Any:  # fmt: skip
+        """Make a material from terms that are fractions of the instantaneous moduli; raises ParameterError.
+
+        E, nu: Young's modulus, Pa, and Poisson's ratio.
+        name: of the parameter ``fractions``, for errors.
+        fractions: terms of G(t) divided by G(0), (terms,).
+        tau: relaxation times, s, (terms,).
+        bulk: terms of K(t) divided by K(0), (terms,); None: nu is constant in time.
+        long_term: whether E and nu are those of long times.
+        more: keywords of the material.
+        """
+        E, nu = check_number("E0", E, unit=SI, low=0.0, strict=True), check_poisson(nu)
+        values, times = check_pairs(name, fractions, "tau", tau)
+        rest = _remaining_fraction(name, values)
         if bulk is None:
-            return cls._made(more, E=E if long else E * left, nu=nu, prony=Prony(values / left, times))
-        others = pairs("k", bulk, "tau", times)[0]
-        left_of_bulk = _left("k", others)
+            return cls._from_moduli(1.0, nu, values / rest, times, None, more, E=E if long_term else E * rest)
+        others = check_pairs("k", bulk, "tau", times)[0]
+        rest_of_bulk = _remaining_fraction("k", others)
         G, K = E / (2.0 * (1.0 + nu)), E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
-        G, K = (G, K) if long else (G * left, K * left_of_bulk)
+        G, K = (G, K) if long_term else (G * rest, K * rest_of_bulk)
         if nu < 0.5 and (values != others).any():  # nu of long times
             nu = (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)
-        relaxing = others / left_of_bulk * (K if nu < 0.5 else 1.0)
-        return cls._of_moduli(G, nu, values / left * G, times, relaxing, more, K)
+        bulk_terms = others / rest_of_bulk * (K if nu < 0.5 else 1.0)
+        return cls._from_moduli(G, nu, values / rest * G, times, bulk_terms, more, K)
 
     @classmethod
-    def _of_moduli(
+    def _from_moduli(
         cls, G_inf: float, nu: float, G: Floats, tau: Floats, K: Floats | None, more: dict[str, Any],
         K_inf: float | None = None, E: float | None = None,
     ) -> Any:  # fmt: skip
-        """From long-time shear modulus and Poisson's ratio, and the terms of G(t) and K(t), in one unit.
+        """Make a material from the terms of its moduli; raises ParameterError for an unknown keyword.
 
-        K : None where nu is constant in time.  K_inf : long-time bulk modulus, default by nu.  E : 2 (1 + nu) G_inf.
+        G_inf, nu: shear modulus and Poisson's ratio of long times.
+        G: terms of G(t), in the unit of G_inf, (terms,).
+        tau: relaxation times, s, (terms,).
+        K: terms of K(t), in the unit of G_inf, (terms,); None: nu is constant in time.
+        more: keywords of the material.
+        K_inf: bulk modulus of long times; default: by nu.
+        E: Young's modulus of long times, Pa; default: 2 (1 + nu) G_inf.
         """
         E = 2.0 * (1.0 + nu) * G_inf if E is None else E
         prony = Prony(G / G_inf, tau)
-        if K is not None and nu < 0.5:  # an incompressible body has no bulk strain to relax
+        if K is not None and nu < 0.5:  # an incompressible body has no bulk strain that could relax
             K_inf = E / (3.0 * (1.0 - 2.0 * nu)) if K_inf is None else K_inf
             if not np.array_equal(K * G_inf, G * K_inf):
                 prony = plane_strain(G_inf, G, K_inf, K, tau)
-        return cls._made(more, E=E, nu=nu, prony=prony)
-
-    @classmethod
-    def _made(cls, more: dict[str, Any], **own: Any) -> Any:
-        """The material of these fields; raises ParameterError for a keyword that no material has."""
-        check_names("keyword", more, _MORE, "one of this constructor")
-        return cls(**own, **more)
+        check_names("keyword", more, _MATERIAL_KEYWORDS, "one of this constructor")
+        return cls(E=E, nu=nu, prony=prony, **more)  # type: ignore[call-arg]
 
 
-def poisson(nu: Any) -> float:
-    """Poisson's ratio in (-1, 0.5]; raises ParameterError."""
+def check_poisson(nu: Any) -> float:
+    """Return Poisson's ratio ``nu`` as a number in (-1, 0.5]; raises ParameterError."""
     nu = check_number("nu", nu)
     if not -1.0 < nu <= 0.5:
         raise ParameterError("nu", nu, "in (-1, 0.5]")
     return nu
 
 
-def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True) -> tuple[Floats, Floats]:
-    """Two lists of one length, the first >= 0, the second > 0 (>= 0 unless ``strict``); raises ParameterError."""
+def check_pairs(
+    name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True
+) -> tuple[Floats, Floats]:
+    """Return two lists of equal length as arrays; raises ParameterError.
+
+    name, values: the first list, >= 0.
+    other, at: the second list, > 0, or >= 0 unless ``strict``.
+    """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, strict=strict)
     if first.ndim != 1 or first.shape != second.shape:
@@ -256,8 +265,14 @@ def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bo
     return first, second
 
 
-def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
-    """The long-time shear modulus of LS-DYNA's three ways to give it."""
+def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
+    """Return the long-time shear modulus of LS-DYNA, Pa, by exactly one of its three ways; raises ParameterError.
+
+    strengths: all G_i, Pa.
+    G0: instantaneous shear modulus, Pa, or None.
+    G_inf: long-time shear modulus, Pa, or None.
+    resting: those G_i whose beta is 0, Pa.
+    """
     ways = {
         "G0": None if G0 is None else check_number("G0", G0, unit=SI) - math.fsum(strengths),
         "G_inf": G_inf,
@@ -271,30 +286,33 @@ def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, restin
     return check_number(named.get(name, name), value, unit="Pa", low=0.0, strict=True)
 
 
-def _left(name: str, shares: Floats) -> float:
-    """The share of the modulus that is left after long times; raises ParameterError where there is none."""
-    left = 1.0 - math.fsum(shares)
-    if not left > 0.0:
-        raise ParameterError(name, f"{shares.tolist()}", "of a sum below 1: no long-time modulus would be left")
-    return left
+def _remaining_fraction(name: str, fractions: Floats) -> float:
+    """Return 1 - sum fractions, the fraction of a modulus that remains; raises ParameterError where there is none.
+
+    name, fractions: of the parameter, (terms,).
+    """
+    rest = 1.0 - math.fsum(fractions)
+    if not rest > 0.0:
+        raise ParameterError(name, f"{fractions.tolist()}", "of a sum below 1: no long-time modulus would be left")
+    return rest
 
 
 def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArray) -> Prony:
-    """The series of E/(1 - nu^2), over its long-time value, of a shear and a bulk modulus that both relax.
+    """Return the series of E/(1 - nu^2), divided by its long-time value, if shear and bulk modulus both relax.
 
     As operators (1 - nu^2)/E = (3 K + 4 G)/(4 G (3 K + G)) = 1/(4 G) + 3/(4 (3 K + G)): two materials in series,
-    whose creep terms add up (the correspondence principle of linear viscoelasticity).
+    whose creep terms are added (the correspondence principle of linear viscoelasticity).
 
     Parameters
     ----------
-    G_inf, K_inf : long-time moduli, Pa.
-    G, K : strengths of their terms, Pa, >= 0, shape (n,) each.
+    G_inf, K_inf : long-time moduli, in one unit.
+    G, K : strengths of their terms in that unit, >= 0, shape (n,) each.
     tau : relaxation times of both, s, shape (n,).
 
     Returns
     -------
     Prony
-        Exact, in 1e-14 (``test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes``).
+        Accurate to 1e-14 (``test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes``).
     """
     stiff = 3.0 * K_inf + G_inf
     first, second = Prony(G / G_inf, tau), Prony((3.0 * K + G) / stiff, tau)

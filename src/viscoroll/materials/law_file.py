@@ -1,204 +1,278 @@
-"""Laws as datasets and files: of a :class:`LawTable` or a :class:`LawAxis`, and back bit for bit."""
+"""The file of a law: the names of its numbers, their checksum, and a read that trusts nothing it has not checked."""
 
 from __future__ import annotations
 
-import json
-import tomllib
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import replace
-from numbers import Real
+import hashlib
+import io
+import shlex
+import sys
+from collections.abc import Mapping
+from datetime import UTC, datetime
 from os import PathLike
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import check_array, check_number
-from ..core.errors import FileError, ParameterError
-from .bodies import Bodies
-from .cover import Cover
-from .cover_rows import CoverRows
-from .file import as_toml, materials_of, series_as_toml, series_of
-from .law_axis import LawAxis
-from .law_grid import load_grid
-from .law_store import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
-from .law_table import FUNCTIONS, Floats, LawTable, law_table, made
-from .material import Material
-from .pair import Pair
-from .prony import Prony
-from .prony_forms import HIGHEST_ALPHA
+from .. import __version__
+from ..core.errors import FileError
+from ..core.files import read_sealed
+from ..core.symbols import PAPER
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: columns of a table but N, and what a file says of a layer beside its series
-_NOT_N = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
-_OF_COVER = "nu", "thickness", "on", "part", "other_nu"
+#: integer attribute of a file that states its schema
+SCHEMA = "law_schema"
+#: schema of this version; it changes if a file of this version could not be read by an older one
+VERSION = 1
+#: attribute with the checksum of the numbers
+CHECKSUM = "sha256_of_numbers"
+#: what a user can do about a file that is not as it was written
+REMEDY = "write it again by `viscoroll tables law`"
+#: largest file that is read, bytes; laws have less than 10 MB
+_MOST_BYTES = 1 << 27
+#: attribute that names the kind of a file
+KIND = "viscoroll_table"
+#: kind: the law of one material or pair
+LAW = "law"
+#: kind: the law of one relaxation time for all alpha
+AXIS = "axis"
+#: kind: the law of a layer of finite thickness
+COVER = "cover"
 
 
-def table_of(material: Any, base: Any = None) -> LawTable:
-    """The law of a Prony, Bodies, alpha, Material (on a ``base``), Pair, or of a law that there is already."""
-    if base is not None and not isinstance(material, Material):
-        raise ParameterError("base", "given", "left out unless material is a Material")
-    if isinstance(material, LawTable | Prony | Bodies):
-        return law_table(material)
-    if isinstance(material, Material):
-        material = Pair(material, base)
-    if isinstance(material, Pair):
-        pair = material
-        return replace(law_table(pair.law), T_ref=pair.T_ref, pair=pair)
-    if not isinstance(material, Real):
-        allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
-        raise ParameterError("material", f"of type {type(material).__name__}", allowed)
-    return law_table(float(check_array("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
+class Kind(NamedTuple):
+    """Contents of the files of a kind.
 
-
-def as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
-    """All that a file holds; ``errors``: largest relative error by function."""
-    if isinstance(law, LawAxis):
-        return dataset_of(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
-    if law.cover is not None:
-        rows = np.concatenate([law.given_coefficients[..., _NOT_N], np.moveaxis(law.cover.creep, 0, -1)], axis=-1)
-        text = ("" if law.pair is None else f"{described(law.pair)}\n") + described(law.material)
-        numbers = SimpleNamespace(coefficients=rows, **{n: getattr(law, n) for n in ("e0", "alpha", "T_ref")})
-        numbers.limits = law.cover.limits
-        return dataset_of(numbers, COVER, name_of(law), errors, material=text)
-    bodies, material = "unlike" if law.unlike else "alike", described(law.pair or law.material)
-    return dataset_of(law, LAW, name_of(law), errors, bodies=bodies, material=material)
-
-
-def name_of(table: LawTable) -> str:
-    """The bodies in words."""
-    if table.pair is None:
-        return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
-    bodies = (table.pair.cylinder, table.pair.base)
-    return " on ".join(body.name or "a material without a name" for body in bodies if body is not None)
-
-
-def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
-    """The law of one material or pair from a file, to stand wherever a Prony or Bodies stands.
-
-    Parameters
-    ----------
-    path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
-        delta, of ``viscoroll tables build`` or of another program (``materials/law_grid.py``).
-    alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
-        T_epsilon for the unit of time.
-
-    Returns
-    -------
-    LawTable, or of a grid LawGrid
-        A LawGrid is for :func:`viscoroll.law` alone: motions are integrated from rows.  A LawTable is bit for bit
-        that of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of
-        :class:`viscoroll.Cylinder`, it stands for its :class:`viscoroll.Material`, and for the base where it has one.
-
-    Raises
-    ------
-    FileError
-        A file that is missing, cut or damaged in any byte, no law, or of another schema; an alpha beyond the file's.
-    ParameterError
-        An alpha beside the file of one material, or none for that of every alpha.
+    summary : beginning of the summary of the file.
+    functions : name of each function in the order of its coefficients -> meaning.
+    dims : dimensions of the coefficients.
+    terms : functions whose coefficients these are, in words.
+    others : name of each other variable -> (dimensions, meaning).
+    comment : how the numbers are evaluated.
     """
+
+    summary: str
+    functions: dict[str, str]
+    dims: tuple[str, ...]
+    terms: str
+    others: dict[str, tuple[tuple[str, ...], str]]
+    comment: str
+
+
+_ROW = (
+    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
+    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. "
+)
+_E0 = (), "row 0 holds [0, 2^e0)"
+_LAW = Kind(
+    "The contact law of one material or pair as polynomials, one an octave of speed: ",
+    {
+        "lam": "contact length over that at rest, over kappa |V|",
+        "epsilon": "shift of the contact over half its length, over kappa |V|",
+        "m_half_space": "M_half_space/V, over kappa |V|",
+        "m_cylinder": "M_cylinder/V, over kappa |V|",
+        "N": "N of M = M(V) + N dV/dt, over kappa |V|",
+        "share": "eta/F(eta), over v = 1/F(eta)",
+        "press": "H(eta)/F(eta)^2, over v = 1/F(eta)",
+    },
+    ("octave", "power"),
+    "powers of t",
+    {
+        "e0": _E0,
+        "alpha": ((), "instantaneous over long-time modulus"),
+        "T_mean": ((), "sum J_j T_j over T_ref"),
+        "T_ref": ((), "unit of time; 1 where none was given"),
+        "fast_limit": (
+            ("body", "term"),
+            "W = sum J_j/T_j and C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all, of the half-space and of the cylinder",
+        ),
+        "relaxation_strength": (("mode",), "E_i over the long-time modulus"),
+        "relaxation_time": (("mode",), "tau_i over T_ref"),
+        "creep_strength": (("mode",), "J_j over the long-time compliance"),
+        "retardation_time": (("mode",), "T_j over T_ref"),
+        "half_space_weight": (("mode",), "part of J_j that is the half-space's"),
+    },
+    _ROW + "u = kappa |V|; L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; "
+    "D >= L: full slip, |Q| = mu, beta = 0."
+    " Else w = L - D, v = 2 u/w: beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)); where D < L/8: "
+    "|Q| = mu D ((2 L - D) press(v) - (2 u L/w) S), S the mean slope of press between 2 u/L and v. "
+    "M_half_space = V m_half_space, M_cylinder = V m_cylinder, M their sum. Q has the sign of omega - V. Fast limit: "
+    "z = 1/(2 u sqrt(alpha)), W and C of fast_limit: lam = alpha^-1/2, epsilon = (alpha z/2)(C - W ln z), "
+    "m = (alpha z^2/2)(C - W ln z + W/4) with those of either body, N = (alpha - 1) z^2/4; y = 1/v: "
+    "share = 1 - (alpha y/2)(C - W ln y), press = alpha share^2. At another temperature: look up u a_T, N times a_T^2.",
+)
+_OF_SPEED = ("lam", "epsilon", "m_half_space", "m_cylinder", "share", "press")
+KINDS = {
+    LAW: _LAW,
+    COVER: Kind(
+        "The contact law of a layer of finite thickness at one l0/h as polynomials, one an octave of speed: ",
+        {name: _LAW.functions[name] for name in _OF_SPEED}
+        | {"limit": "2 kappa delta_star/mu, over kappa |V|", "free": "2 kappa delta_0, over kappa |V|"},
+        ("octave", "power"),
+        "powers of t",
+        {
+            "e0": _E0,
+            "alpha": _LAW.others["alpha"],
+            "T_ref": _LAW.others["T_ref"],
+            "limits": (("limit_number",), "u -> infinity: limit, lam, free, their factors of 1/u; epsilon u, m u^2"),
+        },
+        _ROW + "u = kappa |V|; L = limit(u); delta_star = mu L/(2 kappa); delta_0 = free/(2 kappa); "
+        "D = |2 kappa delta - free|/mu; D >= L: full slip, |Q| = mu, beta = 0. Else w = L - D, v = 2 u/w: "
+        "beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)). M_half_space = V m_half_space, M_cylinder = V m_cylinder. "
+        "Q has the sign of (delta - delta_0) V. Fast limit: the limits and their first order in 1/u; "
+        "press = 1/L^2 and share = lam/L at the u where v = 2 u/L.",
+    ),
+    AXIS: Kind(
+        "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",
+        {
+            "lam": _LAW.functions["lam"],
+            "epsilon": "shift of the contact over half its length and over c, over kappa |V|",
+            "m": "M/V over c, over kappa |V|",
+            "N": "N of M = M(V) + N dV/dt, over c, over kappa |V|",
+            "share": _LAW.functions["share"],
+            "press": _LAW.functions["press"],
+        },
+        ("octave_of_alpha", "degree", "octave", "power"),
+        "T_j(s) and of powers of t",
+        {
+            "first": ((), "log2 of the lowest alpha"),
+            "rows": (("octave_of_alpha",), "rows of an octave of alpha before the fast limit; what follows is 0"),
+            "e0": _E0,
+        },
+        "alpha = m 2^e with m in [1/2, 1) (frexp); i = e - 1 - first; s = 2 log2(2 m) - 1; c = (alpha - 1)/alpha. The "
+        "table of that alpha is the sum over j of T_j(s) times [i, j], T_j Chebyshev's polynomials; epsilon, m and N "
+        "come over c. It is read as the file of one material (viscoroll tables law MATERIAL.toml): x = m 2^e; row n = "
+        "e - e0; n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows[i]: row n at t = 4 m - 3; beyond: the fast limit "
+        "with W = c, C = c (ln 2 - 0.5772...). T_epsilon is the unit of time; both bodies take half of m.",
+    ),
+}
+
+
+class Content(NamedTuple):
+    """Content of a file.
+
+    numbers : arrays by the names of variables.
+    attributes : values by the names of global attributes.
+    """
+
+    numbers: dict[str, Any]
+    attributes: dict[str, Any]
+
+
+def dataset_content(dataset: Any) -> Content:
+    """Return the content of a ``dataset``; for another object, nothing."""
+    numbers = {str(name): variable.values for name, variable in getattr(dataset, "variables", {}).items()}
+    return Content(numbers, getattr(dataset, "attrs", {}))
+
+
+def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
+    """Return the SHA-256 over names and numbers of all variables: little-endian doubles, last dimension fastest.
+
+    numbers: arrays by name.
+    kind: of the file, which determines the names and their order.
+    """
+    digest = hashlib.sha256()
+    for name in (*KINDS[kind].functions, *KINDS[kind].others):
+        digest.update(name.encode() + np.ascontiguousarray(numbers[name], "<f8").tobytes())
+    return digest.hexdigest()
+
+
+def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], **attributes: str) -> xr.Dataset:
+    """Return the dataset of a file: its numbers, their meaning and origin, and their checksum.
+
+    law: object with the variables of the kind as attributes, and ``coefficients`` with the functions last.
+    kind: of the file.
+    title: bodies whose law it is, in words.
+    errors: largest relative error of each function.
+    attributes: further attributes.
+    """
+    import xarray as xr
+
+    about = KINDS[kind]
+    data = {}
+    for n, (name, meaning) in enumerate(about.functions.items()):
+        labels = {"long_name": f"coefficients of {about.terms}: {meaning}", "largest_relative_error": errors[name]}
+        data[name] = xr.Variable(about.dims, law.coefficients[..., n], labels)
+    for name, (dims, meaning) in about.others.items():
+        value = np.asarray(getattr(law, name))
+        value = value.astype(np.int32) if value.dtype.kind == "i" else value
+        unit = {"units": "s"} if name == "T_ref" else {}  # the other variables are dimensionless or in T_ref
+        data[name] = xr.Variable(dims, value, {"long_name": meaning, **unit})
+    dataset = xr.Dataset(data, attrs={
+        "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {title}",
+        "summary": about.summary + "any speed, creep, kappa and mu, by two look-ups and no iteration.",
+        "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: kind, SCHEMA: np.int32(VERSION),
+        **attributes, "comment": about.comment, "references": PAPER, "source": f"viscoroll {__version__}",
+        "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
+    })  # fmt: skip
+    return dataset.assign_attrs({CHECKSUM: checksum(dataset_content(dataset).numbers, kind)})
+
+
+def stated_errors(dataset: Any) -> dict[str, float]:
+    """Return the largest relative error of every function that the ``dataset`` of a law states."""
+    functions = KINDS[dataset.attrs[KIND]].functions
+    return {name: float(dataset[name].attrs["largest_relative_error"]) for name in functions}
+
+
+def is_law(path: str | PathLike[str]) -> bool:
+    """Return whether the file ``path`` is the law of a material or cover; raises FileError for a damaged file."""
     try:
-        content = read_law(path)
+        return read_content(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
+    except OSError:  # no HDF5: the reader of materials reports that
+        return False
+
+
+def read_law(path: str | PathLike[str]) -> Content:
+    """Return the verified content of the law file ``path``; raises FileError."""
+    try:
+        content = read_content(path, "law file of viscoroll", REMEDY)
     except FileError:
-        if (grid := load_grid(path, alpha)) is None:
-            raise
-        return grid
-    if content.attributes[KIND] != AXIS:
-        if alpha is not None:
-            raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material")
-        return law_of(content, path)
-    axis = axis_of(content, path)
-    low, high = axis.alpha
-    if alpha is None or not low <= check_number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
-        wider = "`viscoroll tables law --alpha LOW:HIGH` writes others"
-        raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds ({wider})")
-    return axis.at(alpha)
+        raise
+    except Exception as error:  # libraries raise many kinds
+        raise FileError(path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}") from error
+    check_law(content, path)
+    return content
 
 
-def law_of(content: Content, path: Any) -> LawTable:
-    """The law of what was checked; raises FileError where it does not name its material."""
-    if content.attributes[KIND] == AXIS:
-        raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
-    with _whole(path):
-        given = _material_of(content.attributes["material"], path)
-        if content.attributes[KIND] == COVER:
-            return _of_cover(content, *given)
-        pair = given if isinstance(given, Pair) else None
-        found = law_table(given if pair is None else pair.law, coefficients=_stacked(content, LAW))
-        numbers = content.numbers
-        return replace(found, e0=int(numbers["e0"]), T_ref=float(numbers["T_ref"]), pair=pair)
+def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Content:
+    """Read a netCDF file by h5py alone, which takes a tenth of the time of xarray.
+
+    path: of the file.
+    expected: kind of file in words, for errors.
+    remedy: what to do about a damaged file, for errors.
+    Raises FileError for a file that cannot be read or whose seal does not match it, and any error of h5py.
+    """
+    import h5py
+
+    with h5py.File(io.BytesIO(read_sealed(path, _MOST_BYTES, expected, remedy)), "r") as file:
+        numbers = {name: variable[()] for name, variable in file.items() if isinstance(variable, h5py.Dataset)}
+        return Content(numbers, {key: _to_scalar(value) for key, value in file.attrs.items()})
 
 
-def _of_cover(content: Content, cover: Cover, pair: Pair | None) -> LawTable:
-    """The law of a layer from its numbers."""
-    numbers, e0 = content.numbers, int(content.numbers["e0"])
-    stacked = _stacked(content, COVER)
-    coefficients = np.full((*stacked.shape[:2], len(FUNCTIONS)), np.nan)
-    coefficients[..., _NOT_N] = stacked[..., :-2]
-    rows = CoverRows(e0, coefficients, np.moveaxis(stacked[..., -2:], -1, 0), numbers["limits"])
-    return replace(made(cover, cover=rows), T_ref=float(numbers["T_ref"]), pair=pair)
+def _to_scalar(value: Any) -> Any:
+    """Return the ``value`` of an attribute as text or number: some programs write arrays of one, and texts as bytes."""
+    if np.size(value) == 1:
+        value = np.ravel(value)[0]
+    return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
-def axis_of(content: Content, path: Any) -> LawAxis:
-    """The law of every alpha, of what was checked; raises FileError."""
-    with _whole(path):
-        whole, numbers = _stacked(content, AXIS), content.numbers
-        rows = tuple(map(int, numbers["rows"]))
-        if whole.ndim != len(KINDS[AXIS].dims) + 1 or len(rows) != len(whole):
-            raise ValueError(f"functions of shape {whole.shape[:-1]}")
-        return LawAxis(whole, rows, int(numbers["first"]), int(numbers["e0"]))
+def check_law(content: Content, path: Any) -> None:
+    """Raise FileError for a file that is no law of this schema, or whose numbers do not match its checksum.
 
-
-def _stacked(content: Content, kind: str) -> Floats:
-    """The coefficients of all functions."""
-    found = np.stack([content.numbers[name] for name in KINDS[kind].functions], axis=-1).astype(np.float64)
-    found.flags.writeable = False
-    return found
-
-
-@contextmanager
-def _whole(path: Any) -> Iterator[None]:
-    """FileError in place of what goes wrong where a file is not as it was written."""
-    try:
-        yield
-    except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
-        text = " ".join(str(error).split())
-        raise FileError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
-
-
-def described(given: Any) -> str:
-    """A pair, Bodies, a series or an alpha as TOML that reads back to the bit: as in scene files, or dimensionless."""
-    if isinstance(given, Pair):
-        text = as_toml(given.cylinder)
-        text += "" if given.base is None else f"\n{as_toml(given.base, 'base')}"
-        return f'plane = "{given.plane}"\n{text}'
-    if isinstance(given, Cover):
-        lines = (f"{name} = {json.dumps(getattr(given, name))}" for name in _OF_COVER)
-        return "\n".join(["[cover]", series_as_toml(given.layer), *lines, ""])
-    if isinstance(given, Bodies):
-        parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
-        return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])
-    return f"[scene]\n{series_as_toml(given) if isinstance(given, Prony) else f'alpha = {given!r}'}\n"
-
-
-def _material_of(text: str, path: Any) -> Any:
-    """What :func:`described` wrote: a pair, Bodies, a series or an alpha; of a layer (Cover, its pair or None)."""
-    content = tomllib.loads(text)
-    if "cover" in content:
-        given = content["cover"]
-        cover = Cover(series_of(path, "cover", given), **{name: given[name] for name in _OF_COVER})
-        bodies = materials_of(path, content) if "material" in content else None
-        return cover, None if bodies is None else Pair(bodies["material"], bodies.get("base"), content["plane"])
-    if "material" in content:
-        found = materials_of(path, content)
-        return Pair(found["material"], found.get("base"), content["plane"])
-    if "bodies" in content:
-        given = content["bodies"]
-        parts = (given[name] for name in ("cylinder", "base"))
-        series: Any = (series_of(path, "bodies", one) for one in parts)
-        return Bodies(*series, given["share"])  # type: ignore[call-arg]
-    given = content["scene"]
-    return given["alpha"] if "alpha" in given else series_of(path, "scene", given)
+    content: of the file.
+    path: of the file, for errors.
+    """
+    numbers, attributes = content
+    kind = attributes.get(KIND)
+    if kind not in KINDS:
+        raise FileError(path, "is no law file of viscoroll: `viscoroll tables law` writes one")
+    schema = attributes.get(SCHEMA)
+    if not isinstance(schema, int | np.integer) or schema != VERSION:
+        problem = f"is a law file of schema {schema!s:.20}, and this viscoroll ({__version__}) reads {VERSION}"
+        raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
+    missing = [name for name in (*KINDS[kind].functions, *KINDS[kind].others) if name not in numbers]
+    if missing:
+        raise FileError(path, f"is no whole law file: variable {missing[0]!r} is missing; {REMEDY}")
+    if checksum(numbers, kind) != attributes.get(CHECKSUM):
+        raise FileError(path, f"is damaged or was edited: its numbers are not those of its {CHECKSUM}; {REMEDY}")

@@ -16,10 +16,10 @@ from ..core.checks import check_array, check_number
 from ..core.errors import ParameterError
 from ..core.results import Result, SummaryRow
 from ..core.scale import SI
-from .importers import FromPrograms, poisson
+from .importers import FromPrograms, check_poisson
 from .measured import Measured
 from .prony import Prony
-from .shift import celsius, keep, relative
+from .shift import check_celsius, check_fields, relative_shift
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,14 +36,14 @@ class Material(FromPrograms):
     ----------
     E : long-time Young's modulus, Pa, > 0; infinite for a rigid body.
     nu : Poisson's ratio, in (-1, 0.5].  It is taken constant in time: shear, bulk and tensile modulus relax alike.
-    prony : strengths over E, and times over T_ref; none (default): elastic.
-    T_ref : what the times of ``prony`` are counted in, s.
-    name : in words, for tables and figures.
-    density : kg/m^3, to compare speeds with those of waves.
+    prony : strengths divided by E, and times in units of T_ref; default: elastic.
+    T_ref : unit of the times of ``prony``, s.
+    name : text for tables and figures.
+    density : kg/m^3, for a comparison of speeds with those of waves.
     thickness : m; then the body is a layer of this thickness, bonded to a rigid core (of a covered roller) or bed (of a
         belt or lining), and the other body is rigid or elastic.  None (default): a half-space.
     measured : the :class:`Measured` band that it was fitted in; beyond it contacts warn.
-    temperature : at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
+    temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
 
     Raises
     ------
@@ -53,6 +53,13 @@ class Material(FromPrograms):
     Notes
     -----
     Immutable, hashable, equal where all fields are.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> rubber = vr.Material(E=3e6, nu=0.49, prony=vr.Prony([2.0], [1.0]), T_ref=0.01)
+    >>> rubber.instant
+    9000000.0
     """
 
     E: float
@@ -75,19 +82,20 @@ class Material(FromPrograms):
             if self.thickness is not None:
                 raise ParameterError("thickness", self.thickness, "left out of a rigid body")
         else:
-            keep(self, E=0.0)
-        object.__setattr__(self, "nu", poisson(self.nu))
+            check_fields(self, E=0.0)
+        object.__setattr__(self, "nu", check_poisson(self.nu))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        keep(self, SI, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
+        given = (name for name in ("T_ref", "density", "thickness") if getattr(self, name) is not None)
+        check_fields(self, SI, **dict.fromkeys(given, 0.0))
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
         if self.temperature is not None:
-            object.__setattr__(self, "temperature", celsius("temperature", self.temperature))
+            object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
-        """A standard linear solid, the paper's material.
+        """Make a standard linear solid, the material of the paper.
 
         Parameters
         ----------
@@ -100,6 +108,12 @@ class Material(FromPrograms):
         ------
         ParameterError
             A value out of range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.sls(1e6, 0.5, T_epsilon=0.1, T_sigma=0.02).instant
+        5000000.0
         """
         T_epsilon = check_number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
         T_sigma = check_number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
@@ -110,7 +124,13 @@ class Material(FromPrograms):
 
     @classmethod
     def elastic(cls, E: float, nu: float, **more: Any) -> Material:
-        """A material that does not relax: E in Pa, nu; ``name``, ``density`` and ``thickness``.
+        """Make a material that does not relax.
+
+        Parameters
+        ----------
+        E : Young's modulus, Pa.
+        nu : Poisson's ratio.
+        more : ``name``, ``density`` and ``thickness``.
 
         Raises
         ------
@@ -121,7 +141,7 @@ class Material(FromPrograms):
 
     @classmethod
     def rigid(cls, **more: Any) -> Material:
-        """A body that does not deform; E is infinite.  ``name`` and ``density`` may be given."""
+        """Make a body that does not deform, with infinite E; ``more``: ``name`` and ``density``."""
         return cls(math.inf, 0.5, **more)
 
     @property
@@ -140,7 +160,9 @@ class Material(FromPrograms):
         return self.E / (2.0 * (1.0 + self.nu))
 
     def at(self, temperature: float, shift: Callable[[float], float]) -> Material:
-        """The material at another temperature: every time, that is T_ref, times a_T; what was measured goes with it.
+        """Return the material at another temperature: T_ref, and with it all times, is multiplied by a_T.
+
+        The measured band moves with it.
 
         Parameters
         ----------
@@ -177,13 +199,17 @@ class Material(FromPrograms):
                 "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
             )
             raise ParameterError("temperature", given.shape, "one number", sentence)
-        temperature = celsius("temperature", float(given))
-        factor = relative(shift, temperature, self.temperature)
+        temperature = check_celsius("temperature", float(given))
+        factor = relative_shift(shift, temperature, self.temperature)
         measured = None if self.measured is None else self.measured.shifted(factor)
         return replace(self, T_ref=self.T_ref * factor, measured=measured, temperature=temperature)
 
     def storage(self, omega: ArrayLike) -> Any:
-        """Storage modulus E', Pa, at angular frequencies >= 0, rad/s.
+        """Return the storage modulus E', Pa.
+
+        Parameters
+        ----------
+        omega : angular frequencies, rad/s, >= 0, of any shape.
 
         Raises
         ------
@@ -193,62 +219,62 @@ class Material(FromPrograms):
         return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
-        """Loss modulus E'', Pa; arguments and errors of :meth:`storage`."""
+        """Return the loss modulus E'', Pa; arguments and errors as of :meth:`storage`."""
         return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
-        """Loss factor E''/E'; arguments and errors of :meth:`storage`."""
+        """Return the loss factor E''/E', dimensionless; arguments and errors as of :meth:`storage`."""
         storage, loss = self._moduli(omega)
         return loss / storage
 
     def relaxation(self, t: ArrayLike) -> Any:
-        """Tensile relaxation modulus E(t), Pa, at times >= 0, s.
+        """Return the tensile relaxation modulus E(t), Pa.
+
+        Parameters
+        ----------
+        t : times, s, >= 0, of any shape.
 
         Raises
         ------
         ParameterError
             A time that is negative, NaN or infinite.
         """
-        decay = np.exp(-self._over(t, "t", self.prony.tau))
+        decay = np.exp(-self._divide_time(t, self.prony.tau))
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
     def creep(self, t: ArrayLike) -> Any:
-        """Creep compliance in tension over 1/E, from E/E(0) to 1; arguments and errors of :meth:`relaxation`."""
-        risen = -np.expm1(-self._over(t, "t", self.prony.T))
-        return (1.0 / self.prony.alpha + (self.prony.J * risen).sum(axis=-1))[()]
+        """Return the creep compliance in tension times E, from E/E(0) to 1; arguments as of :meth:`relaxation`."""
+        growth = -np.expm1(-self._divide_time(t, self.prony.T))
+        return (1.0 / self.prony.alpha + (self.prony.J * growth).sum(axis=-1))[()]
 
     def to_xarray(self) -> xr.Dataset:
-        """Both forms of the series and the constants, with names and units, as :meth:`to_netcdf` writes them."""
-        from .store import as_dataset
+        """Return both forms of the series and the constants as a dataset, with names and units, as in files."""
+        from .material_netcdf import material_as_dataset
 
-        return as_dataset(self)
+        return material_as_dataset(self)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        rows = [
-            SummaryRow("E", f"{self.E:.6g}", "Pa, of long times"),
-            SummaryRow("instantaneous", f"{self.instant:.6g}", "Pa"),
-            SummaryRow("nu", f"{self.nu:g}"), SummaryRow("modes", str(self.prony.E.size)),
-            SummaryRow("T_ref", f"{self.T_ref:.6g}", "s"),
+        """Return a title, and a line for each property that is given."""
+        times = self.prony.tau * self.T_ref
+        values: list[tuple[str, Any, str]] = [
+            ("E", self.E, "Pa, of long times"), ("instantaneous", self.instant, "Pa"), ("nu", self.nu, ""),
+            ("modes", times.size, ""), ("T_ref", self.T_ref, "s"),
+            ("relaxation times", f"{times[0]:.3g} to {times[-1]:.3g}" if times.size else None, "s"),
+            ("density", self.density, "kg/m^3"), ("thickness", self.thickness, "m"),
+            ("temperature", self.temperature, "degrees Celsius"),
+            ("measured", self.measured and str(self.measured), ""),
         ]  # fmt: skip
-        if self.prony.E.size:
-            slowest, fastest = (f"{time * self.T_ref:.3g}" for time in (self.prony.tau[0], self.prony.tau[-1]))
-            rows.append(SummaryRow("relaxation times", f"{slowest} to {fastest}", "s"))
-        if self.density is not None:
-            rows.append(SummaryRow("density", f"{self.density:g}", "kg/m^3"))
-        if self.thickness is not None:
-            rows.append(SummaryRow("thickness", f"{self.thickness:g}", "m"))
-        if self.temperature is not None:
-            rows.append(SummaryRow("temperature", f"{self.temperature:g}", "degrees Celsius"))
-        if self.measured is not None:
-            rows.append(SummaryRow("measured", str(self.measured)))
-        return self.name or "Material", rows
+        return self.name or "Material", [
+            SummaryRow(name, value if isinstance(value, str) else f"{value:g}", unit)
+            for name, value, unit in values if value is not None
+        ]  # fmt: skip
 
     _repr_html_ = Result._repr_html_
 
     plot = Result.plot
 
     def _figure(self) -> Figure:
-        """E', E'' and tan delta over frequency, and E(t)."""
+        """Draw E', E'' and tan delta over frequency, and E(t)."""
         from ..core.plots.measurements import master_curve
 
         return master_curve(self)
@@ -265,13 +291,13 @@ class Material(FromPrograms):
         FileError
             If it cannot be written there; a file of that name is left as it was.
         """
-        from .store import save
+        from .material_netcdf import save_material
 
-        save(self, path)
+        save_material(self, path)
 
     @classmethod
     def from_netcdf(cls, path: str | PathLike[str]) -> Material:
-        """The material of a file of :meth:`to_netcdf`, equal to it bit for bit (``tests/materials/test_material.py``).
+        """Read a file of :meth:`to_netcdf`, to the bit (``tests/materials/test_material.py``).
 
         Parameters
         ----------
@@ -282,12 +308,15 @@ class Material(FromPrograms):
         FileError
             A file that is missing, damaged in any byte, or no material.
         """
-        from .store import load
+        from .material_netcdf import load_material
 
-        return load(path, cls)
+        return load_material(path, cls)
 
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
-        """Storage and loss modulus over E; omega times a relaxation time beyond the doubles is as good as infinite."""
+        """Return storage and loss modulus divided by E, of the shape of ``omega`` (angular frequency, rad/s).
+
+        A product of omega and a relaxation time that overflows is taken as infinite.
+        """
         with np.errstate(over="ignore"):
             product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
         fast = product > 1.0
@@ -296,14 +325,21 @@ class Material(FromPrograms):
         storage = 1.0 + (E * (np.where(fast, 1.0, ratio * ratio) / whole)).sum(axis=-1)
         return storage[()], (E * (ratio / whole)).sum(axis=-1)[()]
 
-    def _over(self, t: ArrayLike, name: str, times: Floats) -> Floats:
-        """t over each of the times."""
+    def _divide_time(self, t: ArrayLike, times: Floats) -> Floats:
+        """Return t divided by each of several times, (..., times).
+
+        t: s, >= 0, of any shape.
+        times: in units of T_ref.
+        """
         with np.errstate(over="ignore"):
-            return check_array(name, t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
+            return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
-    """Raise ParameterError where T_epsilon < T_sigma; of arrays naming the longest T_sigma that is too long."""
+    """Raise ParameterError where T_epsilon < T_sigma; for arrays it names the longest T_sigma that is too long.
+
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, of shapes that broadcast.
+    """
     slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
     short = fast > slow
     if short.any():

@@ -1,4 +1,4 @@
-"""What a material was measured by: :class:`Measured`."""
+"""The data that a material was fitted to: :class:`Measured`."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from dataclasses import dataclass, replace
 
 from ..core.checks import check_number
 from ..core.errors import ParameterError
-from .shift import keep
+from .shift import check_fields
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What a material was fitted to, and how well; it stays with the :class:`Material`.
+    """The data that a :class:`Material` was fitted to, and the misfit of the fit.
 
     Parameters
     ----------
     low, high : first and last angular frequency of the data at the temperature of the material, rad/s, > 0.
     misfit : root mean square of the relative errors of storage or loss modulus, whichever is larger, >= 0.
-    source : of the data, in words.
+    source : text that names the source of the data.
 
     Raises
     ------
@@ -31,7 +31,7 @@ class Measured:
     source: str = ""
 
     def __post_init__(self) -> None:
-        keep(self, "rad s-1", low=0.0, high=0.0)
+        check_fields(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")
@@ -39,7 +39,7 @@ class Measured:
             raise ParameterError("source", f"{self.source!r:.60}", "a text")
 
     def shifted(self, a_T: float) -> Measured:
-        """As at a temperature where all times are a_T times longer."""
+        """Return the band at a temperature where all times are ``a_T`` times longer."""
         return replace(self, low=self.low / a_T, high=self.high / a_T)
 
     def __str__(self) -> str:

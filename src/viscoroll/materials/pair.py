@@ -1,7 +1,7 @@
 """Two bodies in contact, in SI units: :class:`Pair`.
 
-Compliances add up: 2/E' = 1/E'_1 + 1/E'_2, E'_k = pi E_k/(1 - nu_k^2) (Sect. 3.1), and each body creeps for its
-share of them.  Shear and pressure decouple where Dundurs' constant beta_D is 0 at all times.
+Compliances are added: 2/E' = 1/E'_1 + 1/E'_2, E'_k = pi E_k/(1 - nu_k^2) (Sect. 3.1), and each body creeps in
+proportion to its part of them.  Shear and pressure do not couple where Dundurs' constant beta_D is 0 at all times.
 """
 
 from __future__ import annotations
@@ -23,7 +23,14 @@ Plane = Literal["strain", "stress"]
 
 
 class Solid(NamedTuple):
-    """What the law needs of a body, as of a :class:`Material`, with arrays and series of many."""
+    """The properties of a :class:`Material` that the law depends on, as arrays and as series of many bodies.
+
+    E : long-time Young's modulus, Pa.
+    nu : Poisson's ratio.
+    prony : series, times in units of T_ref.
+    T_ref : s.
+    thickness : m, or None for a half-space.
+    """
 
     E: Any
     nu: Any
@@ -34,7 +41,7 @@ class Solid(NamedTuple):
 
 @dataclass(frozen=True)
 class Pair:
-    """Cylinder and half-space; of a :class:`Solid` the law and the moduli alone are known.
+    """Cylinder and half-space; with a :class:`Solid` only the law and the moduli are available.
 
     Parameters
     ----------
@@ -45,8 +52,7 @@ class Pair:
     Raises
     ------
     ParameterError
-        What is no :class:`Material`, or two bodies that are both rigid; two bodies with a thickness, one in plane
-        stress, or one against a body that relaxes.
+        A body that is no :class:`Material`; two rigid bodies; two bodies with a thickness, or one in plane stress.
     """
 
     cylinder: Any
@@ -65,21 +71,17 @@ class Pair:
             self._refuse_covers()
 
     def _refuse_covers(self) -> None:
-        """Raise ParameterError for what the law of a cover does not hold of; see the class."""
+        """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
         thick = [body for body in (self.cylinder, self.half_space) if getattr(body, "thickness", None) is not None]
-        other = self.half_space if self.covered == "cylinder" else self.cylinder
         if len(thick) > 1:
             allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
             raise ParameterError("thickness", "of both bodies", allowed)
         if self.plane != "strain":
             raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
-        if other.prony.alpha > 1.0:
-            found = "of a layer against a body that relaxes"
-            raise ParameterError("thickness", found, "left out, or the other body rigid or elastic")
 
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
-        """Which body is a layer of finite thickness."""
+        """Name of the body that is a layer of finite thickness, or None."""
         if getattr(self.cylinder, "thickness", None) is not None:
             return "cylinder"
         return "base" if getattr(self.half_space, "thickness", None) is not None else None
@@ -99,13 +101,13 @@ class Pair:
 
     @cached_property
     def _moduli(self) -> tuple[Any, Any]:
-        """E' of either body, of long times."""
+        """E' of the cylinder and of the half-space at long times, Pa."""
         one, other = self.cylinder, self.half_space
         return effective_modulus(one.E, one.nu, self.plane), effective_modulus(other.E, other.nu, self.plane)
 
     @property
     def E_prime(self) -> Any:
-        """E' of the pair, Pa, of long times: 2 E'_1 on a rigid base."""
+        """E' of the pair at long times, Pa; 2 E'_1 on a rigid base."""
         one, other = self._moduli
         if self.like:
             return one
@@ -115,19 +117,20 @@ class Pair:
 
     @property
     def share(self) -> Any:
-        """The cylinder's part of the long-time compliance: 0 where it is rigid, 1 on a rigid base."""
+        """The cylinder's part of the long-time compliance: 0 if it is rigid, 1 on a rigid base."""
         one, other = self._moduli
         return 1.0 / (1.0 + one / other)
 
     @property
     def T_ref(self) -> float:
-        """What times are counted in, s: the cylinder's T_ref, or that of the base where the cylinder does not relax."""
+        """Unit of time, s: the cylinder's T_ref, or that of the base if the cylinder does not relax."""
         series = self.cylinder.prony
         return (self.cylinder if series.shape or series.alpha > 1.0 else self.half_space).T_ref
 
     @cached_property
     def law(self) -> Prony | Bodies:
-        """A :class:`Prony` series for like bodies, else :class:`Bodies`, with times over ``T_ref``.
+        """The material of the law: a :class:`Prony` series for like bodies, else :class:`Bodies`; times in units of
+        ``T_ref``.
 
         Raises
         ------
@@ -143,11 +146,11 @@ class Pair:
         return Bodies(one, other, self.share)
 
     def cover(self, l0: Any) -> Cover:
-        """The layer of finite thickness and its counterpart; of many its thickness over l0 is an array.
+        """Return the layer of finite thickness and its counterpart as a dimensionless :class:`Cover`.
 
-        Parameters
-        ----------
-        l0 : contact length at rest as of half-spaces, m, a number or an array.
+        Parameters ----------
+        l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array for many
+        covers.
 
         Raises
         ------
@@ -161,9 +164,10 @@ class Pair:
         if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
             allowed = "one series, nu and part of the compliance where a body has a thickness: only l0 and it may vary"
             raise ParameterError(on, "of many materials", allowed)
-        part, series = float(np.max(parts)), layer.prony.slower(layer.T_ref / self.T_ref)
-        other_nu = other.nu if part < 1.0 else 0.5
-        return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, other_nu=other_nu)
+        series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
+        part = float(np.max(parts))
+        more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}
+        return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:
@@ -174,14 +178,22 @@ class Pair:
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
-    """E' of Sect. 3.1, Pa."""
+    """Return E' of Sect. 3.1, in the unit of E.
+
+    E: Young's modulus.
+    nu: Poisson's ratio.
+    plane: "strain" or "stress".
+    """
     return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
 
 
 def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:
-    """beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), k = 3 - 4 nu in plane strain.
+    """Return beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), with k = 3 - 4 nu in plane
+    strain and k = (3 - nu)/(1 + nu) in plane stress.
 
-    In plane stress k = (3 - nu)/(1 + nu).  Moduli in any unit, one of them may be infinite.
+    G_1, G_2: shear moduli in one unit; one of them may be infinite.
+    nu_1, nu_2: Poisson's ratios.
+    plane: "strain" or "stress".
     """
     k_1, k_2 = (3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2))
     largest = max(G_1, G_2)

@@ -1,6 +1,6 @@
 """Linear viscoelastic materials as Prony series: :class:`Prony`, one or many, in relaxation and in creep form.
 
-With moduli over the long-time modulus and times over a time T_ref of the user's,
+With moduli divided by the long-time modulus and times in units of a time T_ref of the user's choice,
 
     E(t) = 1 + sum E_i exp(-a_i t)   a_i = 1/tau_i     alpha = 1 + sum E_i
     J(t) = 1 - sum J_j exp(-b_j t)   b_j = 1/T_j       1/alpha = 1 - sum J_j
@@ -21,14 +21,18 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array
 from ..core.errors import ParameterError
-from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
+from .prony_forms import HIGHEST_ALPHA, LARGEST_TIME_RATIO, MOST_MODES, Modes, modes_of_creep, modes_of_relaxation
+
+#: difference of 1/alpha and 1 - sum J that rounding of the strengths explains, for each mode and one more
+_AGREEMENT = 1e-14
 
 
 class Block(NamedTuple):
     """Materials of equal numbers of modes, along the last axis.
 
-    rows : which they are
-    weights : of pairs, what of the strength of each creep mode is the half-space's
+    rows : their indices, (materials,).
+    modes : both forms of their series, arrays (materials, modes).
+    weights : for pairs the part of each creep strength that is the half-space's, (materials, modes).
     """
 
     rows: Integers
@@ -37,10 +41,15 @@ class Block(NamedTuple):
 
 
 class OneOrMany:
-    """A material, of shape (), or materials 0 ... n - 1, of shape (n,), which index and iteration give."""
+    """A material, of shape (), or materials 0 ... n - 1, of shape (n,), by index and iteration.
 
-    #: of the materials
+    Two are equal, and have one hash, if their ``_key`` are equal.
+    """
+
+    #: () or (n,)
     shape: tuple[int, ...]
+    #: values that determine the material
+    _key: Any
 
     def __getitem__(self, which: Any) -> Any:
         raise NotImplementedError
@@ -56,62 +65,80 @@ class OneOrMany:
     def __iter__(self) -> Iterator[Any]:
         return (self[i] for i in range(len(self)))
 
+    def __eq__(self, other: object) -> bool:
+        return self._key == other._key if isinstance(other, OneOrMany) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
 
 class Prony(OneOrMany):
     """A linear viscoelastic material by its relaxation modulus, a Prony series; or n of them.
 
     Parameters
     ----------
-    E : strengths of the modes over the long-time modulus, >= 0; zeros are dropped.
-    tau : their relaxation times over T_ref, > 0; strengths of equal times are added.
+    E : strengths of the modes divided by the long-time modulus, >= 0, dimensionless; zeros are dropped.
+    tau : their relaxation times in units of T_ref, > 0; strengths of equal times are added.
         Arrays (n, N), one of which may be (N,), are n materials: ``p[i]`` is one of them, ``p[i:k]`` are some.
 
     Attributes
     ----------
     shape : (), or (n,).
-    alpha : instantaneous over long-time modulus, of each.
+    alpha : instantaneous divided by long-time modulus, for each.
     by_creep : whether it was given by its creep compliance.
 
     Raises
     ------
     ParameterError
         Negative strengths, times that are not positive, more than 64 modes, times that span more than
-        32 decades, or 1 + sum E above 1e12; of any of them.
+        32 decades, or 1 + sum E above 1e12; for any of them.
 
     Notes
     -----
-    Immutable, hashable, equal where modes and ``alpha`` are.  Nothing that is given is rescaled.
+    Immutable, hashable, equal where modes and ``alpha`` are.  Values are not rescaled.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.Prony(E=[2.0, 6.0], tau=[1.0, 0.1]).alpha
+    9.0
     """
 
     alpha: Any
     by_creep: bool
 
     def __init__(self, E: ArrayLike = (), tau: ArrayLike = ()) -> None:
-        strengths, times = _given(("E", "tau"), E, tau)
-        alpha = 1.0 + _sums(strengths)
+        strengths, times = _check_modes(("E", "tau"), E, tau)
+        alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
             raise ParameterError("E", f"of a sum of {np.max(alpha) - 1.0:g}", f"of a sum up to {HIGHEST_ALPHA:g}")
-        self._keep(False, strengths, times, alpha)
+        self._set(False, strengths, times, alpha)
 
     @classmethod
     def creep(cls, J: ArrayLike, T: ArrayLike, *, alpha: Any = None) -> Prony:
-        """The material by its creep compliance.
+        """Make the material from its creep compliance.
 
         Parameters
         ----------
-        J : strengths over the long-time compliance, >= 0, of a sum below 1.
-        T : retardation times over T_ref, > 0.
-        alpha : instantaneous over long-time modulus, 1/(1 - sum J).  Where the sum is near 1 that difference
-            has lost digits; what is given here takes its place, and must agree with it to rounding of J.
-            Of arrays (n, N) a number or (n,).
+        J : strengths divided by the long-time compliance, >= 0, of a sum below 1, dimensionless.
+        T : retardation times in units of T_ref, > 0.
+        alpha : instantaneous divided by long-time modulus, 1/(1 - sum J); a number or, for arrays (n, N), (n,).  That
+            difference loses digits where the sum is near 1: a value given here replaces it, and must agree with it to
+            rounding of J.
 
         Raises
         ------
         ParameterError
             As for the class, and where the sum of J is not below 1 or ``alpha`` does not agree with it.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony.creep(J=[0.75], T=[1.0]).alpha
+        4.0
         """
-        strengths, times = _given(("J", "T"), J, T)
-        rest = np.asarray(1.0 - _sums(strengths))
+        strengths, times = _check_modes(("J", "T"), J, T)
+        rest = np.asarray(1.0 - _exact_sums(strengths))
         if not (rest > 0.0).all():
             found = f"of a sum of {1.0 - rest.min()!s}"
             raise ParameterError("J", found, "of a sum below 1: the instantaneous modulus would be infinite")
@@ -119,129 +146,143 @@ class Prony(OneOrMany):
         if given.shape not in ((), rest.shape):
             raise ParameterError("alpha", f"of shape {given.shape}", f"a number, or one a material, {rest.shape}")
         given = np.broadcast_to(given, rest.shape)
-        off = np.abs(1.0 / given - rest) > 1e-14 * (1.0 + np.count_nonzero(strengths, axis=-1))
+        off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
-            here = f"1/(1 - sum J), here {1.0 / rest[off].flat[0]!s} to rounding"
-            raise ParameterError("alpha", given[off].flat[0], here)
+            allowed = f"1/(1 - sum J), here {1.0 / rest[off].flat[0]!s} to rounding"
+            raise ParameterError("alpha", given[off].flat[0], allowed)
         if (given > HIGHEST_ALPHA).any():
             raise ParameterError("J", strengths.tolist(), f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}")
-        return cls._of(True, strengths, times, given if given.ndim else float(given))
+        return cls._make(True, strengths, times, given if given.ndim else float(given))
 
     @classmethod
     def elastic(cls) -> Prony:
-        """No modes: alpha = 1."""
+        """Make a material without modes: alpha = 1."""
         return cls([], [])
 
     @classmethod
-    def _of(cls, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> Prony:
-        made = cls.__new__(cls)
-        made._keep(by_creep, strengths, times, alpha)
-        return made
+    def _make(cls, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> Prony:
+        """Make a material from checked values; arguments as of :meth:`_set`."""
+        series = cls.__new__(cls)
+        series._set(by_creep, strengths, times, alpha)
+        return series
 
-    def _keep(self, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> None:
-        self.by_creep, self.alpha, self.shape = by_creep, alpha, strengths.shape[:-1]
-        self._strengths, self._times = map(read_only, (strengths, times))
-        if isinstance(alpha, np.ndarray):
-            self.alpha = read_only(alpha)
+    def _set(self, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> None:
+        """Set all attributes.
+
+        by_creep: whether the modes are those of creep.
+        strengths, times: modes, longest time first, (modes,) or (n, modes); dimensionless, in units of T_ref.
+        alpha: instantaneous divided by long-time modulus, a number or (n,).
+        """
+        self.by_creep, self.shape = by_creep, strengths.shape[:-1]
+        self._strengths, self._times = map(lock_array, (strengths, times))
+        self.alpha = lock_array(alpha) if isinstance(alpha, np.ndarray) else alpha
 
     def __getitem__(self, which: Any) -> Prony:
         strengths, times, alpha = self._strengths[which], self._times[which], self.alpha[which]
         if strengths.ndim == 1:
             count = np.count_nonzero(strengths)
             strengths, times, alpha = strengths[:count], times[:count], float(alpha)
-        return Prony._of(self.by_creep, strengths, times, alpha)
+        return Prony._make(self.by_creep, strengths, times, alpha)
 
     def repeated(self, count: int) -> Prony:
-        """A single one as ``count`` that are alike."""
-        strengths, times = (np.broadcast_to(each, (count, each.size)) for each in (self._strengths, self._times))
-        return Prony._of(self.by_creep, strengths, times, np.full(count, self.alpha))
+        """Return ``count`` materials that are equal to this single one."""
+        strengths, times = (np.broadcast_to(values, (count, values.size)) for values in (self._strengths, self._times))
+        return Prony._make(self.by_creep, strengths, times, np.full(count, self.alpha))
+
+    @property
+    def _convert(self) -> Any:
+        """Function that computes both forms from the given one."""
+        return modes_of_creep if self.by_creep else modes_of_relaxation
 
     @cached_property
     def modes(self) -> Modes:
-        """Both forms of a single one, and the gaps between their rates."""
-        return (of_creep if self.by_creep else of_relaxation)(self._strengths, self._times, self.alpha)
+        """Both forms of a single series, and the gaps between their rates."""
+        return self._convert(self._strengths, self._times, self.alpha)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """The materials ``which``, those of as many modes together."""
-        form = of_creep if self.by_creep else of_relaxation
+        """Yield materials in blocks of equal numbers of modes.
+
+        which: indices of the materials, (m,).
+        """
         counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
             rows = np.flatnonzero(counts == count)
-            own = which[rows]
-            strengths, times = (np.ascontiguousarray(each[own, :count]) for each in (self._strengths, self._times))
-            yield Block(rows, form(strengths, times, self.alpha[own]))
+            index = which[rows]
+            form = (np.ascontiguousarray(values[index, :count]) for values in (self._strengths, self._times))
+            yield Block(rows, self._convert(*form, self.alpha[index]))
 
     @cached_property
-    def _other(self) -> tuple[NDArray, NDArray]:
-        """Strengths and times of the form that was not given; of many behind the last mode 0 and 1."""
+    def _other_form(self) -> tuple[NDArray, NDArray]:
+        """Strengths and times of the form that was not given; for many, 0 and 1 behind the last mode."""
         names = ("E", "a") if self.by_creep else ("J", "b")
         if not self.shape:
             strengths, rates = (getattr(self.modes, name) for name in names)
-            return read_only(strengths), read_only(1.0 / rates)
-        strengths, rates = np.zeros(self._strengths.shape), np.ones(self._strengths.shape)
-        for block in self.blocks(np.arange(len(self))):
-            count = block.modes.a.shape[-1]
-            strengths[block.rows, :count], rates[block.rows, :count] = (getattr(block.modes, name) for name in names)
-        return read_only(strengths), read_only(1.0 / rates)
+        else:
+            strengths, rates = np.zeros(self._strengths.shape), np.ones(self._strengths.shape)
+            for rows, modes, _ in self.blocks(np.arange(len(self))):
+                count = modes.a.shape[-1]
+                strengths[rows, :count], rates[rows, :count] = (getattr(modes, name) for name in names)
+        return lock_array(strengths), lock_array(1.0 / rates)
+
+    def _form(self, by_creep: bool) -> tuple[NDArray, NDArray]:
+        """Return strengths and times of creep or, with ``by_creep`` False, of relaxation."""
+        return (self._strengths, self._times) if by_creep == self.by_creep else self._other_form
 
     @property
     def E(self) -> Floats:
-        """Strengths of relaxation over the long-time modulus, slowest mode first."""
-        return self._other[0] if self.by_creep else self._strengths
+        """Strengths of relaxation divided by the long-time modulus, slowest mode first."""
+        return self._form(False)[0]
 
     @property
     def tau(self) -> Floats:
-        """Relaxation times over T_ref, longest first."""
-        return self._other[1] if self.by_creep else self._times
+        """Relaxation times in units of T_ref, longest first."""
+        return self._form(False)[1]
 
     @property
     def J(self) -> Floats:
-        """Strengths of creep over the long-time compliance, slowest mode first."""
-        return self._strengths if self.by_creep else self._other[0]
+        """Strengths of creep divided by the long-time compliance, slowest mode first."""
+        return self._form(True)[0]
 
     @property
     def T(self) -> Floats:
-        """Retardation times over T_ref, longest first."""
-        return self._times if self.by_creep else self._other[1]
+        """Retardation times in units of T_ref, longest first."""
+        return self._form(True)[1]
 
     @property
     def T_mean(self) -> Any:
-        """sum J_j T_j = sum E_i tau_i over T_ref: M = V T_mean at low speed."""
-        return _sums(self._strengths * self._times)
+        """sum J_j T_j = sum E_i tau_i in units of T_ref: M = V T_mean at low speed."""
+        return _exact_sums(self._strengths * self._times)
 
     @property
     def slow_time(self) -> float:
-        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean over T_ref: kappa V beside its inverse tells slow from fast."""
+        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref; slow rolling: kappa V is below its inverse."""
         if not self.E.size:
             return 1.0
-        return (_sums(self.E * self.tau**2) + _sums(self.J * self.T**2)) / self.T_mean
+        return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2)) / self.T_mean
 
     def slower(self, factor: ArrayLike) -> Prony:
-        """All times longer by a factor, or by one each, as a colder rubber has them."""
+        """Return the material with all times multiplied by ``factor``, a number or one for each, as of a colder rubber.
+
+        Raises ParameterError for a factor that is not positive.
+        """
         times = self._times * check_array("factor", factor, low=0.0, strict=True)[..., np.newaxis]
         if self.by_creep:
             return Prony.creep(self._strengths, times, alpha=self.alpha)
         return Prony(self._strengths, times)
 
     def in_own_time(self) -> tuple[Prony, float]:
-        """(A single one with its slow time near 1, the time that this is counted in), a power of two: exact."""
-        return self._own
+        """Return a single series with its slow time near 1, and its unit of time in T_ref, a power of two: exact."""
+        return self._in_own_time
 
     @cached_property
-    def _own(self) -> tuple[Prony, float]:
-        unit = 2.0 ** round(math.log2(self.slow_time))  # of no modes it is 1
+    def _in_own_time(self) -> tuple[Prony, float]:
+        unit = 2.0 ** round(math.log2(self.slow_time))  # 1 without modes
         return (self, 1.0) if unit == 1.0 else (self.slower(1.0 / unit), unit)
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         alpha = np.asarray(self.alpha).tobytes()
         return self.by_creep, self._strengths.shape, self._strengths.tobytes(), self._times.tobytes(), alpha
-
-    def __eq__(self, other: object) -> bool:
-        return self._key == other._key if isinstance(other, Prony) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._key)
 
     def __repr__(self) -> str:
         if self.shape:
@@ -253,8 +294,13 @@ class Prony(OneOrMany):
         return f"Prony(E={strengths}, tau={times})"
 
 
-def _given(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
-    """Strengths and times as they are kept, refused by these names."""
+def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
+    """Check modes and sort them; raises ParameterError.
+
+    names: of both parameters, for errors.
+    strengths, times: (modes,) or (n, modes); dimensionless, in units of T_ref.
+    Returns strengths and times by descending time, modes without strength dropped or, for many, set behind the others.
+    """
     values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, low=0.0, strict=True)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
         allowed = f"one time for each {names[0]}, of shape {values.shape}"
@@ -262,53 +308,58 @@ def _given(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tu
     shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
     if len(shape) not in (1, 2):
         raise ParameterError(", ".join(names), f"of shape {shape}", "(modes,) or (materials, modes)")
-    values, each = descending(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
-    there = values > 0.0
-    most = int(there.sum(axis=-1).max(initial=0))
+    values, each = sort_modes(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
+    present = values > 0.0
+    most = int(present.sum(axis=-1).max(initial=0))
     if most > MOST_MODES:
         raise ParameterError(names[1], f"{most} times", f"at most {MOST_MODES}")
-    longest, shortest = each.max(axis=-1, initial=0.0, where=there), each.min(axis=-1, initial=np.inf, where=there)
-    wide = longest > WIDEST * shortest
+    longest, shortest = each.max(axis=-1, initial=0.0, where=present), each.min(axis=-1, initial=np.inf, where=present)
+    wide = longest > LARGEST_TIME_RATIO * shortest
     if wide.any():
         ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
-        raise ParameterError(names[1], ends, f"within a factor of {WIDEST:g}")
+        raise ParameterError(names[1], ends, f"within a factor of {LARGEST_TIME_RATIO:g}")
     return values[..., :most], each[..., :most]
 
 
 def series_of_alpha(alpha: float) -> Prony:
-    """The paper's material, its times in T_epsilon, with both forms exact to the last digit; elastic of alpha = 1."""
+    """Return the standard linear solid of the paper with times in units of T_epsilon, both forms without rounding.
+
+    alpha: instantaneous divided by long-time modulus, >= 1; for 1 the series is elastic.
+    """
     c, one = np.array([(alpha - 1.0) / alpha]), np.ones(1)
     if alpha == 1.0:
         c, one = c[:0], one[:0]
-    made = Prony._of(True, c, one, alpha)
-    made.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, np.newaxis])
-    return made
+    series = Prony._make(True, c, one, alpha)
+    series.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, np.newaxis])
+    return series
 
 
-def descending(strengths: NDArray, times: NDArray, *more: NDArray) -> list[Floats]:
-    """Strengths and times by falling times: those of equal times added up, those of no strength behind the others.
+def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floats]:
+    """Sort modes by descending time, add those of equal times, and put those without strength behind the others.
 
-    ``more`` : parts of the strengths, likewise.
+    strengths, times: (..., modes).
+    parts: parts of the strengths, (..., modes) each, which are treated like them.
+    Returns strengths, times and parts.
     """
     order = np.argsort(-times, axis=-1, kind="stable")
-    values, each, *parts = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *more))
+    values, each, *rest = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts))
     for n in range(each.shape[-1] - 1):
         equal = each[..., n] == each[..., n + 1]
-        for given in (values, *parts) if equal.any() else ():
+        for given in (values, *rest) if equal.any() else ():
             given[..., n + 1] += np.where(equal, given[..., n], 0.0)
             given[..., n] *= ~equal
     order = np.argsort(values == 0.0, axis=-1, kind="stable")
-    return [np.take_along_axis(given, order, axis=-1) for given in (values, each, *parts)]
+    return [np.take_along_axis(given, order, axis=-1) for given in (values, each, *rest)]
 
 
-def _sums(values: NDArray) -> Any:
-    """Along the modes, without an error of rounding but the last."""
+def _exact_sums(values: NDArray) -> Any:
+    """Return sums over the modes, correctly rounded: a number of ``values`` (modes,), an array of (n, modes)."""
     rows = values.tolist()
     return math.fsum(rows) if values.ndim == 1 else np.array([math.fsum(row) for row in rows])
 
 
-def read_only(values: Any) -> Any:
-    """The array itself, or a copy that lies in one piece, which nobody can write to."""
+def lock_array(values: Any) -> Any:
+    """Return the array ``values`` itself, or a contiguous copy, after making it read only."""
     values = np.ascontiguousarray(values)
     values.flags.writeable = False
     return values

@@ -1,7 +1,7 @@
-"""Both forms of a series, one from the other, of one material or of many at once.
+"""Conversion between the relaxation and the creep form of a series, for one material or many at once.
 
-The rates of one form are the zeros of a sum over the poles of the other; the unknown is the distance from the nearer
-pole, so that the gaps a_i - b_j keep all their digits, and the strengths are products of gaps.
+The rates of one form are the zeros of a sum over the poles of the other.  The unknown is the distance of a zero from
+the nearer pole, so that the gaps a_i - b_j keep all digits; the strengths are products of gaps.
 """
 
 from __future__ import annotations
@@ -14,21 +14,31 @@ from numpy.typing import NDArray
 
 from ..core.array_types import Floats
 
-#: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
+#: highest alpha: beyond 1e18 the 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha
+#: zeta is large
 HIGHEST_ALPHA = 1e12
-#: most modes of a series, and longest over shortest time
-MOST_MODES, WIDEST = 64, 1e32
-#: halvings of ln(distance) until it is good to a thousandth, and steps of Newton's iteration from there to rounding
-_HALVINGS, _POLISH = 20, 3
-#: a zero lies no closer to its pole than this share of the interval, whose logarithm is halved
+#: largest number of modes of a series, with which conversions stay accurate (tests/materials/test_prony.py)
+MOST_MODES = 64
+#: largest ratio of the longest to the shortest time of a series, likewise
+LARGEST_TIME_RATIO = 1e32
+#: halvings of the interval of ln(distance): 20 leave an error of 1e-3, from which Newton's method converges
+_HALVINGS = 20
+#: steps of Newton's method from there to rounding
+_NEWTON_STEPS = 3
+#: least distance of a zero from its pole, as a fraction of the interval, whose logarithm is halved
 _CLOSEST = 1e-300
 
 
 @dataclass(frozen=True)
 class Modes:
-    """Both forms of one material, or of many behind leading axes, times descending, and the gaps between their rates.
+    """Both forms of one material, or of many along leading axes, and the gaps between their rates.
 
-    a, b : rates of relaxation and creep, ascending; E, J : strengths; gap[..., j, i] = a_i - b_j.
+    alpha : instantaneous divided by long-time modulus.
+    a : rates of relaxation, 1/tau_i, ascending, (..., modes).
+    b : rates of creep, 1/T_j, ascending, (..., modes).
+    E : strengths of relaxation, (..., modes).
+    J : strengths of creep, (..., modes).
+    gap : a_i - b_j, [..., j, i].
     """
 
     alpha: Any
@@ -39,36 +49,56 @@ class Modes:
     gap: Floats
 
 
-def of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
-    """Both forms from strengths and times of relaxation (..., modes), times descending."""
+def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
+    """Compute both forms from that of relaxation.
+
+    E: strengths, (..., modes).
+    tau: times, descending, (..., modes).
+    alpha: 1 + sum E, a number or (...).
+    """
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
     spread = np.zeros((*tau.shape[:-1], modes + 1, modes + 1))
-    spread[..., 1:, 1:], spread[..., 1:, 0], spread[..., 0, 1:] = _between(tau), a, -a
+    spread[..., 1:, 1:], spread[..., 1:, 0], spread[..., 0, 1:] = _rate_differences(tau), a, -a
     gaps = zeros_from_poles(spread, np.concatenate([np.ones((*E.shape[:-1], 1)), E], axis=-1), np.zeros(()))
     b, gap = gaps[..., 0, :].copy(), np.ascontiguousarray(np.swapaxes(-gaps[..., 1:, :], -1, -2))
     return Modes(alpha, a, b, E, _strengths(gap, alpha)[0] / b, gap)
 
 
-def of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
-    """Both forms from strengths and times of creep (..., modes), times descending."""
+def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
+    """Compute both forms from that of creep.
+
+    J: strengths, (..., modes).
+    T: times, descending, (..., modes).
+    alpha: 1/(1 - sum J), a number or (...).
+    """
     b = 1.0 / T
-    gap = zeros_from_poles(_between(T), J * b, np.asarray(1.0 / alpha))
+    gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
     a = b + np.diagonal(gap, axis1=-2, axis2=-1)
     return Modes(alpha, a, b, _strengths(gap, alpha)[1] / a, J, gap)
 
 
-def _between(times: NDArray) -> Floats:
-    """rate[j] - rate[l] of the rates 1/times: of close times the difference is exact, of their rates it is not."""
+def _rate_differences(times: NDArray) -> Floats:
+    """Return the differences rate[j] - rate[l] of the rates 1/times, [..., j, l], from differences of times.
+
+    For close times their difference is exact, that of their rates is not.
+
+    times: (..., modes).
+    """
     row, column = times[..., None, :], times[..., :, None]
     return (row - column) / (column * row)
 
 
 def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """gap[..., j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum weight_j/(pole_j - s).
+    """Return gap[..., j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum
+    weight_j/(pole_j - s).
 
-    spread[..., j, l] = pole_j - pole_l.  Poles ascend and weights are positive, so that the sum rises from pole to
-    pole: one zero between two neighbours, and one right of the last if ``constant`` > 0.
+    The sum increases from pole to pole: one zero lies between two neighbours, and one right of the last if
+    ``constant`` > 0.
+
+    spread: pole_j - pole_l, [..., j, l]; poles are ascending.
+    weight: positive, (..., poles).
+    constant: >= 0, (...).
     """
     poles, constant = weight.shape[-1], constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
@@ -76,38 +106,58 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
         half = np.concatenate([half, 2.0 * weight.sum(axis=-1, keepdims=True) / constant], axis=-1)
     left = np.broadcast_to(np.arange(half.shape[-1]), half.shape)
     in_left = np.ones(half.shape, dtype=bool)
-    middle = _sum_at(half, _seen_from(left, spread), weight, constant)
+    middle = _sum_near(half, _relative_poles(left, spread), weight, constant)
     in_left[..., : poles - 1] = middle[..., : poles - 1] >= 0.0
     origin, side = np.where(in_left, left, left + 1), np.where(in_left, 1.0, -1.0)
-    seen, low, high = _seen_from(origin, spread), np.log(half * _CLOSEST), np.log(half)
+    seen, low, high = _relative_poles(origin, spread), np.log(half * _CLOSEST), np.log(half)
     for _ in range(_HALVINGS):
         mid = 0.5 * (low + high)
-        beyond = side * _sum_at(side * np.exp(mid), seen, weight, constant) > 0.0
+        beyond = side * _sum_near(side * np.exp(mid), seen, weight, constant) > 0.0
         low, high = np.where(beyond, low, mid), np.where(beyond, mid, high)
     distance = np.exp(0.5 * (low + high))
-    for _ in range(_POLISH):
-        distance = _polished(distance, origin, side, seen, weight, constant)
+    for _ in range(_NEWTON_STEPS):
+        distance = _improve_distance(distance, origin, side, seen, weight, constant)
     return np.swapaxes((side * distance)[..., None] - seen, -1, -2)
 
 
-def _seen_from(origin: NDArray, spread: NDArray) -> Floats:
-    """[..., i, j] = pole_j - pole of the origin of zero i."""
+def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
+    """Return pole_j - pole of the origin of zero i, [..., i, j].
+
+    origin: index of the pole that each zero is measured from, (..., zeros).
+    spread: pole_j - pole_l, [..., j, l].
+    """
     return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
 
 
-def _sum_at(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """The sum at s = pole[origin] + step."""
+def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
+    """Return the sum at s = pole[origin] + step, (..., zeros).
+
+    step: (..., zeros).
+    seen: poles relative to the origin of each zero, [..., i, j].
+    weight: (..., poles).
+    constant: (..., 1).
+    """
     return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 
 
-def _polished(
+def _improve_distance(
     distance: NDArray, origin: NDArray, side: NDArray, seen: NDArray, weight: NDArray, constant: NDArray
 ) -> Floats:
-    """One step of Newton's iteration for weight[origin] = distance side (the rest of the sum)."""
-    per, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
-    each = np.where(own, 0.0, weight[..., None, :] * per)
-    # poles first: then numpy adds one after another, as it has done since the first of these series
-    rest, slope = (np.ascontiguousarray(np.moveaxis(terms, -1, 0)).sum(axis=0) for terms in (each, each * per))
+    """Return the distances after one step of Newton's method for weight[origin] = distance side (the rest of the
+    sum).
+
+    distance: of each zero from its origin, (..., zeros).
+    origin: index of the pole that each zero is measured from, (..., zeros).
+    side: 1 for a zero right of its origin, -1 left of it, (..., zeros).
+    seen: poles relative to the origin of each zero, [..., i, j].
+    weight: (..., poles).
+    constant: (..., 1).
+    """
+    inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
+    terms = np.where(own, 0.0, weight[..., None, :] * inverse)
+    # with the poles along the first axis numpy adds in their order: results keep their last bits
+    sums = (np.ascontiguousarray(np.moveaxis(values, -1, 0)).sum(axis=0) for values in (terms, terms * inverse))
+    rest, slope = sums
     rest = constant + rest
     value = np.take_along_axis(weight, origin, axis=-1) - distance * side * rest
     new = distance + value / (side * rest + distance * slope)
@@ -115,10 +165,14 @@ def _polished(
 
 
 def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
-    """(J, E) times their rates: products of gaps over products of the differences of their own rates.
+    """Return the strengths (J, E) times their rates: products of gaps divided by differences of the rates of one
+    form.
 
-    The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.  Factors are
-    paired so that nothing overflows.
+    The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.  Factors
+    are paired so that nothing overflows.
+
+    gap: a_i - b_j, [..., j, i].
+    alpha: a number or (...).
     """
     size, own = np.abs(gap), np.eye(gap.shape[-1], dtype=bool)
     nearest, alpha = np.diagonal(size, 0, -2, -1), np.asarray(alpha)[..., None]

@@ -1,6 +1,6 @@
-"""Time-temperature shifts: :class:`WLF` and :class:`Arrhenius`, temperature in degrees Celsius -> a_T.
+"""Time-temperature shifts: :class:`WLF` and :class:`Arrhenius`, functions of the temperature in degrees Celsius.
 
-Every time of a material is a_T times that at the reference temperature T0.
+Their value a_T is the factor of all times of a material, which is 1 at the reference temperature T0.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from ..core.checks import check_number
 from ..core.errors import ModelWarning, ParameterError, caller_level
 from ..core.scale import SI, Units
 
-#: J/(mol K), exact since 2019
+#: molar gas constant, J/(mol K); exact since the SI of 2019
 GAS_CONSTANT = 8.31446261815324
-#: degrees Celsius
+#: absolute zero, degrees Celsius; exact
 ABSOLUTE_ZERO = -273.15
-#: degrees Celsius between which rubbers and polymers are measured and used.  300 K, room temperature in kelvin, lies
-#: above, and room temperature converted twice, 27 - 273 = -246, lies below; 200 K is below the glass transition of
-#: nearly every rubber, so that a number above 200 is one of kelvin more likely than one of degrees Celsius
+#: temperatures between which rubbers and polymers are measured and used, degrees Celsius.  300 K, room temperature in
+#: kelvin, lies above; room temperature converted twice, 27 - 273 = -246, lies below; 200 K is below the glass
+#: transition of nearly every rubber, so that a number above 200 is more likely in kelvin than in degrees Celsius
 USUAL_RANGE = -150.0, 200.0
 
 
@@ -52,12 +52,12 @@ class WLF:
     C2: float = 51.6
 
     def __post_init__(self) -> None:
-        keep(self, C1=0.0, C2=0.0)
-        object.__setattr__(self, "T0", celsius("T0", self.T0))
+        check_fields(self, C1=0.0, C2=0.0)
+        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
-        """a_T at a temperature in degrees Celsius."""
-        above = celsius("temperature", temperature) - self.T0
+        """Return a_T at a ``temperature`` in degrees Celsius."""
+        above = check_celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
             allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF, in degrees Celsius"
             raise ParameterError("temperature", temperature, allowed)
@@ -89,32 +89,33 @@ class Arrhenius:
     T0: float
 
     def __post_init__(self) -> None:
-        keep(self, energy=0.0)
-        object.__setattr__(self, "T0", celsius("T0", self.T0))
+        check_fields(self, energy=0.0)
+        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
-        """a_T at a temperature in degrees Celsius."""
-        kelvin = celsius("temperature", temperature) - ABSOLUTE_ZERO
+        """Return a_T at a ``temperature`` in degrees Celsius."""
+        kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
 
 
-def celsius(name: str, temperature: Any) -> float:
-    """A temperature in degrees Celsius, checked.
+def check_celsius(name: str, temperature: Any) -> float:
+    """Return a temperature as a number of degrees Celsius.
 
     Parameters
     ----------
-    name : of the parameter, for the error and the warning.
+    name : name of the parameter, for the error and the warning.
     temperature : degrees Celsius, above absolute zero.
 
     Raises
     ------
     ParameterError
-        What is no finite number above -273.15.
+        A value that is no finite number above -273.15.
 
     Warns
     -----
     ModelWarning
-        Outside :data:`USUAL_RANGE`.  The words hold no value, so that Python says them once for each line of a program.
+        A temperature outside :data:`USUAL_RANGE`.  The text contains no value, so that Python shows it once for each
+        line of a program.
     """
     found = check_number(name, temperature, unit="degC", low=ABSOLUTE_ZERO, strict=True)
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
@@ -124,22 +125,22 @@ def celsius(name: str, temperature: Any) -> float:
     return found
 
 
-def relative(shift: Callable[[float], float], temperature: float, reference: float | None) -> float:
-    """Times at a temperature over those at a reference, a_T(temperature)/a_T(reference).
+def relative_shift(shift: Callable[[float], float], temperature: float, reference: float | None) -> float:
+    """Return the ratio of times at a temperature to those at a reference, a_T(temperature)/a_T(reference).
 
     The ratio is the same whatever temperature the constants of the shift refer to: WLF and Arrhenius keep their form
-    when they are moved to another (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
+    when they are converted to another (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
 
     Parameters
     ----------
-    shift : a_T over temperature in degrees Celsius.
+    shift : function that returns a_T at a temperature in degrees Celsius.
     temperature : degrees Celsius.
-    reference : degrees Celsius; None: where the shift is 1.
+    reference : degrees Celsius; None: the temperature at which the shift is 1.
 
     Raises
     ------
     ParameterError
-        A temperature that the shift does not allow; a shift that gives no positive number.
+        A temperature that the shift does not allow; a shift that returns no positive number.
     """
     factor = check_number("a_T", shift(temperature), low=0.0, strict=True)
     if reference is None:
@@ -149,18 +150,25 @@ def relative(shift: Callable[[float], float], temperature: float, reference: flo
     )
 
 
-def keep(given: Any, unit: Units = SI, **lows: float) -> None:
-    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError.
+def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
+    """Replace fields of a frozen dataclass by numbers above their lower bounds; raises ParameterError.
 
-    ``unit`` : of all of them, or what has units by name.
+    instance: the dataclass.
+    unit: unit of all these fields, or an object that has units by name.
+    lows: lower bound of each field by name; the number must be larger.
     """
     for name, low in lows.items():
         object.__setattr__(
-            given, name, check_number(name, getattr(given, name), unit=unit, low=low, strict=low > -math.inf)
+            instance, name, check_number(name, getattr(instance, name), unit=unit, low=low, strict=low > -math.inf)
         )
 
 
 def _shift(temperature: float, exponent: float) -> float:
+    """Return a_T = exp(exponent); raises ParameterError where no double holds it.
+
+    temperature: degrees Celsius, for the error.
+    exponent: ln a_T.
+    """
     if not abs(exponent) < 700.0:
         raise ParameterError("temperature", temperature, f"nearer to T0: a_T = exp({exponent:.3g}) is no double")
     return math.exp(exponent)

@@ -16,8 +16,8 @@ from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import TIME_POWERS
 from ..kernels.flow.records import Motions
 from ..materials.bodies import Bodies
-from ..materials.law_each import law_of_alphas, law_of_materials
-from ..materials.law_table import law_table
+from ..materials.law.per_element import record_of_alphas, record_of_materials
+from ..materials.law.table import law_table
 from .checks import SPEED_RANGE
 from .drive import LOSSES, ROWS, STATES
 from .flow import FlowResult, flow_map, look_up_ensemble
@@ -173,7 +173,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
             one: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]
             return law_table(one.item() if several is None else one).unsteady_record, False
         if several is None:
-            return law_of_alphas(alpha), False
-        return law_of_materials(several, index), isinstance(several, Bodies)
+            return record_of_alphas(alpha), False
+        return record_of_materials(several, index), isinstance(several, Bodies)
 
     return make

@@ -10,8 +10,8 @@ import numpy as np
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT
-from ..materials.law_build import paired
-from ..materials.law_table import law_table
+from ..materials.law.pack import interleave_pairs
+from ..materials.law.table import law_table
 from .flow_layer import fill_layers
 from .flow_manifold import fill_manifold
 from .flow_problem import OUT_OF_RANGE, SPEEDS, STOPS, FlowProblem, NoFlowMap
@@ -63,11 +63,11 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         if not (np.diff(slip.ravel(), prepend=0.0) > 0.0).all():
             raise NoFlowMap(STOPS)
         time, path, onset = NODES.powers(T), NODES.powers(X), NODES.powers(slip)
-        parts.slide[n] = np.concatenate([paired(time, NODES.powers(limit)), path], axis=-1)
+        parts.slide[n] = np.concatenate([interleave_pairs(time, NODES.powers(limit)), path], axis=-1)
         # nearly held: the inverse would end before the speeds that are served
         if not kappa * mu * time[-3].sum() < 2.0 ** (layout.HIGH - 1):
             raise NoFlowMap(STOPS)
         parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
         u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
         values = [NODES.powers(value) for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))]
-        parts.onset[n] = np.concatenate([paired(*values[:2]), values[2]], axis=-1)
+        parts.onset[n] = np.concatenate([interleave_pairs(*values[:2]), values[2]], axis=-1)

@@ -8,7 +8,7 @@ from numpy.polynomial.polynomial import polyval
 from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION
-from ..materials.law_build import paired
+from ..materials.law.pack import interleave_pairs
 from .flow_manifold import SlowManifold
 from .flow_problem import SPEEDS, STICK_ENDS, FlowProblem
 from .flow_rows import NODES, Nodes, Rows, octaves
@@ -69,7 +69,13 @@ def fill_layers(
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
     excess = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
     asymptote[:] = np.concatenate(
-        [paired(slow_log_at_V + _padded(above), rates), _padded(split_powers), paired(*excess[:2]), excess[2]], axis=-1
+        [
+            interleave_pairs(slow_log_at_V + _padded(above), rates),
+            _padded(split_powers),
+            interleave_pairs(*excess[:2]),
+            excess[2],
+        ],
+        axis=-1,
     )
 
 

@@ -12,7 +12,7 @@ from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import MOMENT, TRACTION
 from ..kernels.numerics.interpolation import gauss
-from ..materials.law_build import paired
+from ..materials.law.pack import interleave_pairs
 from .flow_problem import FULL_SLIP_RETURNS, OUT_OF_RANGE, SPEEDS, FlowProblem, NoFlowMap
 from .flow_rows import NODES, Rows
 
@@ -71,8 +71,8 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     speeds = NODES.powers(V), NODES.powers(delta)
     slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.parameters[1])
     slow = SlowManifold(rows, speeds, (to_go[0], to_go[1]), to_go[2], NODES.powers(slow_log))
-    parts.slow[: len(V)] = np.concatenate([paired(*speeds), paired(*slow.path), slow.loss], axis=-1)
-    parts.manifold[:] = paired(slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log)))
+    parts.slow[: len(V)] = np.concatenate([interleave_pairs(*speeds), interleave_pairs(*slow.path), slow.loss], axis=-1)
+    parts.manifold[:] = interleave_pairs(slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log)))
     return slow
 
 

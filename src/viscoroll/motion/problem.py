@@ -18,7 +18,7 @@ from ..core.checks import check_array, check_bool
 from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
-from ..materials.law_table import law_table
+from ..materials.law.table import law_table
 from .checks import controls, in_words, refuse_end, refuse_many
 from .drive import LOSSES, ROWS, STATES, Drive
 from .drive_functions import DriveFunctions, DrivenStart, KernelDrive, prepare_drive, refuse_rest, undriven

@@ -1,4 +1,4 @@
-"""The table of commands, and what their arguments mean: numbers, ranges, the scene, the output file."""
+"""The table of commands, and the types of their arguments: numbers, ranges, the scene, the output file."""
 
 from __future__ import annotations
 
@@ -10,54 +10,74 @@ from typing import Any, NamedTuple
 
 import viscoroll as vr
 
+#: Suffixes of figures.
 FIGURES = (".png", ".pdf", ".svg")
 
-Run = Callable[[Namespace], int | None]
+#: A command: takes the parsed arguments, returns an exit code other than 0, or None.
+CommandFunction = Callable[[Namespace], int | None]
 
 
 class Option(NamedTuple):
-    """An argument, as of ``ArgumentParser.add_argument``; of those that are ``exclusive`` a command line has one."""
+    """An argument of a command.
+
+    Attributes
+    ----------
+    names : positional name, or names of the option.
+    settings : keywords of ``ArgumentParser.add_argument``.
+    """
 
     names: tuple[str, ...]
-    about: dict[str, Any]
-    exclusive: bool = False
+    settings: dict[str, Any]
 
 
 class Command(NamedTuple):
-    """``run`` gives an exit code other than 0, or None; its docstring is the help, with an example at its end."""
+    """A command.
 
-    run: Run
-    options: tuple[Option, ...]
+    Attributes
+    ----------
+    run : function that runs it; its docstring is the help, with an example at its end.
+    options : its arguments; of a list of arguments a command line may have one only.
+    """
+
+    run: CommandFunction
+    options: tuple[Option | list[Option], ...]
 
 
-#: the words of every command, in the order of ``--help``
+#: Words of a command -> the command, in the order of ``--help``.
 COMMANDS: dict[str, Command] = {}
 
 
-def command(words: str, *options: Option) -> Callable[[Run], Run]:
-    """Add a function to :data:`COMMANDS`."""
+def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
+    """Return a decorator that adds a function to :data:`COMMANDS`.
 
-    def add(run: Run) -> Run:
+    words: of the command, as "tables law".  options: as of :class:`Command`.
+    """
+
+    def add(run: CommandFunction) -> CommandFunction:
         COMMANDS[words] = Command(run, options)
         return run
 
     return add
 
 
-def option(*names: str, **about: Any) -> Option:
-    """An argument of a command."""
-    return Option(names, about)
+def option(*names: str, **settings: Any) -> Option:
+    """Return an argument of a command; the arguments are those of ``ArgumentParser.add_argument``."""
+    return Option(names, settings)
 
 
 def numbers(text: str) -> Any:
-    """A number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these with commas between; one stays a scalar."""
+    """Return a float, or an array (n,), of an argument: NUMBER, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or a list of these.
+
+    The members of a list are separated by commas.
+    """
     import numpy as np
 
-    parts = [_part(part) for part in text.split(",")]
-    return parts[0] if len(parts) == 1 else np.hstack(parts)
+    members = [_numbers_of_member(member) for member in text.split(",")]
+    return members[0] if len(members) == 1 else np.hstack(members)
 
 
-def _part(text: str) -> Any:
+def _numbers_of_member(text: str) -> Any:
+    """Return a float, or the array of a range; raise ArgumentTypeError."""
     try:
         low, *rest = text.split(":")
         if not rest:
@@ -71,15 +91,11 @@ def _part(text: str) -> Any:
         raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
 
 
-def body_of(text: str) -> Any:
-    """The scene or the cylinder of a file, or the preset of that name.
+def roller_of_argument(text: str) -> Any:
+    """Return the scene or the cylinder of a TOML file, or the preset of that name.
 
-    Raises
-    ------
-    ParameterError
-        An unknown preset.
-    FileError
-        A file that cannot be read, or whose name does not end in .toml.
+    Raises ParameterError for an unknown preset; FileError for a file that cannot be read, or whose name does not end
+    in .toml.
     """
     from ...io.config import preset, read_roller
 
@@ -91,7 +107,11 @@ def body_of(text: str) -> Any:
 
 
 def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
-    """-o FILE, or another option, with one of ``suffixes``; what cannot be written is refused before any work."""
+    """Return the option of an output file; a path that cannot be written is refused before any work.
+
+    suffixes: allowed ones.  name: of the option; of another than -o the argument is name without dashes.
+    required: whether it must be given.  more: text behind the suffixes in the help.
+    """
 
     def path(text: str) -> Path:
         text = text.rstrip("/") if text.endswith(".zarr/") else text  # as shells complete the name of a folder
@@ -109,12 +129,12 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
     )
 
 
+#: A file to read.
 FILE = option("file", metavar="FILE")
-SCENE = option("scene", metavar="SCENE", help="FILE.toml with [scene], [cylinder] (SI) or preset; or a preset")
-#: of a table of numbers
-TABLE = (
-    output(".txt", ".csv", ".nc", required=False, more="; without it: standard output")._replace(exclusive=True),
-    option(
-        "--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"
-    )._replace(exclusive=True),
-)
+#: A scene or cylinder.
+SCENE = option("scene", metavar="SCENE", help="FILE.toml with [scene], [cylinder] (SI units) or preset; or a preset")
+#: Output of a table of numbers: to a file, or to standard output in a format.
+TABLE = [
+    output(".txt", ".csv", ".nc", required=False, more="; default: standard output"),
+    option("--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"),
+]

@@ -1,4 +1,4 @@
-"""``viscoroll doctor``: what a report of a problem should hold."""
+"""``viscoroll doctor``: the contents of a problem report."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ import viscoroll as vr
 
 from .arguments import command
 
-#: extra -> what it brings
+#: Extra of the package -> the library that it installs.
 _EXTRAS = {"runs": "zarr", "cluster": "distributed"}
 
 
 @command("doctor")
-def doctor(given: Namespace) -> int:
-    """Versions, cache, threads, what is compiled and what is missing.
+def doctor(arguments: Namespace) -> int:
+    """Versions, cache, threads, compiled functions and missing packages.
 
-    What a report of a problem should hold; exit code 1 if something that is needed is missing.
+    Send its output with the report of a problem.  Exit code 1 if a required package is missing.
 
     example:
       viscoroll doctor
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()
-    names = [re.split(r"[^\w-]", each)[0] for each in required if "extra ==" not in each]
+    names = [re.split(r"[^\w-]", requirement)[0] for requirement in required if "extra ==" not in requirement]
     versions = {name: _version(name) for name in (*names, "llvmlite")}
     for name, value in _lines():
         print(f"{name:<12} {value}")
@@ -40,6 +40,7 @@ def doctor(given: Namespace) -> int:
 
 
 def _lines() -> Iterator[tuple[str, str]]:
+    """Yield (name, value) of each line of the report but the last."""
     from ...core.blocks import thread_count
     from ...kernels.compile.cache import sources_digest
     from ...kernels.compile.folder import cache_root
@@ -48,42 +49,43 @@ def _lines() -> Iterator[tuple[str, str]]:
     yield "python", f"{platform.python_version()} ({sys.executable})"
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
     for extra, name in _EXTRAS.items():
-        found = _version(name)
-        yield f"[{extra}]", f"{name} {found}" if found else f"no {name}: pip install 'viscoroll[{extra}]'"
-    given = os.environ.get("VISCOROLL_THREADS")
-    yield "threads", f"{thread_count(None)} ({'VISCOROLL_THREADS' if given else 'the cores available'})"
+        version = _version(name)
+        yield f"[{extra}]", f"{name} {version}" if version else f"no {name}: pip install 'viscoroll[{extra}]'"
+    source = "VISCOROLL_THREADS" if os.environ.get("VISCOROLL_THREADS") else "the cores available"
+    yield "threads", f"{thread_count(None)} ({source})"
     folder = cache_root() / f"kernels-{sources_digest()}"
-    kept = [path.stat().st_size for path in folder.glob("*") if path.is_file()]
-    state = f"{len(kept)} compiled functions, {sum(kept) / 1e6:.1f} MB" if kept else "nothing yet: viscoroll warmup"
-    yield "cache", f"{folder}: {state}{_trouble_of(folder)}"
+    sizes = [path.stat().st_size for path in folder.glob("*") if path.is_file()]
+    state = f"{len(sizes)} compiled functions, {sum(sizes) / 1e6:.1f} MB" if sizes else "nothing yet: viscoroll warmup"
+    yield "cache", f"{folder}: {state}{_fault_of_cache(folder)}"
     yield "check", _check()
 
 
 def _check() -> str:
-    """A contact state, its time, and what is warned of meanwhile."""
-    with warnings.catch_warnings(record=True) as told:
+    """Return the state of a contact, the time that it took, and the warnings."""
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        began = time.perf_counter()
+        start = time.perf_counter()
         Q = vr.contact(vr.presets.PAPER_SECTION_5, 0.5, delta=-0.01, fields="Q").Q
-        seconds = time.perf_counter() - began
-    trouble = "".join(f"; {each.message}" for each in told)
-    return f"contact of paper-section-5 at V = 0.5, delta = -0.01: Q = {Q:.12g}, {seconds:.1f} s{trouble}"
+        seconds = time.perf_counter() - start
+    texts = "".join(f"; {warning.message}" for warning in caught)
+    return f"contact of paper-section-5 at V = 0.5, delta = -0.01: Q = {Q:.12g}, {seconds:.1f} s{texts}"
 
 
 def _version(name: str) -> str | None:
+    """Return the version of a package; None if it is not installed."""
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
         return None
 
 
-def _trouble_of(folder: Path) -> str:
-    """Why the cache is not used, or cannot be written."""
+def _fault_of_cache(folder: Path) -> str:
+    """Return why the cache of compiled functions in ``folder`` is not used or cannot be written; "" if it can."""
     from ...kernels.compile.folder import refuse_writable_by_others
 
     try:
         refuse_writable_by_others(folder)
     except PermissionError as error:
         return f"; it is NOT USED: {error.strerror}"
-    there = next((path for path in (folder, *folder.parents) if path.exists()), folder)
-    return "" if os.access(there, os.W_OK) else "; it CANNOT be written"
+    existing = next((path for path in (folder, *folder.parents) if path.exists()), folder)
+    return "" if os.access(existing, os.W_OK) else "; it CANNOT be written"

@@ -1,4 +1,4 @@
-"""What measurements say: ``viscoroll material`` and ``identify``."""
+"""Materials and measurements: ``viscoroll material`` and ``identify``."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import sys
 from argparse import Namespace
 from dataclasses import replace
+from typing import Any
 
 import viscoroll as vr
 
@@ -17,10 +18,10 @@ from .arguments import FIGURES, command, option, output
     "material show",
     option("file", metavar="FILE", help="TOML with [material], [base] or both, or the netCDF of a material"),
 )
-def show(given: Namespace) -> None:
-    """Moduli, and the modes in relaxation and in creep.
+def show(arguments: Namespace) -> None:
+    """Moduli, relaxation modes and creep modes.
 
-    Of each material of the file, at the temperature that it states.
+    Of each material of the file, at the temperature that the file states.
 
     example:
       viscoroll material show docs/examples/rubber.toml
@@ -28,9 +29,9 @@ def show(given: Namespace) -> None:
     import pandas as pd
 
     from ...core.results import as_text
-    from ...materials.file import read_materials
+    from ...materials.material_toml import read_materials
 
-    for section, material in read_materials(given.file).items():
+    for section, material in read_materials(arguments.file).items():
         print(f"[{section}] {as_text(*material._summary())}\n")
         series, T = material.prony, material.T_ref
         if series.E.size:
@@ -43,71 +44,71 @@ def show(given: Namespace) -> None:
 @command(
     "material fit",
     option("data", metavar="DATA", help="a text file of columns"),
-    option("--units", metavar="F,M", help="of frequency and moduli where the file gives none: Hz,MPa"),
+    option("--units", metavar="F,M", help="units of frequency and moduli if the file states none: Hz,MPa"),
     option(
-        "--column", metavar="NAME=HEADING", action="append", help="which column is which, as storage=Module 1; again"
+        "--column", metavar="NAME=HEADING", action="append",
+        help="quantity and heading of a column, as storage=Module 1; may be repeated"
     ),
-    option("--decimal", choices=(".", ","), help="default: the one that the numbers have"),
-    option("--encoding", help="of the file; default: by its first bytes"),
-    option("--mode", choices=("tension", "shear"), help="of columns that do not say it (default tension)"),
+    option("--decimal", choices=(".", ","), help="decimal mark (default: as the numbers have it)"),
+    option("--encoding", help="encoding of the file (default: by its first bytes)"),
+    option("--mode", choices=("tension", "shear"), help="of columns that do not state it (default: tension)"),
     option("--temperature", type=float, metavar="T", help="of all points, degrees Celsius; default: as in the file"),
-    option("--reference", type=float, metavar="T", help="at which the times shall be, of several temperatures"),
-    option("--wlf", metavar="C1,C2,T0", help="the shift between temperatures; default: by their overlap"),
-    option("--on", choices=("both", "storage"), default="both", help="moduli by whose overlap it is (default both)"),
-    option("--modes", type=int, help="largest number of modes; default: as few as the misfit needs"),
-    option("--misfit", type=float, default=0.01, help="rms of the relative errors asked for (default 0.01)"),
-    option("--nu", type=float, default=0.49, help="Poisson's ratio, constant in time (default 0.49)"),
-    option("--name", default="", help="of the material"),
-    option("--force", action="store_true", help="write the file though the fit missed the misfit, and mark it"),
+    option("--reference", type=float, metavar="T", help="temperature of the fitted times, of data at several"),
+    option("--wlf", metavar="C1,C2,T0", help="WLF shift between temperatures (default: by overlap of the curves)"),
+    option("--on", choices=("both", "storage"), default="both", help="moduli whose curves overlap (default: both)"),
+    option("--modes", type=int, help="largest number of modes (default: as few as the misfit needs)"),
+    option("--misfit", type=float, default=0.01, help="required rms of the relative errors (default: 0.01)"),
+    option("--nu", type=float, default=0.49, help="Poisson's ratio, constant in time (default: 0.49)"),
+    option("--name", default="", help="name of the material"),
+    option("--force", action="store_true", help="write the file even if the fit misses the misfit, and mark it"),
     output(".toml", ".nc", required=False),
-)
-def fit(given: Namespace) -> int:
-    """A material from the master curve of a DMA.
+)  # fmt: skip
+def fit(arguments: Namespace) -> int:
+    """Fit of a material to the master curve of a DMA.
 
-    Fits a Prony series to columns of frequency, storage and loss modulus, with units in their heading; prints what
-    the data say of it and what they do not, and with -o writes it as a section [material] of a TOML file, or as netCDF.
+    Fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their heading; prints
+    how well the data determine it; with -o writes it as a section [material] of a TOML file, or as netCDF.
 
-    A fit that misses --misfit, or is off by more than 5 %, ends with exit code 1 and writes no file, unless --force:
-    the source of the data in the file then says so.
+    A fit that misses --misfit, or has an error above 5 %, ends with exit code 1 and writes no file.  With --force the
+    file is written, and the source of the data in it states the misfit.
 
     example:
       viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
     """
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
-    from ...materials.file import as_toml
+    from ...materials.material_toml import material_as_toml
 
+    columns, units = _columns(arguments.column), arguments.units and tuple(arguments.units.split(","))
     record = vr.read_dma(
-        given.data, columns=_columns(given.column), decimal=given.decimal, encoding=given.encoding,
-        units=given.units and tuple(given.units.split(",")),
-    )  # fmt: skip
-    found = vr.fit_prony(
-        record if given.mode is None else replace(record, mode=given.mode), modes=given.modes, misfit=given.misfit,
-        temperature=given.temperature, reference=given.reference, shift=given.wlf and _wlf(given.wlf), on=given.on,
-    )  # fmt: skip
-    print(found)
-    material, missed = found.material(given.nu, name=given.name), ""
-    if not found.reached:
-        missed = f"the misfit of {given.misfit:.2%} was not reached ({found.largest_misfit:.2%})"
-    elif found.largest_misfit > MISFIT_LIMIT:
-        missed = f"the misfit of {found.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}"
-    if missed:
-        unless = f"; {given.output} is not written: ask for another --misfit, or --force it" if given.output else ""
-        print(f"viscoroll: {missed}{'' if given.force else unless}", file=sys.stderr)
-        if not given.force:
+        arguments.data, columns=columns, decimal=arguments.decimal, encoding=arguments.encoding, units=units
+    )
+    if arguments.mode is not None:
+        record = replace(record, mode=arguments.mode)
+    options = {name: getattr(arguments, name) for name in ("modes", "misfit", "temperature", "reference", "on")}
+    result = vr.fit_prony(record, **options, shift=arguments.wlf and _wlf(arguments.wlf))
+    print(result)
+    material, path, fault = result.material(arguments.nu, name=arguments.name), arguments.output, ""
+    if not result.reached:
+        fault = f"the misfit of {arguments.misfit:.2%} was not reached ({result.largest_misfit:.2%})"
+    elif result.largest_misfit > MISFIT_LIMIT:
+        fault = f"the misfit of {result.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}"
+    if fault:
+        refusal = f"; {path} is not written: ask for another --misfit, or --force it" if path else ""
+        print(f"viscoroll: {fault}{'' if arguments.force else refusal}", file=sys.stderr)
+        if not arguments.force:
             return 1
-        assert material.measured is not None
-        marked = replace(material.measured, source=f"{material.measured.source}; forced: {missed}")
-        material = replace(material, measured=marked)
-    if given.output is not None and given.output.suffix.lower() == ".nc":
-        material.to_netcdf(given.output)
-    elif given.output is not None:
-        write_text(given.output, as_toml(material))
+        measured: Any = material.measured
+        material = replace(material, measured=replace(measured, source=f"{measured.source}; forced: {fault}"))
+    if path is not None and path.suffix.lower() == ".nc":
+        material.to_netcdf(path)
+    elif path is not None:
+        write_text(path, material_as_toml(material))
     return 0
 
 
-def _columns(given: list[str] | None) -> dict[str, str]:
-    """Meaning -> heading of the options --column; raises ParameterError."""
-    pairs = [text.partition("=") for text in given or ()]
+def _columns(texts: list[str] | None) -> dict[str, str]:
+    """Return quantity -> heading of the options --column; raise ParameterError."""
+    pairs = [text.partition("=") for text in texts or ()]
     for name, sign, heading in pairs:
         if not (sign and heading):
             raise vr.ParameterError("--column", repr(name), "NAME=HEADING, as storage=Module 1")
@@ -115,7 +116,7 @@ def _columns(given: list[str] | None) -> dict[str, str]:
 
 
 def _wlf(text: str) -> vr.WLF:
-    """The shift of --wlf C1,C2,T0; raises ParameterError."""
+    """Return the shift of --wlf C1,C2,T0; raise ParameterError."""
     try:
         C1, C2, T0 = (float(part) for part in text.split(","))
     except ValueError:
@@ -125,18 +126,18 @@ def _wlf(text: str) -> vr.WLF:
 
 @command(
     "identify",
-    option("file", metavar="DATA.toml", help="what is known, what is not, and where the data are"),
-    option("--starts", type=int, default=8, help="searches from all over the ranges (default 8)"),
-    option("--seed", type=int, default=0, help="of their starts (default 0)"),
-    option("--robust", action="store_true", help="let outliers count less"),
+    option("file", metavar="DATA.toml", help="known and unknown parameters, and files of the measurements"),
+    option("--starts", type=int, default=8, help="number of searches, from points all over the ranges (default: 8)"),
+    option("--seed", type=int, default=0, help="seed of these points (default: 0)"),
+    option("--robust", action="store_true", help="give outliers less weight"),
     output(*FIGURES, name="--plot", required=False, more=": data, fit and residuals"),
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),
 )  # fmt: skip
-def identify(given: Namespace) -> None:
+def identify(arguments: Namespace) -> None:
     """Friction, modulus, times, strengths and bearing from measurements.
 
-    Fits what is unknown of a cylinder to measured rolling resistance, traction and motions, and says what the data do
-    not tell.  The file has [cylinder], perhaps [material] and [base], and
+    Fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states which of
+    them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
       [unknown]  NAME = [LOW, HIGH], with the start of the cylinder between
       [prior]    NAME = [VALUE, SD]
       [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
@@ -148,13 +149,13 @@ def identify(given: Namespace) -> None:
     from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json
 
-    options = {"robust": given.robust, "starts": given.starts, "seed": given.seed}
-    found = vr.identify(**read_measurements(given.file), **options, progress=sys.stderr.isatty())
-    print(found)
-    if (path := given.output) is not None and path.suffix == ".nc":
-        write_dataset(found.to_xarray(), path)
+    options = {name: getattr(arguments, name) for name in ("robust", "starts", "seed")}
+    result = vr.identify(**read_measurements(arguments.file), **options, progress=sys.stderr.isatty())
+    print(result)
+    if (path := arguments.output) is not None and path.suffix == ".nc":
+        write_dataset(result.to_xarray(), path)
     elif path is not None:
-        as_file = json.dumps(as_json(found), indent=1, allow_nan=False) if path.suffix == ".json" else str(found)
-        write_text(path, f"{as_file}\n")
-    if given.plot is not None:
-        found.plot(given.plot)
+        text = json.dumps(as_json(result), indent=1, allow_nan=False) if path.suffix == ".json" else str(result)
+        write_text(path, f"{text}\n")
+    if arguments.plot is not None:
+        result.plot(arguments.plot)

@@ -1,4 +1,4 @@
-"""Results by their own tables and datasets: to standard output, or whole into a file."""
+"""Output of results: their tables on standard output, or a complete file of a table or dataset."""
 
 from __future__ import annotations
 
@@ -14,41 +14,44 @@ if TYPE_CHECKING:
 
 
 def show(arguments: Namespace, result: Any, heading: str = "") -> None:
-    """A result by its ``to_xarray`` and ``to_pandas``, below its title or ``heading``; errors of :func:`deliver`."""
+    """Print or write a result by its ``to_xarray`` and ``to_pandas``.
+
+    arguments: with output and format.  result: of the library.  heading: of the text; default: the title of the data.
+    Raises FileError as :func:`deliver`.
+    """
     import numpy as np
 
     data, frame = result.to_xarray(), result.to_pandas().reset_index()
-    for name, each in data.items():
-        if "flag_meanings" in each.attrs:  # what codes mean, by the conventions of CF
-            meanings = each.attrs["flag_meanings"].split()
-            frame[name] = frame[name].map(dict(zip(np.ravel(each.attrs["flag_values"]), meanings, strict=True)))
-    if "equilibrium" in frame:
-        frame = frame[np.isfinite(frame[[name for name in frame if name.partition(" ")[0] == "V"]]).all(axis=1)]
+    for name, variable in data.items():
+        if "flag_meanings" in variable.attrs:  # codes and their meanings, by the CF conventions
+            meanings = variable.attrs["flag_meanings"].split()
+            frame[name] = frame[name].map(dict(zip(np.ravel(variable.attrs["flag_values"]), meanings, strict=True)))
+    if "equilibrium" in frame:  # a load with fewer equilibria than another has NaN in the rest
+        frame = frame[np.isfinite(frame.filter(regex=r"^V( |$)")).all(axis=1)]
     if len(frame) == 1:
         frame = frame.drop(columns="state", errors="ignore")
     deliver(arguments, data, frame, heading or data.attrs["title"])
 
 
 def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading: str) -> None:
-    """Print a table in the format asked for, or write it or the dataset in that of the suffix.
+    """Print a table in the required format, or write it or the dataset in the format of the suffix.
 
-    Raises
-    ------
-    FileError
-        If it cannot be written.
+    arguments: with output (a path or None) and format.  data: for netCDF, and the meanings of its variables.
+    frame: the same as a table.  heading: of the text.  Raises FileError if the file cannot be written.
     """
     path = arguments.output
-    kind = arguments.format if path is None else path.suffix.lower()[1:]
-    if kind == "nc":
+    suffix = arguments.format if path is None else path.suffix.lower()[1:]
+    if suffix == "nc":
         write_dataset(data, path)
         return
-    if kind == "csv":
+    if suffix == "csv":
         text = frame.to_csv(index=False, lineterminator="\n")
-    elif kind == "json":
+    elif suffix == "json":
         finite = frame.replace([float("inf"), -float("inf")], float("nan")).astype(object)
         text = json.dumps(finite.where(finite.notna(), None).to_dict("list"), indent=1, allow_nan=False) + "\n"
     else:
-        text = as_text(frame, heading, {str(name): each.attrs.get("long_name", "") for name, each in data.items()})
+        meanings = {str(name): variable.attrs.get("long_name", "") for name, variable in data.items()}
+        text = as_text(frame, heading, meanings)
     if path is None:
         print(text, end="")
     else:
@@ -56,14 +59,18 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
 
 
 def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
-    """Aligned columns; a single row stands as lines, with what each number means; of no row the heading alone."""
+    """Return a table as aligned columns below a heading.
+
+    frame: the table; without rows the heading stands alone.  heading: first lines.
+    meanings: name -> meaning; with these a single row is printed as one line for each number.
+    """
     if frame.empty:
         return f"{heading}\n"
     if meanings is None or len(frame) != 1:
         return f"{heading}\n\n{frame.to_string(index=False, float_format='{:.10g}'.format, na_rep='')}\n"
     lines = []
-    for name, value in frame.iloc[0].items():
-        own, _, unit = str(name).partition(" ")
-        shown = f"{value:.10g} {unit.strip('[]')}".rstrip() if isinstance(value, float) else str(value)
-        lines.append(f"{own:>11} = {shown:<20} {meanings.get(own, '')}".rstrip())
+    for column, value in frame.iloc[0].items():
+        name, _, unit = str(column).partition(" ")
+        number = f"{value:.10g} {unit.strip('[]')}".rstrip() if isinstance(value, float) else str(value)
+        lines.append(f"{name:>11} = {number:<20} {meanings.get(name, '')}".rstrip())
     return "\n".join([heading, "", *lines, ""])

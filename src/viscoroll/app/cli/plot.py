@@ -1,4 +1,4 @@
-"""``viscoroll plot``: a figure of what a file holds."""
+"""``viscoroll plot``: a figure of the content of a file."""
 
 from __future__ import annotations
 
@@ -11,29 +11,34 @@ import viscoroll as vr
 
 from .arguments import FIGURES, command, option, output
 
-#: speeds of a scene's plot, over those of the first and the last extremum of M
-_BEYOND = (1.0 / 30.0, 30.0)
+#: The figure of a scene reaches from the speed of the first extremum of M divided by this number to that of the last
+#: times it.
+_MARGIN = 30.0
+#: Number of speeds in the figure of a scene.
+_SPEEDS = 301
 
 
 @command(
     "plot", option("what", metavar="WHAT", help="FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"), output(*FIGURES)
 )
-def plot(given: Namespace) -> None:
-    """A result file, a scene, a material, or the results of a run.
+def plot(arguments: Namespace) -> None:
+    """Figure of a result, a scene, a material, or the results of a run.
 
-    The result in a netCDF file of this program, the contact law over speed of a scene file, moduli and relaxation of
-    the [material] of a file that has none, or the summaries of a store.
+    The result in a netCDF file of this program; the contact law over speed of a scene file; moduli and relaxation of
+    the [material] of a file without a scene; or the summaries of a store.
     """
     from ...core.plots.style import save
 
-    kinds = {".zarr": lambda path: vr.runs.open_run(path).plot(), ".nc": _of_file, ".toml": _of_toml}
-    if (draw := kinds.get(Path(given.what).suffix.lower())) is None:
-        sentence = f"{given.what!r} is no file to plot: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
-        raise vr.ParameterError("plot", given.what, "a file to plot", sentence)
-    save(draw(given.what), given.output)
+    kinds = {".zarr": lambda path: vr.runs.open_run(path).plot(), ".nc": _figure_of_netcdf, ".toml": _figure_of_toml}
+    path = arguments.what
+    if (draw := kinds.get(Path(path).suffix.lower())) is None:
+        sentence = f"{path!r} is no file to plot: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
+        raise vr.ParameterError("plot", path, "a file to plot", sentence)
+    save(draw(path), arguments.output)
 
 
-def _of_file(path: str) -> Any:
+def _figure_of_netcdf(path: str) -> Any:
+    """Return the figure of a result or a material; raise FileError for any other file."""
     import xarray as xr
 
     from ...core.plots import draw
@@ -48,17 +53,17 @@ def _of_file(path: str) -> Any:
         raise vr.FileError(path, problem) from error
 
 
-def _of_toml(path: str) -> Any:
-    """lam, epsilon, M and the others over speeds around the largest M; or a material."""
+def _figure_of_toml(path: str) -> Any:
+    """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material."""
     import numpy as np
 
     from ...core.sections import read_toml
     from ...io.config import SCENES, read_roller
-    from ...materials.file import read_materials
+    from ...materials.material_toml import read_materials
 
     if not read_toml(path).keys() & set(SCENES):
         return read_materials(path)["material"].plot()
-    body = read_roller(path)
-    found = body.resistance_extrema()
-    low, high = (found.V[0], found.V[-1]) if found.V.size else (body.scale["V"],) * 2
-    return body.contact(np.geomspace(_BEYOND[0] * low, _BEYOND[1] * high, 301), delta=0.0).plot()
+    roller = read_roller(path)
+    extrema = roller.resistance_extrema().V
+    low, high = (extrema[0], extrema[-1]) if extrema.size else (roller.scale["V"],) * 2
+    return roller.contact(np.geomspace(low / _MARGIN, high * _MARGIN, _SPEEDS), delta=0.0).plot()

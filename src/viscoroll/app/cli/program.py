@@ -1,4 +1,4 @@
-"""Parser and exit codes of the program: 0 done, 1 a validation failed, 2 an error in one line."""
+"""Parser and exit codes of the program: 0 success, 1 a check failed, 2 an error in one line."""
 
 from __future__ import annotations
 
@@ -16,13 +16,15 @@ from typing import Any, NoReturn, TextIO
 from ... import __version__
 from ...core.errors import Interrupted, ViscorollError
 
-# they fill the table of commands, in this order
+# each of these modules adds its commands to the table, in this order
 from . import scenes, runs, measured, tables, plot, warmup, doctor  # noqa: F401  # isort: skip
 from .arguments import COMMANDS
 
-#: What a shell reports for a program ended by SIGINT or SIGPIPE.
-_INTERRUPTED, _BROKEN_PIPE = 130, 141
-#: first words of several commands
+#: Exit code of a program that SIGINT ended, as shells report it.
+_INTERRUPTED = 130
+#: Exit code of a program that SIGPIPE ended, as shells report it.
+_BROKEN_PIPE = 141
+#: First word of several commands -> its help.
 _GROUPS = {
     "material": "show and fit a material of several relaxation times",
     "tables": "the law of a material as a file, grids for other programs",
@@ -34,34 +36,38 @@ class UsageError(ViscorollError):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that raises instead of exiting, and shows texts as they are written."""
+    """A parser that raises UsageError instead of exiting, and prints help texts as they are written."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
-        # what is no option: argparse takes a value like -1:1:5 or -1e-3 for one
+        # argparse takes a value like -1:1:5 or -1e-3 for an option unless it matches this
         self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
         for kind, words in ((float, "a number"), (int, "a whole number")):
-            self.register("type", kind, partial(_read, kind, words))
-        self.register("action", None, _Once)
+            self.register("type", kind, partial(_converted, kind, words))
+        self.register("action", None, _StoreOnce)
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message} (see {self.prog} --help)")
 
 
-class _Once(argparse.Action):
-    """Stores a value; an option that is given twice is an error, where argparse takes the last."""
+class _StoreOnce(argparse.Action):
+    """Stores a value; an option that is given twice is an error, while argparse takes the last."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, name: str | None = None
     ) -> None:
-        given = vars(namespace).setdefault("given", set())
-        if name is not None and self.dest in given:
+        stored = vars(namespace).setdefault("stored", set())
+        if name is not None and self.dest in stored:
             raise argparse.ArgumentError(self, "is given twice")
-        given.add(self.dest)
+        stored.add(self.dest)
         setattr(namespace, self.dest, values)
 
 
-def _read(kind: type, words: str, text: str) -> Any:
+def _converted(kind: type, words: str, text: str) -> Any:
+    """Return the value of an argument.
+
+    kind: its type.  words: the type in words, for the error.  text: the argument.
+    """
     try:
         return kind(text)
     except ValueError:
@@ -69,7 +75,7 @@ def _read(kind: type, words: str, text: str) -> Any:
 
 
 def parser() -> Parser:
-    """The whole command line."""
+    """Return the parser of the whole command line."""
     program = Parser(
         prog="viscoroll",
         description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
@@ -83,67 +89,75 @@ def parser() -> Parser:
     for words, (run, options) in COMMANDS.items():
         group, _, name = words.rpartition(" ")
         if group not in groups:
-            one = groups[""].add_parser(group, help=_GROUPS[group])
-            groups[group] = one.add_subparsers(metavar="COMMAND", required=True)
+            subparser = groups[""].add_parser(group, help=_GROUPS[group])
+            groups[group] = subparser.add_subparsers(metavar="COMMAND", required=True)
         text, _, example = (inspect.getdoc(run) or "").partition("\n\nexample:")
-        short, epilog = text.partition(".\n")[0].rstrip("."), f"example:{example}" if example else None
-        one = groups[group].add_parser(name, help=short, description=text, epilog=epilog)
-        either = one.add_mutually_exclusive_group() if any(each.exclusive for each in options) else one
-        for names, about, exclusive in options:
-            (either if exclusive else one).add_argument(*names, **about)
-        one.set_defaults(run=run)
+        summary, epilog = text.partition(".\n")[0].rstrip("."), f"example:{example}" if example else None
+        subparser = groups[group].add_parser(name, help=summary, description=text, epilog=epilog)
+        for option in options:
+            alternatives = option if isinstance(option, list) else [option]
+            target = subparser.add_mutually_exclusive_group() if alternatives is option else subparser
+            for names, settings in alternatives:
+                target.add_argument(*names, **settings)
+        subparser.set_defaults(run=run)
     return program
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the program on ``argv`` (default: that of the process); returns its exit code."""
+    """Run the program and return its exit code.
+
+    argv: arguments; default: those of the process.
+    """
     if sys.stdout is None:  # closed by the shell
         sys.stdout = io.StringIO()
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = _told
+            warnings.showwarning = _print_warning
             return _run(sys.argv[1:] if argv is None else argv)
     except (ViscorollError, ImportError) as error:
-        return _failed(error)
+        return _print_error(error)
     except MemoryError as error:
-        return _failed(f"not enough memory ({error})")
-    except KeyboardInterrupt as end:
-        if isinstance(end, Interrupted):
-            _tell(end)
+        return _print_error(f"not enough memory ({error})")
+    except KeyboardInterrupt as interrupt:
+        if isinstance(interrupt, Interrupted):
+            _print_line(interrupt)
         return _INTERRUPTED
-    except OSError as error:  # of files FileError is raised where they are known to fail: without a name, of output
+    except OSError as error:  # a file that may fail raises FileError; an OSError without a name is of standard output
         if error.filename is not None:
-            return _failed(f"{error.filename}: {error.strerror}")
+            return _print_error(f"{error.filename}: {error.strerror}")
         _discard(sys.stdout)
-        return _BROKEN_PIPE if isinstance(error, BrokenPipeError) else _failed(f"standard output: {error.strerror}")
+        if isinstance(error, BrokenPipeError):
+            return _BROKEN_PIPE
+        return _print_error(f"standard output: {error.strerror}")
 
 
 def _run(argv: Sequence[str]) -> int:
+    """Parse the arguments, run the command and return its exit code."""
     try:
-        given = parser().parse_args(argv)
+        arguments = parser().parse_args(argv)
         from ...core.blocks import thread_count
 
-        thread_count()  # refuses a wrong $VISCOROLL_THREADS, whatever the command
-        code = given.run(given) or 0
-    except SystemExit as finished:  # argparse's own way to end after --help and --version
-        code = int(finished.code or 0)
+        thread_count()  # refuses a wrong $VISCOROLL_THREADS for every command
+        code = arguments.run(arguments) or 0
+    except SystemExit as end:  # argparse ends so after --help and --version
+        code = int(end.code or 0)
     sys.stdout.flush()
     return code
 
 
-def _told(message: Warning | str, *_: Any, **__: Any) -> None:
-    """A warning in one line."""
-    _tell(f"warning: {message}")
+def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Print a warning in one line; the signature is that of ``warnings.showwarning``."""
+    _print_line(f"warning: {message}")
 
 
-def _failed(error: object) -> int:
-    """Tell an error in one line; returns the exit code of it."""
-    _tell(f"error: {error}")
+def _print_error(error: object) -> int:
+    """Print an error in one line and return its exit code."""
+    _print_line(f"error: {error}")
     return 2
 
 
-def _tell(message: object) -> None:
-    """Write one line to standard error, if it is open and can be written."""
+def _print_line(message: object) -> None:
+    """Print a message in one line on standard error, unless it is closed or full."""
     if sys.stderr is not None:
         try:
             print("viscoroll:", " ".join(str(message).split()), file=sys.stderr, flush=True)
@@ -152,7 +166,8 @@ def _tell(message: object) -> None:
 
 
 def _discard(stream: TextIO) -> None:
-    """Send buffered and further text of ``stream`` nowhere: the interpreter would fail to write it at its end, and exit
-    with its own code.
+    """Discard the buffer and all further text of a stream that cannot be written.
+
+    The interpreter would try to write it at its end, and exit with its own code.
     """
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -11,60 +11,61 @@ import viscoroll as vr
 from .arguments import TABLE, command, option, output
 from .output import as_text, deliver
 
+#: The run file of a command.
 _RUN = option("run_file", metavar="RUN.toml", help="a run file")
 
 
 @command(
     "ensemble", _RUN,
-    output(".zarr", required=False, more=": the store; without it: what the run will take, from a short trial"),
+    output(".zarr", required=False, more=": the results store; without it: estimate of time and memory, by a trial"),
     option("--cluster", metavar="WHERE", help="local (processes), or tcp://host:port of a dask scheduler"),
-    option("--threads", type=int, help="threads, or local processes; default: as many as there are cores"),
+    option("--threads", type=int, help="number of threads, or of local processes (default: number of cores)"),
 )  # fmt: skip
-def ensemble(given: Namespace) -> None:
+def ensemble(arguments: Namespace) -> None:
     """Many motions with random starts and parameters, by a run file.
 
-    Rolls what is missing in the store and summarises it: the same command continues an interrupted run, or one whose
-    file has a larger n now.
-    Without -o it states size, memory and time.
+    Rolls the motions that the store lacks, and summarises all of them.  The same command completes an interrupted run,
+    and extends the store of a run whose file now has a larger n.
+    Without -o it prints size, memory and time of the run.
 
     example:
       viscoroll ensemble docs/examples/ensemble.toml
     """
-    run = vr.runs.read_run(given.run_file)
-    if given.output is None:
-        if given.cluster is not None:
-            raise vr.ParameterError("--cluster", given.cluster, "left out without -o: the trial is of this machine")
-        print(vr.runs.estimate(run, given.threads))
+    run = vr.runs.read_run(arguments.run_file)
+    if arguments.output is None:
+        if arguments.cluster is not None:
+            raise vr.ParameterError("--cluster", arguments.cluster, "left out without -o: the trial is of this machine")
+        print(vr.runs.estimate(run, arguments.threads))
         return
-    made = vr.runs.run_ensemble(
-        run, given.output, cluster=given.cluster, threads=given.threads,
+    evaluated = vr.runs.run_ensemble(
+        run, arguments.output, cluster=arguments.cluster, threads=arguments.threads,
         progress=sys.stderr.isatty() or (False if os.environ.get("VISCOROLL_QUIET") == "1" else "lines"),
     )  # fmt: skip
-    if made < run.blocks:
-        print(f"{run.blocks - made} of {run.blocks} blocks were there and whole")
-    found = vr.runs.open_run(given.output)
-    print(as_text(found.to_pandas().reset_index(), str(found)), end="")
+    if evaluated < run.blocks:
+        print(f"{run.blocks - evaluated} of {run.blocks} blocks were there and whole")
+    results = vr.runs.open_run(arguments.output)
+    print(as_text(results.to_pandas().reset_index(), str(results)), end="")
 
 
-@command("verify", option("store", metavar="STORE.zarr", help="the results of viscoroll ensemble"))
-def verify(given: Namespace) -> int:
-    """Every file of a store against its SHA-256.
+@command("verify", option("store", metavar="STORE.zarr", help="results of viscoroll ensemble"))
+def verify(arguments: Namespace) -> int:
+    """Check of every file of a store against its SHA-256.
 
-    Exit code 1 if one differs or is missing.
+    Exit code 1 if a file differs or is missing.
     """
-    verdict = vr.runs.verify(given.store)
-    print(f"{given.store}: {verdict}")
+    verdict = vr.runs.verify(arguments.store)
+    print(f"{arguments.store}: {verdict}")
     return not verdict.ok
 
 
 @command(
     "sensitivity", _RUN,
-    option("-n", type=int, default=4096, help="base points, rounded up to a power of two (default 4096); each costs a "
-           "motion for every uncertain input and two more"),
-    *TABLE,
+    option("-n", type=int, default=4096, help="base points, rounded up to a power of two (default: 4096); a base point "
+           "takes a motion for every uncertain input and two more"),
+    TABLE,
 )  # fmt: skip
-def sensitivity(given: Namespace) -> None:
-    """Sobol indices over the uncertain inputs of a run file.
+def sensitivity(arguments: Namespace) -> None:
+    """Sobol indices of the uncertain inputs of a run file.
 
     First-order (S1) and total (ST) indices of the summarised quantities, each with the half-width of its 95 %
     confidence interval (S1_conf, ST_conf), the largest total first.  `viscoroll plot` draws the .nc as bars.
@@ -74,15 +75,15 @@ def sensitivity(given: Namespace) -> None:
     """
     from ...io.runs.sensitivity import sobol_indices, table
 
-    indices = sobol_indices(vr.runs.read_run(given.run_file), given.n, progress=sys.stderr.isatty())
+    indices = sobol_indices(vr.runs.read_run(arguments.run_file), arguments.n, progress=sys.stderr.isatty())
     frame, about = table(indices), indices.attrs
-    asked, base = about["asked_base_points"], about["base_points"]
-    rounded = "" if base == asked else f" ({asked}, rounded up to a power of two)"
+    n, base = about["asked_base_points"], about["base_points"]
+    rounded = "" if base == n else f" ({n}, rounded up to a power of two)"
     heading = "\n".join((
         f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed {about['seed']}",
-        *(f"{n} motions {key.removeprefix('ended: ')}" for key, n in about.items() if key.startswith("ended: ")),
+        *(f"{about[key]} motions {key.removeprefix('ended: ')}" for key in about if key.startswith("ended: ")),
         *(f"no indices of {reason}" for reason in about["refused"].splitlines()),
     ))  # fmt: skip
-    deliver(given, indices, frame, heading)
-    if given.output is not None:
+    deliver(arguments, indices, frame, heading)
+    if arguments.output is not None:
         print(as_text(frame, heading), end="")

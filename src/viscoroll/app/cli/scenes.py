@@ -1,4 +1,4 @@
-"""What a scene does: ``viscoroll contact``, ``stress``, ``roll``, ``steady`` and ``validity``."""
+"""Contact and motion of a scene: ``viscoroll contact``, ``stress``, ``roll``, ``steady`` and ``validity``."""
 
 from __future__ import annotations
 
@@ -9,24 +9,29 @@ from typing import Any
 
 import viscoroll as vr
 
-from .arguments import SCENE, TABLE, Option, body_of, command, numbers, option
+from .arguments import SCENE, TABLE, Option, command, numbers, option, roller_of_argument
 from .output import show
 
-#: places across the contact, and loads without an equilibrium that are told of
-_POINTS, _LINES = 101, 3
+#: Positions along the contact in the output of ``stress``.
+_POSITIONS = 101
+#: Largest number of loads without an equilibrium that ``steady`` lists.
+_MOST_LINES = 3
+#: Help of a speed.
+_V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
+    """Return the scene and the speeds of a contact as arguments; kind: type of a speed."""
     return (
         SCENE,
-        option("--V", type=kind, required=True, help="velocity of the axis, any sign"),
-        option("--delta", type=kind, help="creep ratio (omega R - V)/V"),
+        option("--V", type=kind, required=True, help=_V_HELP),
+        option("--delta", type=kind, help="creepage (omega R - V)/V"),
         option("--omega", type=kind, help="angular velocity, in place of delta"),
     )
 
 
-@command("contact", *_speeds(numbers), *TABLE)
-def contact(given: Namespace) -> None:
+@command("contact", *_speeds(numbers), TABLE)
+def contact(arguments: Namespace) -> None:
     """State of the contact: lam, epsilon, delta_star, beta, Q, M.
 
     For every pair of V and delta (or omega), each a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of
@@ -37,66 +42,69 @@ def contact(given: Namespace) -> None:
     """
     import numpy as np
 
-    V, creep = given.V, given.omega if given.delta is None else given.delta
+    V, creep = arguments.V, arguments.omega if arguments.delta is None else arguments.delta
     V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
-    show(given, body_of(given.scene).contact(V, delta=given.delta, omega=given.omega))
+    show(arguments, roller_of_argument(arguments.scene).contact(V, delta=arguments.delta, omega=arguments.omega))
 
 
-@command("stress", *_speeds(float), *TABLE)
-def stress(given: Namespace) -> None:
+@command("stress", *_speeds(float), TABLE)
+def stress(arguments: Namespace) -> None:
     """Pressure and shear stress along the contact.
 
-    At 101 places across it, at one V and delta (or omega).
+    At 101 positions along the contact, at one V and delta (or omega).
 
     example:
       viscoroll stress paper-section-5 --V 0.5 --delta -0.01
     """
     import numpy as np
 
-    body, speeds = body_of(given.scene), {"V": given.V, "delta": given.delta, "omega": given.omega}
-    state = body.contact(**speeds, fields=("length", "epsilon"))
+    roller, speeds = (
+        roller_of_argument(arguments.scene),
+        {name: getattr(arguments, name) for name in ("V", "delta", "omega")},
+    )
+    state = roller.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
-    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POINTS)
-    x = 0.5 * state.length * (ahead if given.V >= 0.0 else -ahead[::-1])
-    show(given, body.stress(x, **speeds))
+    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POSITIONS)
+    x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
+    show(arguments, roller.stress(x, **speeds))
 
 
 @command(
     "roll", SCENE,
-    option("--V0", type=float, required=True, help="start velocity of the axis"),
-    option("--omega0", type=float, required=True, help="start angular velocity"),
+    option("--V0", type=float, required=True, help="velocity of the axis at the start"),
+    option("--omega0", type=float, required=True, help="angular velocity at the start"),
     option("--t", type=numbers, required=True, help="output times: numbers, as of `viscoroll contact`"),
-    *TABLE,
+    TABLE,
 )  # fmt: skip
-def roll(given: Namespace) -> None:
+def roll(arguments: Namespace) -> None:
     """One motion from given start speeds.
 
     Free motion of the cylinder from (V0, omega0), Eq. (22), through all regimes of slip.
-    Driven, braked, unsteady motions: vr.roll in Python, or a run file (viscoroll ensemble).
+    For driven, braked and unsteady motions take vr.roll in Python, or a run file (viscoroll ensemble).
 
     example:
       viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # how it ended is printed
-        motion = body_of(given.scene).roll(given.V0, given.omega0, given.t)
-    show(given, motion, str(motion))
-    if given.output is not None:
+        warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
+        motion = roller_of_argument(arguments.scene).roll(arguments.V0, arguments.omega0, arguments.t)
+    show(arguments, motion, str(motion))
+    if arguments.output is not None:
         print(motion)
 
 
 @command(
     "steady", SCENE,
-    option("--force", type=numbers, help="along V (default 0)"),
-    option("--torque", type=numbers, help="along omega (default 0)"),
+    option("--force", type=numbers, help="along V (default: 0)"),
+    option("--torque", type=numbers, help="along omega (default: 0)"),
     option("--slope", type=numbers, help="rad, positive downhill along +V; the load is P cos(slope)"),
-    option("--V", type=numbers, help="the speed, in place of --force or --torque, which is found"),
-    *TABLE,
+    option("--V", type=numbers, help="speed, in place of --force or --torque, which is then computed"),
+    TABLE,
 )  # fmt: skip
-def steady(given: Namespace) -> None:
+def steady(arguments: Namespace) -> None:
     """Steady rolling under force, torque or slope.
 
-    Every equilibrium of rolling under each load, a row each; where there is none, why.
+    Prints a row for every equilibrium of rolling under each load; if there is none, the reason.
     Options are numbers, as of `viscoroll contact`, all of one length or single.
 
     example:
@@ -104,28 +112,29 @@ def steady(given: Namespace) -> None:
     """
     import numpy as np
 
-    loads = {name: getattr(given, name) for name in ("force", "torque", "slope", "V")}
-    found = body_of(given.scene).steady(**{name: np.atleast_1d(x) for name, x in loads.items() if x is not None})
-    lines = [f"load {n}: {reason}" for n, reason in enumerate(found.reason) if reason]
-    if len(lines) > _LINES:
-        lines[_LINES:] = [f"{len(lines) - _LINES} more loads have none"]
-    if given.output is not None or given.format != "text":  # a table for programs has no heading that says it
+    loads = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
+    loads = {name: np.atleast_1d(load) for name, load in loads.items() if load is not None}
+    equilibria = roller_of_argument(arguments.scene).steady(**loads)
+    lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
+    if len(lines) > _MOST_LINES:
+        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have none"]
+    if arguments.output is not None or arguments.format != "text":  # a table for programs has no heading
         for line in lines:
             warnings.warn(line, vr.ModelWarning, stacklevel=2)
-    show(given, found, "\n".join(lines))
+    show(arguments, equilibria, "\n".join(lines))
 
 
 @command(
     "validity", SCENE,
-    option("--V", type=float, required=True, help="velocity of the axis, any sign"),
-    option("--omega", type=float, help="angular velocity; without it the creep is not known"),
+    option("--V", type=float, required=True, help=_V_HELP),
+    option("--omega", type=float, help="angular velocity; without it the creepage is not known"),
 )  # fmt: skip
-def validity(given: Namespace) -> None:
-    """Which assumptions of the model a speed strains.
+def validity(arguments: Namespace) -> None:
+    """Validity of the model's assumptions at a speed.
 
     A line for each assumption of the model: whether it holds (yes, no, ?: not known) and why.
 
     example:
       viscoroll validity rubber-roller --V 5 --omega 4.9
     """
-    print(body_of(given.scene).validity(given.V, omega=given.omega))
+    print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

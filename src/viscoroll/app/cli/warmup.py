@@ -1,4 +1,4 @@
-"""``viscoroll warmup``."""
+"""``viscoroll warmup``: compilation of all kernels into the cache."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from .arguments import command
 
 
 @command("warmup")
-def warm_up(given: Namespace) -> None:
-    """Compile what the first calls would otherwise wait for.
+def warm_up(arguments: Namespace) -> None:
+    """Compilation of all functions that first calls would otherwise compile.
 
-    The kernels of every public entry point, into the cache, once for a machine and a version of the package; quick
-    where they are there.
+    Compiles the kernels of every public function into the cache, once for a machine and a version of the package; quick
+    if they are there.
 
     example:
       viscoroll warmup
@@ -27,30 +27,33 @@ def warm_up(given: Namespace) -> None:
     from ...kernels.compile import notice
     from ...kernels.compile.folder import cache_root
 
-    notice.announced = True  # by the bar
-    began = time.perf_counter()
+    notice.announced = True  # the bar takes the place of the notice
+    start = time.perf_counter()
     calls = dict(_calls())
     with tqdm(total=len(calls), leave=False) as bar:
         for name, call in calls.items():
             bar.set_description(name)
             call()
             bar.update()
-    print(f"{len(calls)} entry points are ready in {cache_root()}, {time.perf_counter() - began:.1f} s")
+    print(f"{len(calls)} entry points are ready in {cache_root()}, {time.perf_counter() - start:.1f} s")
 
 
 def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
-    """Small calls that have all kernels between them: motions read those of contacts, and all have one engine."""
+    """Yield (name, call) of small calls that together use all kernels.
+
+    Motions use the kernels of contacts, and all motions have one integrator.
+    """
     from ...motion import flow
 
     scene = vr.presets.PAPER_SECTION_5
     modes = vr.Prony([1.0, 2.0], [1.0, 0.1])
     series = vr.Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
-    each = series.replace(material=vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
-    # a map of its own: that of an ensemble might be found on disk
+    many = series.replace(material=vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
+    # build_map computes a map; ensemble might find one on disk
     yield "motions and flow maps", lambda: flow.build_map((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
     yield "contact by root solves", lambda: vr.contact(scene, 0.5, delta=0.01, method="direct")
     yield "contact of an alpha each", lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
-    yield "contact of a series each", lambda: vr.contact(each, 0.5, delta=0.01)
+    yield "contact of a series each", lambda: vr.contact(many, 0.5, delta=0.01)
     yield "unsteady rolling", lambda: vr.contact(series, 0.5, delta=0.01, fields="N")
     yield "bound law", lambda: vr.law(scene)
     covered = series.replace(material=vr.Cover(modes, nu=0.5, thickness=1.0))

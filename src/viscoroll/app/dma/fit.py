@@ -9,8 +9,8 @@ from ...core.array_types import Numbers
 from ...core.checks import check_choice, check_integer, check_number
 from ...core.errors import ParameterError
 from ...materials.prony import Prony
-from ...materials.prony_forms import MOST_MODES, WIDEST
-from ...materials.shift import celsius
+from ...materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
+from ...materials.shift import check_celsius
 from .curve import Curve, Relaxation, curve_of, data_of, kramers_kronig, thinned
 from .dynamic_moduli import DynamicModuli
 from .fit_results import Fit, Misfit, Mode, RelaxationFit
@@ -19,7 +19,7 @@ from .mode_selection import fewest_modes
 from .spectrum import misfits, spectrum_of
 
 #: ratio of the highest to the lowest frequency that a fit may have; times reach a decade beyond on either side
-MOST_SPREAD = WIDEST / 100.0
+MOST_SPREAD = LARGEST_TIME_RATIO / 100.0
 #: ratio of the last to the first relaxation modulus above which it is none: noise on a plateau stays below
 _RISES = 1.1
 
@@ -192,7 +192,7 @@ def fit_relaxation(
         found = f"from {first:g} to {last:g} as time goes on"
         raise ParameterError("relaxation", found, "a modulus, which falls (a creep compliance rises)")
     _, fields, errors = _fit_series(curve, modes, misfit)
-    temperature = None if temperature is None else celsius("temperature", temperature)
+    temperature = None if temperature is None else check_celsius("temperature", temperature)
     return RelaxationFit(**fields, misfit=errors[0], mode=_mode(mode), source=source, temperature=temperature)
 
 

@@ -16,7 +16,7 @@ from ...core.checks import check_array
 from ...core.errors import ParameterError
 from ...core.plots.measurements import moduli_fit, relaxation_fit
 from ...core.results import Result, SummaryRow
-from ...materials.importers import poisson
+from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
@@ -136,7 +136,7 @@ class SeriesFit(Result):
         """
         E, measured = self.E, self.measured
         if self.mode == "shear":
-            factor = 2.0 * (1.0 + poisson(nu))
+            factor = 2.0 * (1.0 + check_poisson(nu))
             E *= factor
             measured = replace(measured, source=f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G")
         return Material(

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from ...core.array_types import Floats
 from ...core.checks import check_array
 from ...core.errors import ModelWarning, ParameterError, caller_level
-from ...materials.shift import USUAL_RANGE, celsius, relative
+from ...materials.shift import USUAL_RANGE, check_celsius, relative_shift
 from .curve import Curve, curve_of, thinned
 from .temperature_sets import default_reference, listed_factors, nearest, points_of, sets_of
 
@@ -94,12 +94,12 @@ def master_curve(
     ]
     sets = sets_of(point_temperatures, first)
     temperatures = sets.temperature
-    celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
-    base = None if reference is None else celsius("reference", reference)
+    check_celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
+    base = None if reference is None else check_celsius("reference", reference)
     mismatch = freedom = np.full(temperatures.size - 1, math.nan)
     if callable(shift):
         base = default_reference(temperatures, [getattr(shift, "T0", math.nan)]) if base is None else base
-        factor = np.array([relative(shift, T, base) for T in temperatures.tolist()])
+        factor = np.array([relative_shift(shift, T, base) for T in temperatures.tolist()])
     elif shift is not None:
         factor, base = listed_factors(shift, sets, base)
     else:

@@ -1,11 +1,11 @@
-"""A cylinder by the table of its law, as an FMU for Modelica tools, Simulink and others: :func:`build`.
+"""Export of a cylinder and its law as a Functional Mock-up Unit (FMU) for Modelica tools, Simulink and others.
 
     from viscoroll import fmu
     fmu.build(vr.presets.RUBBER_CYLINDER, "roller.fmu")  # or `viscoroll fmu`
 
-Two models.  ``ContactElement`` gives the forces of a contact, with exact slopes, to a mechanism that knows where the
-cylinder is.  ``Roller`` is the cylinder itself; in co-simulation it takes its own steps.  Read in this order:
-:mod:`variables`, :mod:`description` (modelDescription.xml), fmu.c, :mod:`build`.
+There are two models.  ``ContactElement`` gives the forces of a contact, with exact slopes, to a multibody model that
+knows the motion of the cylinder.  ``Roller`` is the cylinder itself; in co-simulation it has its own step-size control.
+Read in this order: :mod:`variables`, :mod:`description` (modelDescription.xml), fmu.c, :mod:`build`.
 """
 
 from .build import build

@@ -1,4 +1,4 @@
-"""Sources, description and library of an FMU, and the file of them all."""
+"""Sources, description and compiled library of an FMU, packed into one archive: :func:`build`."""
 
 from __future__ import annotations
 
@@ -20,16 +20,18 @@ from ...core.extras import import_extra
 from ...core.files import replace_file
 from ...cylinder import Cylinder
 from ...io import tables
-from ...materials.cover import Cover
-from ...materials.law_file import table_of
-from .description import described, sources_described
-from .variables import MODELS, Variable
+from ...materials.law.netcdf import parse_law
+from ...materials.law.table import LawTable
+from ...materials.law_file import dataset_content
+from .description import build_description, model_description
+from .variables import MODELS, RADIUS, Variable
 
-#: Versions of FMI.
+#: Versions of the FMI standard that can be written.
 VERSIONS = (2, 3)
+#: Options of the C compiler.  -ffp-contract=off keeps the bits independent of the machine's fused multiply-add.
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
-#: functions of the standard that have nothing to do here, and succeed
-_NOTHING_TO_DO = re.compile(r"(Enter|Exit)\w*Mode|Terminate|SetDebugLogging|EvaluateDiscreteStates")
+#: Functions of the standard that change modes only.  These models have one mode, so that they return OK.
+_MODE_CHANGE = re.compile(r"(Enter|Exit)\w*Mode|Terminate|SetDebugLogging|EvaluateDiscreteStates")
 
 
 def build(given: Any, path: str | PathLike[str], model: str = "Roller", version: int = 2) -> None:
@@ -37,55 +39,65 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
 
     Parameters
     ----------
-    given : a :class:`viscoroll.Cylinder`, whose numbers become those at the start; or a material, pair, law of
-        :func:`viscoroll.load_law` or alpha, of which radius, load and the like are set in the tool.
+    given : a :class:`viscoroll.Cylinder`, whose numbers become the start values; or a material, pair, cover, law of
+        :func:`viscoroll.load_law` or alpha, for which radius, load, mass and friction are set in the tool.
     path : file to write; a file of that name is replaced.
-    model : "Roller", from drive force and torque to v, omega and x: co-simulation that takes its own steps, and model
-        exchange; or "ContactElement", from v, omega and load to force, torque and moments: model exchange.
-    version : 2 or 3, of FMI.
+    model : "Roller", from drive force and torque to v, omega and x: co-simulation with its own step-size control, and
+        model exchange; or "ContactElement", from v, omega and load to force, torque and moments: model exchange.
+    version : version of the FMI standard, 2 or 3.
 
     Raises
     ------
     ParameterError
-        Another model or version, a material without a law, arrays in the cylinder.
+        Another model or version, a material without a law, arrays in the cylinder; ContactElement of a cover.
     MissingDependencyError
         No fmpy, which brings the headers of the standard, or no C compiler ``cc``.
     FileError
-        If it cannot be written there.
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> from viscoroll import fmu
+    >>> fmu.build(vr.presets.RUBBER_CYLINDER, "roller.fmu")  # doctest: +SKIP
 
     Notes
     -----
-    Both models have exact slopes as directional derivatives, and in FMI 3 as adjoint ones.  A thrown roller as
-    co-simulation follows :func:`viscoroll.roll` to 1e-9 of its speed (``tests/fmu/test_fmu.py``).
+    Both models give exact slopes as directional derivatives, and in FMI 3 as adjoint derivatives.  As co-simulation a
+    roller that starts with slip follows :func:`viscoroll.roll` to 1e-9 of its speed (``tests/fmu/test_fmu.py``).  The
+    law of a cover holds at one contact length at rest: the FMU refuses values of R, load, width and E_prime that
+    make another one.
     """
     if model not in MODELS:
         raise ParameterError("model", repr(model), f"one of {', '.join(MODELS)}")
     if version not in VERSIONS:
         raise ParameterError("version", version, "2 or 3, of FMI")
-    if (isinstance(given, Cylinder) and given.pair.covered) or getattr(given, "cover", None) or type(given) is Cover:
-        raise ParameterError("thickness", "of a body", "left out: FMUs do not hold the law of a layer")
-    table = table_of(given.pair if isinstance(given, Cylinder) else given)
-    known = {"T_ref": table.T_ref} | ({} if table.pair is None else {"E_prime": table.pair.E_prime})
-    if isinstance(given, Cylinder):
-        known |= _of_cylinder(given)
+    law = tables.law(given)
+    table = parse_law(dataset_content(law), path)
+    if table.cover is not None and not MODELS[model].states:
+        raise ParameterError("model", repr(model), "'Roller' for a cover, whose law holds at one load")
+    l0 = _contact_length_of_cover(table)
+    starts = _start_values(MODELS[model].variables, given, table, l0)
     fmpy = import_extra("fmpy", "fmpy", "fmu")
     compiler = shutil.which("cc")
     if compiler is None:
         raise MissingDependencyError("cc, a compiler of C,", None)
-    variables = MODELS[model].variables
-    starts = {v.name: float(known.get(v.name, v.start)) for v in variables if v.start is not None}
-    law = tables.law(table)
     with TemporaryDirectory() as name:
         folder = Path(name)
         tables.export(law, folder / "law.h")
-        token = _write_sources(folder, Path(fmpy.__file__).parent / "c-code", model, version, starts)
+        constants = _model_header(MODELS[model].variables, starts) + (
+            f"#define FMI_VERSION {version}\n#define ROLLER {int(bool(MODELS[model].states))}\n#define L0 {l0!r}\n"
+        )
+        token = _write_sources(folder, Path(fmpy.__file__).parent / "c-code", model, version, constants)
         library = folder / f"{model}{fmpy.sharedLibraryExtension}"
         _compile(compiler, folder / "fmu.c", library)
-        content = {"modelDescription.xml": described(version, model, starts, token, law.attrs["title"]).encode()}
+        content = {
+            "modelDescription.xml": model_description(version, model, starts, token, law.attrs["title"]).encode()
+        }
         if version == 3:
-            content["sources/buildDescription.xml"] = sources_described(model).encode()
-        sources = sorted(each for each in folder.iterdir() if each.suffix in (".c", ".h"))
-        content |= {f"sources/{each.name}": each.read_bytes() for each in sources}
+            content["sources/buildDescription.xml"] = build_description(model).encode()
+        sources = sorted(source for source in folder.iterdir() if source.suffix in (".c", ".h"))
+        content |= {f"sources/{source.name}": source.read_bytes() for source in sources}
         machine = fmpy.platform if version == 2 else fmpy.platform_tuple
         content[f"binaries/{machine}/{library.name}"] = library.read_bytes()
     with replace_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -93,28 +105,51 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
             archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
 
 
-def _of_cylinder(cylinder: Cylinder) -> dict[str, float]:
-    """Its numbers under the names of the models' variables, of one metre of it."""
-    found = {
-        "R": cylinder.R, "E_prime": cylinder.E_prime, "mu": cylinder.mu, "load": cylinder.load, "mass": cylinder.m,
-        "inertia": cylinder.j,
-    }  # fmt: skip
-    for name, value in found.items():
+def _contact_length_of_cover(table: LawTable) -> float:
+    """Return the contact length at rest that the law of a cover is for, in m; 0.0 if the FMU need not check it.
+
+    table: a law.  It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.
+    """
+    if table.cover is None or table.pair is None:
+        return 0.0
+    cover: Any = table.material
+    return float(table.pair.cover(1.0).thickness / cover.thickness)
+
+
+def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, l0: float) -> dict[str, float]:
+    """Return the start value of each variable that can be set, by name, in the variables' units.
+
+    variables: of the model.  given: argument of :func:`build`; of a Cylinder all its numbers, for 1 m of its width.
+    table: its law, which knows T_ref and, of SI materials, E_prime.
+    l0: contact length of a cover in m, or 0.0; the load at the start is the one that makes it.
+    """
+    values: dict[str, Any] = {"T_ref": table.T_ref}
+    if table.pair is not None:
+        values["E_prime"] = table.pair.E_prime
+        if l0:
+            values["load"] = l0**2 * table.pair.E_prime / (32.0 * RADIUS)
+    if isinstance(given, Cylinder):
+        values |= {name: getattr(given, name) for name in ("R", "E_prime", "mu", "load")}
+        values |= {"mass": given.m, "inertia": given.j}
+    for name, value in values.items():
         if np.ndim(value):
             raise ParameterError(name, f"an array of shape {np.shape(value)}", "one number: an FMU is of one cylinder")
-    return found
+    return {v.name: float(values.get(v.name, v.start)) for v in variables if v.start is not None}
 
 
-def _write_sources(folder: Path, headers: Path, model: str, version: int, starts: dict[str, float]) -> str:
-    """All that ``cc fmu.c`` needs beside law.h; gives the token by which description and library know one another."""
-    ours = files("viscoroll")
-    source = (ours / "app/fmu/fmu.c").read_text(encoding="utf-8")
-    texts = {"fmu.c": source, "vr_roll.h": (ours / "io/tables/c/vr_roll.h").read_text(encoding="utf-8")}
+def _write_sources(folder: Path, headers: Path, model: str, version: int, constants: str) -> str:
+    """Write all that ``cc fmu.c`` needs beside law.h, and return the token.
+
+    folder: where law.h is.  headers: folder of the headers of the standard.  model, version: as of :func:`build`.
+    constants: text of model.h, to which the token is added.
+    Returns the GUID or instantiation token that the description and the library share: a digest of all sources.
+    """
+    package = files("viscoroll")
+    source = (package / "app/fmu/fmu.c").read_text(encoding="utf-8")
+    texts = {"fmu.c": source, "vr_roll.h": (package / "io/tables/c/vr_roll.h").read_text(encoding="utf-8")}
     texts |= {path.name: path.read_text(encoding="utf-8") for path in headers.glob(f"fmi{version}*.h")}
     texts["stubs.h"] = _stubs(source, texts[f"fmi{version}FunctionTypes.h"], version)
-    texts["model.h"] = _model_header(MODELS[model].variables, starts) + (
-        f"#define FMI_VERSION {version}\n#define ROLLER {int(bool(MODELS[model].states))}\n"
-    )
+    texts["model.h"] = constants
     law = (folder / "law.h").read_text(encoding="utf-8")
     token = hashlib.sha256("".join((model, law, *(texts[name] for name in sorted(texts)))).encode()).hexdigest()
     token = f"{{{token[:8]}-{token[8:12]}-{token[12:16]}-{token[16:20]}-{token[20:32]}}}"
@@ -125,9 +160,13 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, starts
 
 
 def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
-    """Names, kinds (0: not to be set, 1: any number, 2: above 0) and starts of the variables, of which 0 is time."""
+    """Return the C text of the variables: their references, names, kinds and start values; reference 0 is time.
+
+    variables: of the model, in the order of their references.  starts: start values by name.
+    Kinds are 0 (cannot be set), 1 (any finite number) and 2 (above 0).
+    """
     rows = [("time", 0, 0.0)]
-    rows += [(v.name, 0 if v.start is None else 1 + v.above_0, starts.get(v.name, 0.0)) for v in variables]
+    rows += [(v.name, 0 if v.start is None else 1 + v.positive, starts.get(v.name, 0.0)) for v in variables]
     names, kinds, values = zip(*rows, strict=True)
     quoted = ", ".join(f'"{name}"' for name in names)
     return (
@@ -139,23 +178,32 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
 
 
 def _stubs(source: str, header: str, version: int) -> str:
-    """The functions of the standard that ``source`` does not define: changes of mode, and refusals."""
+    """Return C definitions of the functions of the standard that fmu.c leaves out.
+
+    source: text of fmu.c.  header: text of the standard's header of function types.  version: 2 or 3.
+    A change of mode returns OK; a function that gets or sets values returns OK for none and an error for some; every
+    other one returns an error, or NULL.
+    """
     lines = []
     plain = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
     for kind, name, arguments in re.findall(rf"typedef\s+([\w\s*]+?)\s*\b(fmi{version}\w+)TYPE\s*\(([^)]*)\)", plain):
         if re.search(rf"^[\w *]+\b{name}\(", source, flags=re.MULTILINE):
             continue
-        given = " ".join(arguments.replace("Byte[]", "Byte bytes[]").split())
-        ok, error, count = f"fmi{version}OK", f"fmi{version}Error", re.search(r"size_t (n\w+)", given)
-        answer = ok if _NOTHING_TO_DO.search(name) else f"{count[1]} ? {error} : {ok}" if count else error
-        does = "" if kind == "void" else f" return {answer if kind.endswith('Status') else 'NULL'}; "
-        lines.append(f"{kind} {name}({given}) {{{does}}}\n")
+        parameters = " ".join(arguments.replace("Byte[]", "Byte bytes[]").split())
+        ok, error, count = f"fmi{version}OK", f"fmi{version}Error", re.search(r"size_t (n\w+)", parameters)
+        status = ok if _MODE_CHANGE.search(name) else f"{count[1]} ? {error} : {ok}" if count else error
+        body = "" if kind == "void" else f" return {status if kind.endswith('Status') else 'NULL'}; "
+        lines.append(f"{kind} {name}({parameters}) {{{body}}}\n")
     return "".join(lines)
 
 
 def _compile(compiler: str, source: Path, library: Path) -> None:
-    done = subprocess.run(
+    """Compile fmu.c to a shared library; raise FileError with the compiler's message if that fails.
+
+    compiler: path of cc.  source: path of fmu.c, beside the headers.  library: file to write.
+    """
+    result = subprocess.run(
         [compiler, *_FLAGS, str(source), "-lm", "-o", str(library)], capture_output=True, text=True, check=False
     )
-    if done.returncode:
-        raise FileError(library.name, f"cannot be compiled by {compiler} ({' '.join(done.stderr.split()):.200})")
+    if result.returncode:
+        raise FileError(library.name, f"cannot be compiled by {compiler} ({' '.join(result.stderr.split()):.200})")

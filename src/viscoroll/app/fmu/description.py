@@ -1,4 +1,4 @@
-"""modelDescription.xml of FMI 2.0 and 3.0, and what a source FMU of 3.0 adds to it."""
+"""modelDescription.xml of FMI 2.0 and 3.0, and buildDescription.xml of 3.0."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from ... import __version__
 from ...core.scale import dimension_powers
 from .variables import MODELS, UNITS, Model, Variable
 
-#: what both models can do, in either version: attributes of ModelExchange and CoSimulation
-_ABILITIES = {
+#: Capabilities of both models by version of the standard: attributes of ModelExchange and of CoSimulation.
+_CAPABILITIES = {
     2: {
         "providesDirectionalDerivative": "true", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
     },
@@ -18,12 +18,17 @@ _ABILITIES = {
         "canGetAndSetFMUState": "true", "canSerializeFMUState": "true",
     },
 }  # fmt: skip
-#: relative tolerance that a tool's solver takes where its user gives none
+#: Relative tolerance of a tool's solver if its user gives none.  The tests pass through rest with it.
 _TOLERANCE = "1e-5"
 
 
-def described(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
-    """modelDescription.xml of a model; ``starts``: values of what may be set."""
+def model_description(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
+    """Return the text of modelDescription.xml.
+
+    version: of the standard, 2 or 3.  name: of the model, a key of MODELS.
+    starts: start values of the variables that can be set, by name, in their units.
+    token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.  title: title of the law.
+    """
     model = MODELS[name]
     root = Element(
         "fmiModelDescription",
@@ -33,52 +38,62 @@ def described(version: int, name: str, starts: dict[str, float], token: str, tit
             **({"guid": token, "numberOfEventIndicators": "0"} if version == 2 else {"instantiationToken": token}),
         },
     )  # fmt: skip
-    _add_kinds(root, version, name, model)
+    _add_interfaces(root, version, name, model)
     units = SubElement(root, "UnitDefinitions")
     for unit, base in UNITS.items():
-        one = SubElement(units, "Unit", name=unit)
-        SubElement(one, "BaseUnit", {each: str(power) for each, power in dimension_powers(base).items()})
+        element = SubElement(units, "Unit", name=unit)
+        SubElement(element, "BaseUnit", {base_unit: str(power) for base_unit, power in dimension_powers(base).items()})
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", tolerance=_TOLERANCE, stepSize="0.01")
     variables = SubElement(root, "ModelVariables")
-    references = {each.name: str(n) for n, each in enumerate(model.variables, start=1)}
+    references = {variable.name: str(n) for n, variable in enumerate(model.variables, start=1)}
     if version == 3:
         time = {"causality": "independent", "variability": "continuous", "unit": "s"}
         SubElement(variables, "Float64", {"name": "time", "valueReference": "0"} | time)
-    for each in model.variables:
-        _add_variable(variables, version, each, references, starts)
+    for variable in model.variables:
+        _add_variable(variables, version, variable, references, starts)
     _add_structure(SubElement(root, "ModelStructure"), version, model, references)
-    return _text(root)
+    return _as_text(root)
 
 
-def _text(root: Element) -> str:
+def _as_text(root: Element) -> str:
+    """Return an element and its children as indented XML with a declaration."""
     indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode") + "\n"
 
 
-def _add_kinds(root: Element, version: int, name: str, model: Model) -> None:
+def _add_interfaces(root: Element, version: int, name: str, model: Model) -> None:
+    """Add ModelExchange and, of a model with states, CoSimulation.
+
+    root: element to add to.  version: 2 or 3.  name: of the model and of its library.  model: its variables.
+    """
     steps = {2: {"completedIntegratorStepNotNeeded": "true"}, 3: {"needsCompletedIntegratorStep": "false"}}
-    kinds = {"ModelExchange": steps[version]}
+    interfaces = {"ModelExchange": steps[version]}
     if model.states:
-        kinds["CoSimulation"] = {"canHandleVariableCommunicationStepSize": "true"}
-    for kind, can in kinds.items():
-        one = SubElement(root, kind, {"modelIdentifier": name} | _ABILITIES[version] | can)
+        interfaces["CoSimulation"] = {"canHandleVariableCommunicationStepSize": "true"}
+    for interface, more in interfaces.items():
+        element = SubElement(root, interface, {"modelIdentifier": name} | _CAPABILITIES[version] | more)
         if version == 2:
-            SubElement(SubElement(one, "SourceFiles"), "File", name="fmu.c")
+            SubElement(SubElement(element, "SourceFiles"), "File", name="fmu.c")
 
 
 def _add_variable(
-    parent: Element, version: int, each: Variable, references: dict[str, str], starts: dict[str, float]
+    parent: Element, version: int, variable: Variable, references: dict[str, str], starts: dict[str, float]
 ) -> None:
-    varies = "continuous" if each.causality != "parameter" else "tunable" if each.above_0 else "fixed"
+    """Add a variable.
+
+    parent: element ModelVariables.  version: 2 or 3.  variable: to add.
+    references: value references by name.  starts: start values by name.
+    """
+    varies = "continuous" if variable.causality != "parameter" else "tunable" if variable.positive else "fixed"
     about = {
-        "name": each.name, "valueReference": references[each.name], "causality": each.causality, "variability": varies,
-        "description": each.text,
+        "name": variable.name, "valueReference": references[variable.name], "causality": variable.causality,
+        "variability": varies, "description": variable.text,
     }  # fmt: skip
-    value = {"unit": each.unit}
-    if each.name in starts:
-        value["start"] = repr(starts[each.name])
-    if each.name.startswith("der_"):
-        value["derivative"] = references[each.name.removeprefix("der_")]
+    value = {"unit": variable.unit}
+    if variable.name in starts:
+        value["start"] = repr(starts[variable.name])
+    if variable.name.startswith("der_"):
+        value["derivative"] = references[variable.name.removeprefix("der_")]
     if version == 3:
         SubElement(parent, "Float64", about | value)
     else:
@@ -86,24 +101,31 @@ def _add_variable(
 
 
 def _add_structure(parent: Element, version: int, model: Model, references: dict[str, str]) -> None:
-    outputs = [references[each.name] for each in model.variables if each.causality == "output"]
+    """Add the lists of outputs, rates and initial unknowns.
+
+    parent: element ModelStructure.  version: 2 or 3.  model: its variables.  references: value references by name.
+    """
+    outputs = [references[variable.name] for variable in model.variables if variable.causality == "output"]
     rates = [references[f"der_{state}"] for state in model.states]
     unknowns = sorted((*outputs, *rates), key=int)
     kinds = {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": unknowns}
     if version == 3:
         kinds = {"Output": outputs, "ContinuousStateDerivative": rates, "InitialUnknown": unknowns}
-    for kind, found in kinds.items():
-        group = SubElement(parent, kind) if version == 2 and found else parent
-        for reference in found:
+    for kind, members in kinds.items():
+        group = SubElement(parent, kind) if version == 2 and members else parent
+        for reference in members:
             if version == 2:
                 SubElement(group, "Unknown", index=reference)
             else:
                 SubElement(group, kind, valueReference=reference)
 
 
-def sources_described(name: str) -> str:
-    """sources/buildDescription.xml of FMI 3.0."""
+def build_description(name: str) -> str:
+    """Return the text of sources/buildDescription.xml of FMI 3.0.
+
+    name: of the model and of its library.
+    """
     root = Element("fmiBuildDescription", fmiVersion="3.0")
-    how = SubElement(root, "BuildConfiguration", modelIdentifier=name)
-    SubElement(SubElement(how, "SourceFileSet", language="C99"), "SourceFile", name="fmu.c")
-    return _text(root)
+    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=name)
+    SubElement(SubElement(configuration, "SourceFileSet", language="C99"), "SourceFile", name="fmu.c")
+    return _as_text(root)

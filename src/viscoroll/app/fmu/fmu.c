@@ -1,16 +1,17 @@
-/* A cylinder by the table of its contact law, as an FMU.  model.h, which build.py writes, says of which model and
- * version.
+/* FMU of a cylinder and the rows of its contact law.  build.py writes model.h, which selects the model and the version
+ * of the standard.
  *
- * ContactElement: v, omega, load -> force, torque, moments.  No states: for model exchange, with all slopes.
- * Roller: drive force and torque -> v, omega, x.  States v, slip, x for model exchange; for co-simulation it takes its
- * own steps (vr_roll.h), so no communication step is too long.
+ * ContactElement: v, omega, load -> force, torque, moments.  It has no states: model exchange, with all slopes.
+ * Roller: drive force and torque -> v, omega, x.  Its states are v, slip and x in model exchange; in co-simulation it
+ * controls its own step size (vr_roll.h), so that a communication step may have any length.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "model.h" /* FMI_VERSION, ROLLER, TOKEN; n_NAME, the reference of every variable, COUNT, NAMES, KINDS, START */
+#include "model.h" /* FMI_VERSION, ROLLER, TOKEN; n_NAME, the reference of every variable, COUNT, NAMES, KINDS, START;
+                        L0: contact length at rest, in m, that the law of a cover is for, 0 of others */
 #include "law.h"
 #include "vr_roll.h"
 #if FMI_VERSION == 3
@@ -30,8 +31,8 @@ enum { STATES = 0, FIRST_STATE = 0, FIRST_RATE = 0 };
 
 typedef struct {
   double x[COUNT], d[4][3]; /* slopes of the rates, or of force, torque and moments */
-  double step;              /* for vr_roll to try next */
-  int exchange, stale;      /* whether the tool integrates; whether x has changed since d and the outputs were found */
+  double step;              /* trial length of the next step of vr_roll, in T_ref; 0: none yet */
+  int exchange, stale;      /* whether the tool integrates; whether x has changed since the last evaluate() */
   char name[128];
   void *environment;
   logger log;
@@ -59,6 +60,9 @@ static int refuse(const instance *m, const char *what, double value, const char 
   return ERROR;
 }
 
+/* R/l0, Eq. (4) */
+static double kappa_of(const double *x) { return sqrt(x[n_E_prime] * x[n_R] * x[n_width] / (32.0 * x[n_load])); }
+
 static int in_range(const instance *m) {
   for (int n = 1; n < COUNT; n++) {
     if (KINDS[n] && !isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
@@ -66,14 +70,14 @@ static int in_range(const instance *m) {
   }
   for (int n = FIRST_STATE; n < FIRST_STATE + STATES; n++)
     if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
-  return OK;
+  double l0 = m->x[n_R] / kappa_of(m->x);
+  char text[120];
+  snprintf(text, sizeof text, "%.9g, at which the law of the cover holds: set R, load, width and E_prime for it", L0);
+  return L0 > 0.0 && !(fabs(l0 - L0) <= 1e-9 * L0) ? refuse(m, "contact length at rest, in m,", l0, text) : OK;
 }
 
-/* R/l0, Eq. (4) */
-static double kappa_of(const double *x) { return sqrt(x[n_E_prime] * x[n_R] * x[n_width] / (32.0 * x[n_load])); }
-
 #if ROLLER
-/* dimensionless; its time is T_ref */
+/* the dimensionless roller at the values of an instance; its unit of time is T_ref */
 static vr_roller roller(const instance *m) {
   const double *x = m->x, P = x[n_load], T = x[n_T_ref], R = x[n_R], unit = T / R;
   double rest = x[m->exchange ? n_v_smooth : n_v_min] * unit;
@@ -131,16 +135,16 @@ static int advance(instance *m, double h) {
   return OK;
 }
 
-/* What the tool's tolerances count by: of v the speed at the start, or that of which friction takes the energy on a
- * radius of way; of the slip the creep of full slip at v_smooth, below which creep does not count from v. */
+/* Nominal values, to which the tool's tolerances are relative.  v: the speed at the start, or the speed at which
+ * friction stops the cylinder within one radius.  slip: its value at full slip and v_smooth.  x: the radius. */
 static double nominal(const instance *m, size_t state) {
   const double *x = m->x, own = sqrt(x[n_mu] * x[n_load] * x[n_R] / x[n_mass]);
   if (state == 0) return fmax(fmax(fabs(x[n_v0]), fabs(x[n_omega0] * x[n_R])), own);
   return state == 1 ? 0.5 * x[n_mu] / kappa_of(x) * x[n_v_smooth] : x[n_R];
 }
 #else
-/* Below v_min the law is that at v_min with the slip kept, and its moments in proportion: finite slopes,
-    no force at rest. */
+/* Below v_min the law is evaluated at v_min with the same slip, and the moments are proportional to v: the slopes stay
+ * finite, and there is no moment at rest. */
 static int evaluate(instance *m) {
   double *x = m->x, P = x[n_load], R = x[n_R], unit = x[n_T_ref] / R, floor = copysign(fmax(fabs(x[n_v]), x[n_v_min]),
       x[n_v]);
@@ -205,7 +209,7 @@ static int get(instance *m, const unsigned r[], size_t n, double y[]) {
   return OK;
 }
 
-/* seed by the knowns to the unknowns, or back where adjoint */
+/* Product of the derivatives of the unknowns u by the knowns k with a seed; adjoint: of the transpose. */
 static int slopes(instance *m, const unsigned u[], size_t nu, const unsigned k[], size_t nk, const double seed[],
     double s[], int adjoint) {
   if (update(m)) return ERROR;
@@ -231,7 +235,8 @@ static int nominals(const instance *m, double y[], size_t n) {
   return OK;
 }
 static int at(instance *m, double t) { return m->x[n_time] = t, OK; }
-/* A step from t, which is the end of the last one but for rounding: a part of the step, and of the time, is that. */
+/* Take a communication step of length h from t.  t must be the end of the last step, to 1e-3 of h and the rounding of
+ * the tool's sums. */
 static int step(instance *m, double t, double h) {
   const double now = m->x[n_time], part = 1e-3 * h + 1e-9 * fmax(fabs(t), fabs(now));
   char text[80];
@@ -241,8 +246,8 @@ static int step(instance *m, double t, double h) {
   return advance(m, h) ? ERROR : at(m, t + h);
 }
 
-/* The state of an instance, which is all that its future depends on: time, parameters, inputs, states and the step to
- * try.  token: of the FMU, for its variables are those of no other. */
+/* The complete state of an instance: time, parameters, inputs, states and the trial step.  token: of the FMU, so that
+ * the state of another FMU is refused. */
 typedef struct {
   char token[64];
   double x[COUNT], step;
@@ -276,7 +281,7 @@ static int deserialize(instance *m, const char bytes[], size_t size, void **stat
   return memcpy(s, bytes, sizeof *s), *state = s, OK;
 }
 
-#include "stubs.h" /* all other functions of the standard */
+#include "stubs.h" /* the other functions of the standard: changes of mode, and refusals */
 #if FMI_VERSION == 3
 typedef fmi3ValueReference ref;
 const char *fmi3GetVersion(void) { return "3.0"; }

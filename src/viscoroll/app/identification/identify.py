@@ -11,7 +11,7 @@ from ...core.array_types import Floats
 from ...core.checks import check_bool, check_integer
 from ...core.errors import ParameterError, check_names
 from ...cylinder import Cylinder
-from ...materials.file import SECTIONS
+from ...materials.material_toml import SECTIONS
 from .fit import Identification
 from .problem import Minimum, Problem
 from .records import OF_RECORDS, Record

@@ -17,7 +17,7 @@ from ...core.sections import as_struct, check_keys, read_toml, section_error
 from ...cylinder import Cylinder
 from ...io.config import read_roller
 from ...io.measurements import column_in_unit, find_column, missing_column, named_table
-from ...materials.file import shifts_of
+from ...materials.material_toml import parse_shifts
 from .records import Coastdown, Record, Resistance, Traction
 
 #: section of the file -> its type
@@ -54,7 +54,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
             )
     data = [_record(Path(path), section) for section in content["data"]]
     given = {name: content[name] for name in ("unknown", "prior")}
-    return {"cylinder": cylinder, "data": data, "shift": shifts_of(path, content)} | given
+    return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | given
 
 
 def _record(path: Path, given: Any) -> Record:

@@ -18,7 +18,7 @@ import numpy as np
 from ...core.array_types import Booleans, Floats, Integers
 from ...core.errors import ParameterError
 from ...core.renamed import warn_renamed
-from ...materials.law_table import LawTable
+from ...materials.law.table import LawTable
 from ..contact_table import pure_rolling_fields
 from ..parameters import Roller, refuse_arrays, resolve_model
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...materials.law_table import LawTable
+from ...materials.law.table import LawTable
 from .loads import Loads
 from .resistance import find_zeros, speed_nodes
 from .states import Field, States, contact_fields_at, find_crossings, state_rows

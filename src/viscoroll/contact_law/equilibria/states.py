@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.array_types import Floats, Integers
 from ...core.blocks import run_blocks
-from ...materials.law_table import LawTable
+from ...materials.law.table import LawTable
 from ..contact_table import evaluate_law
 from .loads import Gains, Loads
 from .resistance import branches

@@ -14,7 +14,7 @@ from ...core.array_types import Integers, Numbers
 from ...core.drive import Feedback, make_dimensionless
 from ...core.errors import ParameterError
 from ...core.labels import strip_labels
-from ...materials.law_table import LawTable
+from ...materials.law.table import LawTable
 from ..parameters import Roller, resolve_model, scale_of
 from ..validity.model_warnings import warn_of_contact
 from .loads import Loads, loads_of

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.results import SummaryRow, as_html, as_text
-from ...materials.law_modes import by_modes
+from ...materials.law.evaluate import evaluate_by_modes
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 
@@ -162,7 +162,7 @@ def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float
     Returns (kappa V at ``low``, kappa V at ``high``), dimensionless.
     """
     rates = np.array([low, high])
-    h_over_zeta = by_modes(series, 0.5 / rates).values[1]
+    h_over_zeta = evaluate_by_modes(series, 0.5 / rates).values[1]
     low, high = (rates / np.sqrt(1.0 + 2.0 * h_over_zeta)).tolist()  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
     return low, high
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.checks import check_number
 from ...core.scale import SI
-from ...materials.law_table import law_table
+from ...materials.law.table import law_table
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.pair import Pair

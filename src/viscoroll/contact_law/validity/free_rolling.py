@@ -19,8 +19,8 @@ import numpy as np
 
 from ...core.array_types import Floats, Integers
 from ...core.scale import Scale
-from ...materials.bodies import one_series
-from ...materials.law_table import law_table
+from ...materials.bodies import total_series
+from ...materials.law.table import law_table
 from ...materials.prony import Prony
 from ..contact_table import pure_rolling_fields
 from ..parameters import Parameters, refuse_cover, series_in_own_time
@@ -115,7 +115,7 @@ class FreeRolling:
                 np.unique(material, return_inverse=True) if np.ndim(material) else ([material], np.zeros((), int))
             )
         else:
-            pairs = (series_in_own_time(one_series(one)) for one in scene.material_array)
+            pairs = (series_in_own_time(total_series(one)) for one in scene.material_array)
             materials, unit = zip(*pairs, strict=True)
             unit = np.array(unit, np.float64)
             index = np.arange(unit.size)

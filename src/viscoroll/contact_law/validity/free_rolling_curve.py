@@ -8,8 +8,8 @@ from functools import lru_cache
 import numpy as np
 
 from ...core.array_types import Booleans, Floats
-from ...materials.bodies import one_series
-from ...materials.law_modes import by_modes
+from ...materials.bodies import total_series
+from ...materials.law.evaluate import evaluate_by_modes
 from ...materials.prony import Prony
 
 #: Points of a curve in an octave of u: the splines then have errors below 1e-6.
@@ -36,14 +36,14 @@ class Curve:
         """
         from scipy.interpolate import CubicSpline
 
-        series = one_series(material)
+        series = total_series(material)
         self.modes, self.alpha = (series.J, series.T), series.alpha
         shortest, longest = series.tau[-1], series.T[0]
         octaves = math.ceil(math.log2(longest / shortest * math.sqrt(self.alpha))) + 2 * _MARGIN
         points = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
         # The formulas of the modes at 1/(2 zeta) need no kernel of contacts, which a warning need not compile.
         half_rates = 0.5 * np.exp(_MARGIN * math.log(2.0) - points)
-        (_, h_over_zeta, half_space, cylinder), _, N = by_modes(material, half_rates)
+        (_, h_over_zeta, half_space, cylinder), _, N = evaluate_by_modes(material, half_rates)
         self.ln_u = points - _MARGIN * math.log(2.0) - 0.5 * np.log1p(2.0 * h_over_zeta)
         u = np.exp(self.ln_u)
         M = u * (half_space + cylinder)
@@ -121,4 +121,4 @@ class Curve:
 @lru_cache(maxsize=256)  # as many as the validity of an ensemble examines; 0.1 MB each
 def curve_of(material: float | Prony) -> Curve | None:
     """Return the curve of a material in its own time; None for an elastic one, which rolls for ever."""
-    return Curve(material) if one_series(material).alpha > 1.0 else None
+    return Curve(material) if total_series(material).alpha > 1.0 else None

@@ -1,4 +1,4 @@
-"""Ensembles from a run file: uncertain inputs -> blocks -> a results store that an interrupted run continues.
+"""Ensembles from a run file: uncertain inputs, blocks of motions, and a results store that a repeated call completes.
 
 Read in this order: :mod:`runfile` (with :mod:`uncertain`, :mod:`inputs` and :mod:`rollers`), :mod:`evaluate`,
 :mod:`columns`, :mod:`store` (with :mod:`records` and :mod:`zarr_files`), :mod:`engine`, then

@@ -1,4 +1,4 @@
-"""What the columns of a store are, in words: inputs by their names, and what comes out of a motion."""
+"""Long names and units of the columns of a store: uncertain inputs, and fields of the motions."""
 
 from __future__ import annotations
 
@@ -12,30 +12,33 @@ from ...motion.export import column_attributes
 from ..config import CylinderSection
 from .uncertain import PREFIXES
 
-_MODES = {
-    "E": "strength {} of relaxation over the long-time modulus", "tau": "relaxation time {} over T_ref",
-    "J": "strength {} of creep over the long-time compliance", "T": "retardation time {} over T_ref",
+#: Letter of a Prony series in the name of an input, as in tau_2 -> meaning of the number, with its index.
+_SERIES = {
+    "E": "strength {} of relaxation, divided by the long-time modulus", "tau": "relaxation time {} divided by T_ref",
+    "J": "strength {} of creep, divided by the long-time compliance", "T": "retardation time {} divided by T_ref",
 }  # fmt: skip
 
 
 def attributes(name: str, si: bool) -> dict[str, Any]:
-    """long_name, units and more of a column, as JSON takes them."""
+    """Return the attributes of a column: long_name, units and more, as JSON takes them.
+
+    name: of an input (as base_E, tau_2, drive_torque_time_1) or of a field of a motion.
+    si: whether the run is in SI units.
+    """
     if name.startswith(PREFIXES["drive"]):
-        what, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")
-        about = attributes(what, si)
+        load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")
         if corner.startswith("time_"):
-            times = f"time {corner.removeprefix('time_')} of the given {what}"
+            times = f"time {corner.removeprefix('time_')} of the given {load}"
             return {"long_name": times, "units": attributes("t", si)["units"]}
+        about = attributes(load, si)
         return about | {"long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)}
     if name.startswith(PREFIXES["base"]):
         about = attributes(name.removeprefix(PREFIXES["base"]), si)
         return about | {"long_name": f"base: {about['long_name']}"}
-    kind, _, number = name.partition("_")
-    if kind in _MODES and number.isdecimal():
-        return {"long_name": _MODES[kind].format(number), "units": "1"}
+    letter, _, index = name.partition("_")
+    if letter in _SERIES and index.isdecimal():
+        return {"long_name": _SERIES[letter].format(index), "units": "1"}
     if name in CylinderSection.__struct_fields__ and name not in SYMBOLS:
         return {"long_name": f"{name} of the cylinder", "units": UNITS.get(name, "1")}
-    return {
-        key: value.tolist() if isinstance(value, np.ndarray) else value
-        for key, value in column_attributes(name, si).items()
-    }
+    about = column_attributes(name, si)
+    return {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in about.items()}

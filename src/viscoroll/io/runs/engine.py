@@ -1,7 +1,7 @@
-"""Work on the blocks of a run: on threads of this process, or on a dask cluster.
+"""Evaluation of the blocks of a run, on threads of this process or on a dask cluster: :func:`run_ensemble`.
 
-One task is one block.  As many tasks are given out as keep the workers busy, so neither this process
-nor a scheduler holds more than a few, however many blocks there are.
+One task is one block.  No more tasks are submitted than keep the workers busy, so that neither this process nor a
+scheduler holds more than a few, however many blocks there are.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import re
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
@@ -20,21 +20,21 @@ from ...core.blocks import cancel_with, thread_count
 from ...core.checks import check_bool
 from ...core.errors import FileError, Interrupted, ParameterError, ViscorollError
 from ...core.extras import import_extra
-from .evaluate import look_at_materials
+from .evaluate import warn_of_materials
 from .runfile import Run
 from .store import Store, locked
 
-#: tasks given out, a worker: one to work on and one to go on with
-_AHEAD = 2
-#: how often dask gives a task to another worker when one dies
+#: Tasks submitted for each worker: the one that it works on and the next.
+_TASKS_PER_WORKER = 2
+#: Number of times that dask gives a task to another worker after its worker died.
 _RETRIES = 3
-#: seconds between lines of progress where there is no terminal
+#: Seconds between lines of progress where there is no terminal.
 LINE_EVERY = 30.0
-#: tcp://host:port, or the same with tls
+#: Address of a dask scheduler: tcp://host:port, or the same with tls.
 _ADDRESS = re.compile(r"(tcp|tls)://([^/:[\]]+|\[[^/[\]]+\]):\d+")
-#: dask's workers give every freed array back to the system, which costs a block time, and watch
-#: themselves a hundred times a second; glibc takes no larger second value
-_CALM = {
+#: Settings of local dask workers.  By default a worker returns each freed array to the system, which takes as long as
+#: a block, and samples itself a hundred times a second.  glibc accepts no larger second threshold.
+_DASK_SETTINGS = {
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 2**30,
     "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": 2**25,
     "distributed.worker.profile.enabled": False,
@@ -46,80 +46,92 @@ def run_ensemble(
     run: Run, path: str | PathLike[str], *, cluster: str | None = None, threads: int | None = None,
     progress: bool | Literal["lines"] = False,
 ) -> int:  # fmt: skip
-    """Work on all blocks that the store does not hold yet, then write the summaries.
+    """Evaluate all blocks that the store does not hold yet, then write the summaries.
 
-    After an end of any kind (a kill, a full disk, a damaged file) the same call goes on: blocks
-    that are there are read and compared with their SHA-256, the others are made again.  So does a call with a larger
-    ``n`` in a run that is otherwise the same ("random"; "sobol" to powers of two): the store becomes that of the larger
-    run, byte for byte.
+    After an interruption of any kind (a kill, a full disk, a damaged file) the same call completes the store: blocks
+    on disk are read and compared with their SHA-256, the others are evaluated again.  A call with a larger ``n`` in a
+    run that is otherwise the same ("random"; "sobol" to powers of two) extends the store to that of the larger run,
+    byte for byte.
 
     Parameters
     ----------
-    run : see :func:`read_run`.
-    path : folder of the results, made if there is none.
-    cluster : None: threads of this process.  "local": processes of this machine, or
-        "tcp://host:port": a running dask scheduler, whose workers see ``path`` on a shared disk.
-    threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the cores available.
-    progress : draw a bar with rate and time left; "lines": say so in a line every half minute, for a log.
+    run : of :func:`read_run`.
+    path : folder of the results; it is created if it does not exist.
+    cluster : None: threads of this process.  "local": processes of this machine.  "tcp://host:port": a running dask
+        scheduler, whose workers see ``path`` on a shared disk.
+    threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the number of cores available.
+    progress : True: draw a progress bar.  "lines": write a line of progress every half minute, for a log.
 
     Returns
     -------
     int
-        How many blocks were made; 0 where the store held all of them.
+        Number of blocks that were evaluated; 0 if the store held all of them.
 
     Raises
     ------
     FileError
-        The folder holds something else or cannot be written, another process writes to it, or
-        the cluster went away.
+        The folder holds something else or cannot be written, another process writes to it, or the cluster is lost.
     ParameterError
         An unknown cluster, or inputs that a motion does not allow.
     MissingDependencyError
         If zarr, or dask for a cluster, is not installed.
     Interrupted
-        At Ctrl-C (a KeyboardInterrupt), within a second: the blocks that are done stay, and the message says how many
-        they are.
+        At Ctrl-C (a KeyboardInterrupt), within a second: finished blocks are kept, and the message states their
+        number.
+
+    Examples
+    --------
+    >>> from viscoroll.io.runs import read_run, run_ensemble
+    >>> run = read_run("docs/examples/ensemble.toml")  # doctest: +SKIP
+    >>> run_ensemble(run, "results.zarr")  # doctest: +SKIP
 
     Notes
     -----
     The files are the same, byte for byte, for any number of threads or workers and after any number
-    of kills (``tests/runs/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
+    of kills (``tests/runs/test_run_store.py``); a motion is as accurate as :func:`viscoroll.ensemble` makes it.
     """
     if progress != "lines":
         progress = check_bool("progress", progress)
     store = Store(Path(path).absolute(), run)
     import_extra("zarr", "zarr", "runs")
     store.refuse_other()
-    with _executor(store, cluster, threads) as (pool, workers, shared):  # a cluster that is not there is refused first
-        look_at_materials(run)
-        with locked(store.root), _bar(run, progress) as advance:
-            store.begin()
-            made = 0
+    with _executor(store, cluster, threads) as (pool, workers, shared):  # an unknown cluster is refused first
+        warn_of_materials(run)
+        with locked(store.root), _progress_bar(run, progress) as advance:
+            store.start()
+            evaluated = 0
             try:
-                for motions in _results(store, shared, pool, workers, advance):
-                    made += 1
+                for motions in _evaluate_missing(store, shared, pool, workers, advance):
+                    evaluated += 1
                     advance(motions)
             except KeyboardInterrupt:
-                kept = f"{made} of {run.blocks} blocks were made and are kept in {path}"
+                kept = f"{evaluated} of {run.blocks} blocks were made and are kept in {path}"
                 raise Interrupted(f"interrupted: {kept}; the same call goes on") from None
-            store.end()
-    return made
+            store.finish()
+    return evaluated
 
 
-def _results(store: Store, shared: Any, pool: Executor, workers: int, advance: Callable[..., Any]) -> Iterator[int]:
-    """Give out the missing blocks, and yield the motions of each that is done."""
+def _evaluate_missing(
+    store: Store, shared: Any, pool: Executor, workers: int, advance: Callable[..., Any]
+) -> Iterator[int]:
+    """Submit the missing blocks, and yield the number of motions of each one that is finished.
+
+    store: of the run.  shared: the store, or dask's reference to it, as tasks take it.
+    pool, workers: executor, and its number of workers.
+    advance: function of the progress bar; it is called with the motions of blocks that were on disk.
+    """
     running: set[Future[int]] = set()
-    known = 0
+    checked = 0  # motions before the block at hand
     try:
         for block in store.missing():
-            start = store.run.edges(block)[0]
-            advance(start - known, old=True)
-            known = store.run.edges(block)[1]
-            running.add(pool.submit(Store.work, shared, block))
-            if len(running) >= _AHEAD * workers:
+            start, stop = store.run.edges(block)
+            advance(start - checked, on_disk=True)
+            checked = stop
+            running.add(pool.submit(Store.evaluate, shared, block))
+            if len(running) >= _TASKS_PER_WORKER * workers:
                 done, running = wait(running, return_when=FIRST_COMPLETED)
                 yield from (future.result() for future in done)
-        advance(store.run.settings.n - known, old=True)
+        advance(store.run.settings.n - checked, on_disk=True)
         while running:
             done, running = wait(running, return_when=FIRST_COMPLETED)
             yield from (future.result() for future in done)
@@ -130,23 +142,33 @@ def _results(store: Store, shared: Any, pool: Executor, workers: int, advance: C
 
 @contextmanager
 def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Any]]:
-    """(executor, workers, the store as tasks are handed it)."""
+    """Open the executor of the tasks; a context manager.
+
+    store, cluster, threads: as of :func:`run_ensemble`.
+    Gives (executor, number of workers, the store as tasks take it).  Raises ParameterError or FileError.
+    """
     if cluster is None:
-        ended = threading.Event()
-        pool = ThreadPoolExecutor(thread_count(threads), initializer=cancel_with, initargs=(ended,))
+        interrupted = threading.Event()
+        workers = thread_count(threads)
+        pool = ThreadPoolExecutor(workers, initializer=cancel_with, initargs=(interrupted,))
         try:
-            yield pool, thread_count(threads), store
+            yield pool, workers, store
         except BaseException:
-            ended.set()  # blocks that are being made are given up
+            interrupted.set()  # running blocks stop
             raise
         finally:
-            pool.shutdown(wait=not ended.is_set(), cancel_futures=True)
+            pool.shutdown(wait=not interrupted.is_set(), cancel_futures=True)
         return
     if cluster != "local" and not _ADDRESS.fullmatch(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
     distributed = import_extra("distributed", "distributed", "cluster")
     try:
-        with _silent("distributed", "distributed.client"), _client(distributed, cluster, threads) as client:
+        with ExitStack() as stack:
+            for name in ("distributed", "distributed.client"):
+                logger = logging.getLogger(name)
+                stack.callback(logger.setLevel, logger.level)
+                logger.setLevel(logging.CRITICAL)  # an error is raised, not logged
+            client = stack.enter_context(_client(distributed, cluster, threads))
             workers = sum(client.nthreads().values())
             if not workers:
                 raise FileError(cluster, "this cluster has no workers")
@@ -160,44 +182,38 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
+    """Return a dask client; of "local" with workers of its own.
+
+    distributed: the module.  cluster: "local" or an address.  threads: number of local processes.
+    """
     if cluster != "local":
         return distributed.Client(cluster, timeout=10)
     import dask
 
-    with dask.config.set(_CALM):
+    with dask.config.set(_DASK_SETTINGS):
         return distributed.Client(
             n_workers=thread_count(threads), threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
         )
 
 
 @contextmanager
-def _silent(*names: str) -> Iterator[None]:
-    """No log lines and tracebacks of these: what went wrong is raised."""
-    loggers = [logging.getLogger(name) for name in names]
-    levels = [logger.level for logger in loggers]
-    for logger in loggers:
-        logger.setLevel(logging.CRITICAL)
-    try:
-        yield
-    finally:
-        for logger, level in zip(loggers, levels, strict=True):
-            logger.setLevel(level)
+def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
+    """Draw the progress of a run; a context manager.
 
-
-@contextmanager
-def _bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
-    """A function to call with numbers of motions; those found done (``old``) do not count in the rate."""
+    run: whose motions are counted.  progress: as of :func:`run_ensemble`.
+    Gives a function of a number of motions; those that were ``on_disk`` do not count in the rate.
+    """
     from tqdm import tqdm
 
     lines: dict[str, Any] = {}
     if progress == "lines":
-        told = "viscoroll: {n_fmt} of {total_fmt} motions, {percentage:.0f} %, {remaining} left\n"
-        lines = {"delay": LINE_EVERY, "mininterval": LINE_EVERY, "bar_format": told}
+        line = "viscoroll: {n_fmt} of {total_fmt} motions, {percentage:.0f} %, {remaining} left\n"
+        lines = {"delay": LINE_EVERY, "mininterval": LINE_EVERY, "bar_format": line}
     settings = {"unit": " motions", "unit_scale": True, "smoothing": 0.05} | lines
     with tqdm(total=run.settings.n, disable=not progress, **settings) as bar:
 
-        def advance(motions: int, old: bool = False) -> None:
-            if old and progress:  # a bar that is not drawn has no start
+        def advance(motions: int, on_disk: bool = False) -> None:
+            if on_disk and progress:  # a disabled bar has no attribute initial
                 bar.initial += motions
             bar.update(motions)
 

@@ -1,4 +1,4 @@
-"""What a run will take, from a short trial of it: nothing is written."""
+"""Time, memory and disk space that a run takes, from a short trial of it: :func:`estimate`."""
 
 from __future__ import annotations
 
@@ -7,22 +7,36 @@ import time
 from dataclasses import dataclass, replace
 
 import msgspec
+import numpy as np
 
 from ...core.blocks import thread_count
-from .evaluate import look_at_materials
+from .evaluate import block_inputs, warn_of_materials
 from .records import Record, encoded
+from .rollers import roller_of
 from .runfile import Run
-from .store import made
+from .store import block_content
 
-#: motions of the trial, mapped and integrated: some tenths of a second
+#: Motions of the trial by method; they take some tenths of a second.
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
-#: bytes that a process holds after it: libraries, machine code, the trial
+#: Resident bytes of a process after the trial (libraries, compiled kernels, the trial itself), measured on Linux; used
+#: where the system does not tell.
 _USUAL_RESIDENT = 4e8
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Memory, time and bytes on disk of ``run``; ``trial`` motions were rolled to tell."""
+    """What a run takes.
+
+    Attributes
+    ----------
+    run : the run.
+    workers : threads that the time is for.
+    trial : motions that were rolled to measure it.
+    seconds : wall-clock time, s.
+    memory : largest resident memory, bytes.
+    stored : size of the store, bytes.
+    law_seconds : part of ``seconds`` that the laws of covers take, once; 0.0 of half-spaces.
+    """
 
     run: Run
     workers: int
@@ -30,12 +44,14 @@ class Estimate:
     seconds: float
     memory: float
     stored: float
+    law_seconds: float = 0.0
 
     def __str__(self) -> str:
         run = self.run
+        laws = f", {_duration(self.law_seconds)} of it once for the laws of covers" if self.law_seconds else ""
         return (
             f"{run.settings.n} motions in {run.blocks} blocks of {run.block}, method {run.method}\n"
-            f"time    about {_duration(self.seconds)} on {self.workers} workers\n"
+            f"time    about {_duration(self.seconds)} on {self.workers} workers{laws}\n"
             f"memory  about {self.memory / 1e6:.0f} MB at a time\n"
             f"disk    about {self.stored / 1e6:.1f} MB\n"
             f"from a trial of {self.trial} motions; nothing was written"
@@ -43,28 +59,58 @@ class Estimate:
 
 
 def estimate(run: Run, threads: int | None = None) -> Estimate:
-    """Roll some motions of the first block and scale up.
+    """Roll some motions of the first block and scale their time, memory and size up to the run.
 
-    They are rolled twice, and the second time counts: what a process does once, as to compile, to import and to fill
-    tables, would be scaled up with them.
+    They are rolled twice and the second time counts: what a process does once, as to compile, to import and to
+    compute laws, would be scaled up with them.  The laws of covers are added once.
+
+    Parameters
+    ----------
+    run : of :func:`read_run`.
+    threads : as of :func:`run_ensemble`.
+
+    Returns
+    -------
+    Estimate
+        Printed, it states size, time, memory and disk space.
     """
     workers = min(thread_count(threads), run.blocks)
-    look_at_materials(run)
+    warn_of_materials(run)
     trial = min(run.block, _TRIAL[run.method])
-    few = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
-    made(few, 0)
-    begun = time.perf_counter()
-    files, summary, _ = made(few, 0)
+    short = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
+    block_content(short, 0)
+    law_seconds = _time_of_laws(short)
+    start = time.perf_counter()
+    files, summary, _ = block_content(short, 0)
     record = len(encoded(Record("", {}, summary=summary)))
-    seconds = time.perf_counter() - begun
+    seconds = time.perf_counter() - start
     stored = sum(map(len, files.values())) * (run.settings.n / trial) + record * run.blocks
-    memory = _most_resident() + (workers * run.block - trial) * run.bytes_a_motion
+    memory = _peak_memory() + (workers * run.block - trial) * run.bytes_a_motion
     motions_a_worker = min(-(-run.blocks // workers) * run.block, run.settings.n)
-    return Estimate(run, workers, trial, seconds * motions_a_worker / trial, memory, stored)
+    seconds = seconds * motions_a_worker / trial + law_seconds
+    return Estimate(run, workers, trial, seconds, memory, stored, law_seconds)
 
 
-def _most_resident() -> float:
-    """Bytes that this process has held at most; where the system does not tell, what it takes on Linux."""
+def _time_of_laws(run: Run) -> float:
+    """Return the seconds that the laws of the covers of the first block take; 0.0 of half-spaces.
+
+    run: with covers of one thickness over l0, which have one law, or of many, which have some for each octave.
+    One law is computed, and its time multiplied.
+    """
+    from ...kernels.rows.thickness_axis import NODES
+    from ...materials.law.cover_rows import cover_rows
+
+    cover = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene().cover
+    if cover is None:
+        return 0.0
+    laws = NODES * np.unique(np.frexp(cover.thickness)[1]).size if cover.shape else 1
+    start = time.perf_counter()
+    cover_rows(cover.of_thickness(np.max(cover.thickness)))
+    return laws * (time.perf_counter() - start)
+
+
+def _peak_memory() -> float:
+    """Return the largest resident memory of this process so far, in bytes."""
     try:
         import resource
     except ImportError:
@@ -73,6 +119,7 @@ def _most_resident() -> float:
 
 
 def _duration(seconds: float) -> str:
+    """Return a duration in the largest unit of which it has at least two."""
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
         if seconds >= 2.0 * size:
             return f"{seconds / size:.1f} {unit}"

@@ -1,4 +1,4 @@
-"""One block of a run: draw its inputs, roll its motions."""
+"""One block of a run: its random inputs and its motions."""
 
 from __future__ import annotations
 
@@ -19,35 +19,47 @@ from ..sampling import points
 from .rollers import drive_of, measured_bands, roller_of
 from .runfile import START, Run
 
-#: motions whose starts are looked at: a share of 1 % is told to a third of it
-_DRAWS = 1000
+#: Number of motions whose starts are compared with the bands of the materials: the standard error of a share of 1 % is
+#: then a third of it.
+_STARTS = 1000
 
 
-def block_inputs(run: Run, block: int) -> dict[str, Floats]:
-    """Inputs of the motions of a block, by name."""
+def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
+    """Return the inputs of the motions of a block, by name, each (motions,), in the units of the run.
+
+    run, block: the run, and the number of the block.  most: number of motions at most; None: all of the block.
+    """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)
+    stop = stop if most is None else min(stop, start + most)
     return run.inputs.values(points(settings.design, settings.seed, settings.n, dimensions, start, stop, block))
 
 
 def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: int | None = 1) -> Ensemble:
-    """Motions of a run from given inputs, in the units of its file.
+    """Roll motions of a run from given inputs, in the units of its file.
 
     Parameters
     ----------
-    run : see :func:`read_run`.
-    values : of every uncertain input by name, a number or (n,).
-    count : motions, where all inputs are numbers.
+    run : of :func:`read_run`.
+    values : every uncertain input by name, a number or (n,).
+    count : number of motions, if all inputs are numbers.
     threads : as of :func:`viscoroll.ensemble`.
 
     Returns
     -------
     Ensemble
+        The motions, with the fields that the run needs.
 
     Raises
     ------
     ParameterError
         Inputs that a motion does not allow.
+
+    Examples
+    --------
+    >>> from viscoroll.io.runs import read_run, roll_inputs
+    >>> run = read_run("docs/examples/ensemble.toml")  # doctest: +SKIP
+    >>> roll_inputs(run, run.inputs.medians).V  # doctest: +SKIP
     """
     content, settings = run.inputs.filled(values), run.settings
     start = content["start"]
@@ -60,14 +72,20 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
 
 def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
-    """(inputs, motions) of a block."""
+    """Return (inputs by name, motions) of a block.
+
+    run, block: the run, and the number of the block.
+    """
     start, stop = run.edges(block)
     values = block_inputs(run, block)
     return values, roll_inputs(run, values, stop - start)
 
 
-def look_at_materials(run: Run) -> None:
-    """Warn of the share of motions that start where materials were not measured; and as the motion of medians does."""
+def warn_of_materials(run: Run) -> None:
+    """Warn of the share of motions that start outside the measured bands of the materials, or as their medians do.
+
+    run: in SI units with a start speed, or any other, of which the motion of the medians is rolled and may warn.
+    """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)
     if "V0" in content["start"]:
@@ -79,18 +97,17 @@ def look_at_materials(run: Run) -> None:
 
 
 def _share_outside(run: Run) -> float:
-    """Share of the first draws whose contact at the start is passed at a rate that a body's data do not hold.
+    """Return the share of motions whose transit frequency at the start is outside a measured band.
 
-    Rest is passed over: M is 0 there.
+    run: in SI units, whose first motions are looked at.  A start at rest is inside: M is 0 there.
     """
-    settings, stop = run.settings, min(run.edges(0)[1], _DRAWS)
-    drawn = points(settings.design, settings.seed, settings.n, len(run.inputs.dimensions), 0, stop, 0)
-    content = run.inputs.filled(run.inputs.values(drawn))
+    content = run.inputs.filled(block_inputs(run, 0, _STARTS))
     roller: Any = roller_of(run.path, content)
     V0 = np.abs(content["start"]["V0"])
     scene = roller.scene()
     lam = contact(scene, V0 / roller.scale["V"], delta=0.0, fields="lam").lam
-    rate = transit_frequency(V0, lam * getattr(roller, "like", roller).R / scene.kappa)
-    bands = measured_bands(run.path, content).values()
-    outside = [(rate < low) | (rate > high) for low, high in bands]
-    return float(np.mean(np.logical_or.reduce(np.broadcast_arrays(*outside)) & (V0 > 0.0)))
+    frequency = transit_frequency(V0, lam * getattr(roller, "like", roller).R / scene.kappa)
+    outside: Any = False
+    for low, high in measured_bands(run.path, content).values():
+        outside = outside | (frequency < low) | (frequency > high)
+    return float(np.mean(outside & (V0 > 0.0)))

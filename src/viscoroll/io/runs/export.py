@@ -1,4 +1,4 @@
-"""Results as one netCDF-4 file: the summaries, and every motion where they are kept, block by block."""
+"""Export of a store to one netCDF-4 file: :func:`export_netcdf`."""
 
 from __future__ import annotations
 
@@ -15,28 +15,36 @@ from .results import open_run
 from .store import MOTIONS
 from .verify import verify
 
-#: most that deflate makes of incompressible bytes, and room for a chunk in the index and for the head of an array
-_LARGER, _ENTRY, _HEAD = 1.002, 512, 1 << 16
-#: bytes at a time where the system reserves no room by itself
+#: Largest ratio of deflated to plain size, of bytes that cannot be compressed.
+_DEFLATE_RATIO = 1.002
+#: Bytes of a chunk in the index of an array, at most.
+_INDEX_ENTRY = 512
+#: Bytes of the head of an array, and of the file, at most.
+_HEAD = 1 << 16
+#: Bytes written at a time where the system cannot reserve disk space.
 _PIECE = 1 << 24
 
 
 def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None:
     """Write a finished store as netCDF-4: summaries at the root, all motions in the group "motions".
 
-    Memory does not grow with the number of motions.  While it is written, the file takes the room of its
-    content uncompressed, which is reserved first.
+    Memory does not grow with the number of motions.  While the file is written it takes the disk space of its
+    uncompressed content, which is reserved first.
 
     Parameters
     ----------
     store : folder of the results.
-    path : file to write; a file of that name is replaced when the new one is whole.
+    path : file to write; a file of that name is replaced when the new one is complete.
 
     Raises
     ------
     FileError
-        There is no finished store, or anything in it is damaged.
-        The file cannot be written, or there is no room for it.
+        There is no finished store, or a file in it is damaged; the netCDF file cannot be written, or the disk is full.
+
+    Examples
+    --------
+    >>> from viscoroll.io.runs import export_netcdf
+    >>> export_netcdf("results.zarr", "results.nc")  # doctest: +SKIP
 
     Notes
     -----
@@ -52,13 +60,17 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 
 
 def _append_motions(store: Path, path: Path) -> None:
+    """Copy the motions, chunk by chunk, into the group "motions" of a netCDF-4 file.
+
+    store: folder of the results.  path: the file, which is there already.
+    """
     import h5netcdf
 
     zarr = import_extra("zarr", "zarr", "runs")
 
     source = zarr.open_group(store, mode="r", path=MOTIONS, use_consolidated=False)
     arrays = dict(source.arrays())
-    _reserve(path, sum(map(_room, arrays.values())) + _HEAD)
+    _reserve(path, sum(map(_largest_size, arrays.values())) + _HEAD)
     with h5netcdf.File(path, "a") as file:
         target = file.create_group(MOTIONS)
         target.attrs.update(dict(source.attrs))
@@ -72,21 +84,25 @@ def _append_motions(store: Path, path: Path) -> None:
             )  # fmt: skip
             variable.attrs.update(attrs)
             for start in range(0, array.shape[0], array.chunks[0]):
-                variable[start : start + array.chunks[0]] = array[start : start + array.chunks[0]]
+                rows = slice(start, start + array.chunks[0])
+                variable[rows] = array[rows]
 
 
-def _room(array: Any) -> int:
-    """Bytes that an array takes at most, whatever its values."""
+def _largest_size(array: Any) -> int:
+    """Return the bytes that an array of zarr takes in the file at most, whatever its values."""
     chunk = array.dtype.itemsize * math.prod(array.chunks)
-    return array.nchunks * int(_LARGER * chunk + _ENTRY) + _HEAD
+    return array.nchunks * int(_DEFLATE_RATIO * chunk + _INDEX_ENTRY) + _HEAD
 
 
-def _reserve(path: Path, room: int) -> None:
-    """Lengthen a file: HDF5 2.0 may crash on a full disk, so it must not meet one.  It cuts off what it leaves."""
+def _reserve(path: Path, size: int) -> None:
+    """Lengthen a file by ``size`` bytes, so that HDF5, which may crash on a full disk, does not meet one.
+
+    HDF5 cuts off at its end what it did not use.  Raises OSError if the disk is full.
+    """
     with path.open("r+b") as file:
         start = file.seek(0, os.SEEK_END)
         if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(file.fileno(), start, room)
+            os.posix_fallocate(file.fileno(), start, size)
             return
-        for written in range(0, room, _PIECE):
-            file.write(bytes(min(_PIECE, room - written)))
+        for written in range(0, size, _PIECE):
+            file.write(bytes(min(_PIECE, size - written)))

@@ -1,4 +1,4 @@
-"""Which run a store belongs to, and whether the same run with more motions may go on with its blocks."""
+"""Identity of a store: the run that it belongs to, and whether the same run with more motions may extend it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from ...motion.export import provenance
 from .records import Record
 from .runfile import Run
 
+#: Last words of an error about the folder of a store.
 ADVICE = "give another folder with -o, or delete this one"
 
 
 def about(run: Run) -> dict[str, Any]:
-    """What a store says of itself: run file, seed, versions."""
+    """Return the attributes of a store: title, run file, seed, versions and size of the run."""
     return provenance("Ensemble of motions of a viscoelastic cylinder") | {
         "versions": json.dumps(_software()),
         "motions": run.settings.n,
@@ -36,42 +37,32 @@ def about(run: Run) -> dict[str, Any]:
 
 
 def _software() -> dict[str, str]:
-    """What decides about the bits, beside the run and the processor."""
+    """Return the versions of the packages that the bits of a result depend on, and a digest of the kernels."""
     import numba
     import scipy
 
     from ...kernels.compile.cache import sources_digest
 
-    return {
-        "viscoroll": __version__, "kernels": sources_digest(), "numpy": np.__version__, "scipy": scipy.__version__,
-        "numba": numba.__version__,
-    }  # fmt: skip
+    modules = {module.__name__: module.__version__ for module in (np, scipy, numba)}
+    return {"viscoroll": __version__, "kernels": sources_digest()} | modules
 
 
 def identity(run: Run) -> str:
-    """SHA-256 of what all blocks of a run have in common, whatever their number, and of the software.
+    """Return the SHA-256 of all that the blocks of a run depend on, whatever their number, and of the software.
 
-    Two runs that differ in ``n`` alone share it, unless they draw a Latin hypercube, whose strata are of all motions,
-    or ``n`` changes their method or the size of their blocks.
+    run: two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata
+    depend on the number of motions, or ``n`` changes their method or the size of their blocks.
     """
-    of_all = run.settings.n if run.settings.design == "latin" else None
-    text = json.dumps([run.digest, run.method, run.block, of_all, _software()])
+    n = run.settings.n if run.settings.design == "latin" else None
+    text = json.dumps([run.digest, run.method, run.block, n, _software()])
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def refuse_another(root: Path, run: Run, record: Record) -> None:
-    """Refuse a store that is neither of this run nor of the same with fewer motions.
+    """Raise FileError if a store is neither of a run nor of the same run with fewer motions.
 
-    Parameters
-    ----------
-    root : the folder.
-    run : that is to be worked on.
-    record : of the store: "start", or "end", or, where both are lost, of any block, which does not tell ``n``.
-
-    Raises
-    ------
-    FileError
-        Another run file, other versions of the software, or a change of ``n`` that the blocks do not allow.
+    root: folder of the store.  run: the run.
+    record: of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
     """
     of_a_block = record.summary is not None
     if record.run == identity(run) and (of_a_block or record.motions == run.settings.n):
@@ -82,12 +73,15 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
     before = replace(run, settings=msgspec.structs.replace(run.settings, n=max(record.motions, 1)))
     if of_a_block or record.run != identity(before):
         raise FileError(root, f"holds the results of another run file: {ADVICE}")
-    if problem := _no_growth(before, run):
+    if problem := _no_extension(before, run):
         raise FileError(root, f"holds {record.motions} motions of this run file, {problem}, or {ADVICE}")
 
 
-def _no_growth(before: Run, run: Run) -> str:
-    """Why a store of the one run does not become one of the other, and what to do; "" where it does."""
+def _no_extension(before: Run, run: Run) -> str:
+    """Return why a store cannot be extended, and what to change in the run file; "" if it can.
+
+    before: the run of the store.  run: the same with another ``n``.
+    """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:
         return f"which may become more, not fewer: set n >= {before.settings.n}"

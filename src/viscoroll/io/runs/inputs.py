@@ -1,7 +1,7 @@
-"""Uncertain inputs: points of the unit cube -> a column of values for every input, and sections with these in them.
+"""Uncertain inputs: values of each input at points of the unit cube, and the sections of a run file with these values.
 
-An input is a :class:`Distribution`, or a column of a joint sample.  Each distribution is one dimension of the cube,
-and so is each file: its columns share the row that is drawn.
+An input is a :class:`Distribution`, or a column of a joint sample.  Each distribution is one dimension of the cube, and
+so is each file: its columns share the row that is drawn.
 """
 
 from __future__ import annotations
@@ -15,13 +15,21 @@ import numpy as np
 from ...core.array_types import Floats
 from ..sampling import LARGEST, SMALLEST
 
-#: in place of a time of a drive: that before once more, so that the value jumps
+#: Word in place of a time of a drive: the same time again, so that the value jumps.
 SAME = "same"
+#: Share of the draws at either end that a flow map of the start speeds does not reach: those few are integrated.
+_TAIL = 1e-6
 
 
 @dataclass(frozen=True)
 class Input:
-    """The place of an uncertain number in a file: a key of a section."""
+    """An uncertain number of a run file.
+
+    Attributes
+    ----------
+    name : of the input, as in the columns of the results.
+    section, key : where it stands in the file.
+    """
 
     name: str
     section: str
@@ -30,24 +38,32 @@ class Input:
 
 @dataclass(frozen=True)
 class Distribution:
-    """A frozen distribution of scipy.stats, cut to [low, high]."""
+    """A distribution of scipy.stats, truncated to an interval.
+
+    Attributes
+    ----------
+    law : frozen distribution.
+    low, high : ends of the interval, which may be infinite.
+    """
 
     law: Any
     low: float
     high: float
 
-    @np.errstate(all="ignore")  # what overflows is infinite, which a motion refuses
+    @np.errstate(all="ignore")  # an overflow is infinite, which a motion refuses
     def ppf(self, u: Floats) -> Floats:
-        """Inverse of the distribution function; from above where that keeps the digits of a cut tail."""
-        if (self.low, self.high) == self.law.support():
-            return self.law.ppf(u)
-        if self.law.cdf(self.low) > 0.5:
-            top, bottom = self.law.sf(self.low), self.law.sf(self.high)
-            values = self.law.isf(bottom + (1.0 - u) * (top - bottom))
-        else:
-            bottom, top = self.law.cdf(self.low), self.law.cdf(self.high)
-            values = self.law.ppf(bottom + u * (top - bottom))
-        return np.clip(values, self.low, self.high)  # ppf and cdf are inverse only to rounding
+        """Return the values at which the truncated distribution function is ``u``, in (0, 1).
+
+        An upper tail is inverted from above, by the survival function, so that it keeps its digits.
+        """
+        law = self.law
+        if (self.low, self.high) == law.support():
+            return law.ppf(u)
+        upper = law.cdf(self.low) > 0.5
+        below, inverse = (law.sf, law.isf) if upper else (law.cdf, law.ppf)
+        first, last = (below(end) for end in ((self.high, self.low) if upper else (self.low, self.high)))
+        # ppf and cdf are inverse to rounding only
+        return np.clip(inverse(first + ((1.0 - u) if upper else u) * (last - first)), self.low, self.high)
 
 
 @dataclass(frozen=True)
@@ -56,11 +72,11 @@ class Inputs:
 
     Attributes
     ----------
-    content : sections of the file, with an :class:`Input` in place of every uncertain number.
-    random : distributions, a dimension each.
-    joint : columns of each file, a dimension: rows are drawn with replacement.
-    correlated, mixing : names of the distributions under the Gaussian copula, and the Cholesky
-        factor of their correlation matrix.
+    content : sections of the file, with an :class:`Input` in place of each uncertain number.
+    random : name -> distribution; one dimension of the cube each.
+    joint : file -> its columns by name; one dimension each: rows are drawn with replacement.
+    correlated : names of the distributions under the Gaussian copula.
+    mixing : Cholesky factor of their correlation matrix, (correlated, correlated); None without correlation.
     """
 
     content: dict[str, Any]
@@ -81,64 +97,75 @@ class Inputs:
 
     @property
     def medians(self) -> dict[str, Any]:
-        """Every input in the middle of its draws; of a file the row in its middle."""
-        return {name: each.item() for name, each in self.values(np.full((len(self.dimensions), 1), 0.5)).items()}
+        """Median of each input; of a file the row in its middle."""
+        middle = self.values(np.full((len(self.dimensions), 1), 0.5))
+        return {name: values.item() for name, values in middle.items()}
 
     def values(self, points: Floats) -> dict[str, Floats]:
-        """Every input (n,) at ``points`` (dimensions, n) in (0, 1)."""
+        """Return the value of each input, by name, (n,).
+
+        points: (dimensions, n), in (0, 1).
+        """
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
             from scipy.special import ndtr, ndtri
 
             normal = [ndtri(rows[name]) for name in self.correlated]
-            # a sum in a fixed order, whatever the number of points
+            # a sum in a fixed order, so that bits do not depend on the number of points
             mixed: Any = sum(part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal, strict=True))
             rows |= dict(zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST), strict=True))
         values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
-        for name, columns in self.joint.items():
+        for file, columns in self.joint.items():
             size = next(iter(columns.values())).size
-            picked = np.minimum((rows[name] * size).astype(np.int64), size - 1)
-            values |= {each: column[picked] for each, column in columns.items()}
+            row = np.minimum((rows[file] * size).astype(np.int64), size - 1)
+            values |= {name: column[row] for name, column in columns.items()}
         return values
 
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
-        """The least and the largest draw of an input, or those of these shares."""
+        """Return the smallest and the largest draw of an input, (2,).
+
+        name: of the input.  low, high: shares of the distribution to take as its ends.
+        """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
         column = next(columns[name] for columns in self.joint.values() if name in columns)
         return np.array([column.min(), column.max()])
 
     def corners(self) -> dict[str, Floats]:
-        """Each input at its one end while all others are at their other, and all at the same."""
+        """Return extreme inputs, (n,): each input at one end and all others at the other, and all at one end."""
         names = [*self.random, *(name for columns in self.joint.values() if len(columns) == 1 for name in columns)]
-        own = np.hstack([np.eye(len(names), dtype=bool), np.zeros((len(names), 1), dtype=bool)])
-        ends = {name: self.ends(name)[np.r_[one, ~one].astype(int)] for name, one in zip(names, own, strict=True)}
+        at_low = np.eye(len(names), len(names) + 1, dtype=bool)
+        ends = {name: self.ends(name)[np.r_[row, ~row].astype(int)] for name, row in zip(names, at_low, strict=True)}
         return self.medians | ends
 
     def largest(self, name: str) -> float:
-        """The largest size of a start speed, but for a millionth of the draws at each end."""
-        given = self.content["start"][name]
-        return float(np.abs(self.ends(name, 1e-6, 1.0 - 1e-6) if isinstance(given, Input) else given).max())
+        """Return the largest magnitude of a start speed, apart from a millionth of the draws at each end.
+
+        name: "V0" or "omega0".
+        """
+        start = self.content["start"][name]
+        return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())
 
     def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """The sections with these values in place of the inputs."""
+        """Return the sections with ``values``, by name, in place of the inputs."""
         return _filled(self.content, values)
 
 
 def _filled(part: Any, values: Mapping[str, Any]) -> Any:
+    """Return a part of the content with values in place of its inputs; in a list "same" repeats the number before."""
     if isinstance(part, Input):
         return values[part.name]
     if isinstance(part, dict):
-        return {key: _filled(each, values) for key, each in part.items()}
+        return {key: _filled(member, values) for key, member in part.items()}
     if not isinstance(part, list):
         return part
-    found: list[Any] = []
-    for each in part:
-        found.append(found[-1] if found and each == SAME else _filled(each, values))
-    return found
+    numbers: list[Any] = []
+    for member in part:
+        numbers.append(numbers[-1] if numbers and member == SAME else _filled(member, values))
+    return numbers
 
 
 def inputs_in(part: Any) -> list[Input]:
-    """The uncertain numbers within a section, or in all."""
-    parts = part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
-    return [part] if isinstance(part, Input) else [each for one in parts for each in inputs_in(one)]
+    """Return the inputs within a part of the content of a run file."""
+    members = part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
+    return [part] if isinstance(part, Input) else [found for member in members for found in inputs_in(member)]

@@ -1,7 +1,7 @@
-"""Records: small sealed files that say what is done.
+"""Records: small sealed files that state which parts of a store are complete.
 
-A record holds the SHA-256 of every file that belongs to it and is written after them.  So a piece of
-work is done exactly where its record is whole and every file that it names has the digest it states.
+A record holds the SHA-256 of each file that belongs to it and is written after them.  So a part is complete exactly if
+its record is undamaged and each file that it names has the digest that it states.
 """
 
 from __future__ import annotations
@@ -19,19 +19,21 @@ from ...core.errors import FileError
 from ...core.files import seal, seal_matches, write_bytes
 from ...motion.summaries import Summary
 
-#: folder of the records in a store
+#: Folder of the records in a store.
 RECORDS = "records"
+#: Level of compression of records: the lowest one at which zlib matches lazily.
+_LEVEL = 4
 
 
 class Record(msgspec.Struct):
-    """What was done.
+    """A complete part of a store: its metadata ("start"), a block, or its summaries ("end").
 
     Attributes
     ----------
-    run : digest of the run that it is a part of, whatever its number of motions.
+    run : identity of the run, whatever its number of motions.
     files : path below the store -> SHA-256.
     motions : of the block, or, in the records "start" and "end", of the run.
-    about : what the run is, in the record "start".
+    about : attributes of the run, in the record "start".
     summary : of the motions, in the record of a block.
     """
 
@@ -43,27 +45,29 @@ class Record(msgspec.Struct):
 
 
 def encoded(record: Record) -> bytes:
-    """The bytes of a record."""
-    return seal(zlib.compress(msgspec.msgpack.encode(record, enc_hook=_from_array), 4))
+    """Return the bytes of a record: MessagePack, compressed and sealed."""
+    return seal(zlib.compress(msgspec.msgpack.encode(record, enc_hook=_encode_array), _LEVEL))
 
 
 def read_record(path: Path) -> Record | None:
-    """The record, or None where it is missing or damaged in any way."""
+    """Return the record in a file, or None if it is missing or damaged in any way."""
     try:
         stored = path.read_bytes()
         if not seal_matches(stored):
             return None
-        content = zlib.decompressobj().decompress(stored)  # the seal is what it leaves over
-        return msgspec.msgpack.decode(content, type=Record, dec_hook=_to_array)
+        content = zlib.decompressobj().decompress(stored)  # the seal behind it is left over
+        return msgspec.msgpack.decode(content, type=Record, dec_hook=_decode_array)
     except (OSError, ValueError, zlib.error, msgspec.DecodeError):
         return None
 
 
-def _from_array(array: np.ndarray) -> list[Any]:
+def _encode_array(array: np.ndarray) -> list[Any]:
+    """Return the type and the bytes of an array, which MessagePack has no type for."""
     return [array.dtype.str, array.tobytes()]
 
 
-def _to_array(kind: Any, value: Any) -> np.ndarray:
+def _decode_array(kind: Any, value: Any) -> np.ndarray:
+    """Return the array of :func:`_encode_array`; raise ValueError for another type.  ``kind``: required by msgspec."""
     name, content = value
     if name not in ("<i4", "<i8"):
         raise ValueError("no such array in a record")
@@ -71,12 +75,12 @@ def _to_array(kind: Any, value: Any) -> np.ndarray:
 
 
 def damaged(root: Path, record: Record) -> list[str]:
-    """Files of a record that are missing or differ from what it states."""
+    """Return the files of a record, below ``root``, that are missing or differ from their digest."""
     return [name for name, digest in record.files.items() if _digest(root / name) != digest]
 
 
 def _digest(path: Path) -> str | None:
-    """SHA-256 of a file; None where it cannot be read."""
+    """Return the SHA-256 of a file; None if it cannot be read."""
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
@@ -84,10 +88,10 @@ def _digest(path: Path) -> str | None:
         return None
 
 
-def put(root: Path, files: dict[str, bytes]) -> dict[str, str]:
-    """Write files below ``root``, each whole or not at all, and return the digests of what was meant.
+def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
+    """Write files below ``root``, each whole or not at all, and return their digests by name.
 
-    A file that is there with this content is left alone.  Raises FileError.
+    files: path below root -> content.  A file that has this content already is left alone.  Raises FileError.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     for name, content in files.items():
@@ -98,14 +102,14 @@ def put(root: Path, files: dict[str, bytes]) -> dict[str, str]:
 
 
 def refuse_unreadable(root: Path) -> None:
-    """Raise FileError where the folder of a store, or that of its records, may not be read."""
+    """Raise FileError if the folder of a store, or that of its records, may not be read."""
     for folder in (root, root / RECORDS):
         if folder.is_dir() and not os.access(folder, os.R_OK | os.X_OK):
             raise FileError(folder, "cannot be read (Permission denied)")
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those above it, unless they are there; raises FileError."""
+    """Create a folder, and those above it, unless they exist; raise FileError if that fails."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:

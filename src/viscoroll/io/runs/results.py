@@ -1,4 +1,4 @@
-"""A finished store as a result: :func:`open_run`, which says itself, and gives datasets, tables and figures."""
+"""A finished store as a result that prints itself and gives datasets, tables and figures: :func:`open_run`."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-_PARTS = ("mean", "std", "min", "max")
+#: Moments of a quantity in the summaries, as the ends of their names.
+_MOMENTS = ("mean", "std", "min", "max")
 
 
 class RunResults(Result):
-    """Results of a run in a folder; what :func:`open_run` gives back.
+    """Results of a run in a folder, as :func:`open_run` returns them.
 
     Attributes
     ----------
@@ -39,51 +40,58 @@ class RunResults(Result):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The quantities that were summed up."""
+        """Names of the summarised quantities."""
         return tuple(str(name).removesuffix("_mean") for name in self.summaries if str(name).endswith("_mean"))
 
     @property
     def run_file(self) -> str:
-        """The text of the run file."""
+        """Text of the run file."""
         return str(self.summaries.attrs["run_file"])
 
+    @property
+    def _motions_folder(self) -> Path:
+        """Folder of the motions, which exists if they are kept."""
+        return self.path / MOTIONS
+
     def motions(self) -> xr.Dataset:
-        """Every motion with its inputs, over (motion, t), read as it is needed.
+        """Open every motion with its inputs, over (motion, t); values are read when they are needed.
 
         Raises
         ------
         FileError
-            Where the run kept summaries alone.
+            If the run kept summaries alone.
         """
         import xarray as xr
 
-        if not (self.path / MOTIONS).is_dir():
+        if not self._motions_folder.is_dir():
             raise FileError(self.path, 'holds no motions, summaries alone: run it with keep = "all"')
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
     def to_xarray(self) -> xr.Dataset:
-        """The summaries: moments, quantiles, histograms, and how the motions ended."""
+        """Return the summaries: moments, quantiles, histograms, and how the motions ended."""
         return self.summaries
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row for each quantity and time: mean, std, min, max, and a column for each quantile.
+        """Return a row for each quantity and time: mean, std, min, max, and a column for each quantile.
 
-        What has a unit bears it in its name, as "V [m s-1]", the first level of the index.
+        A unit is part of the name of a quantity, as in "V [m s-1]", the first level of the index.
         """
         import pandas as pd
 
         data, tables = self.summaries, []
         time = column_name("t", unit_of(data["t"].attrs))
         for name in self.names:
-            columns: dict[Any, Any] = {part: np.atleast_1d(data[f"{name}_{part}"].values) for part in _PARTS}
+            columns: dict[Any, Any] = {moment: np.atleast_1d(data[f"{name}_{moment}"].values) for moment in _MOMENTS}
             quantiles = zip(data["quantile"].values, data[f"{name}_quantiles"].values, strict=True)
             columns |= {float(level): np.atleast_1d(values) for level, values in quantiles}
-            t = data["t"].values if data[f"{name}_mean"].ndim else [np.nan]
-            named = column_name(name, unit_of(data[f"{name}_mean"].attrs))
-            tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product([[named], t], names=["quantity", time])))
+            mean = data[f"{name}_mean"]
+            t = data["t"].values if mean.ndim else [np.nan]
+            rows = [[column_name(name, unit_of(mean.attrs))], t]
+            tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product(rows, names=["quantity", time])))
         return pd.concat(tables)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return the title and the rows that print this result."""
         data = self.summaries
         t, about = data["t"], data.attrs
         rows = [
@@ -92,17 +100,18 @@ class RunResults(Result):
             SummaryRow("t", f"{t.size} times to {float(t[-1]):.6g}", unit_of(t.attrs)),
         ]
         for name in self.names:
-            mean, std = (np.atleast_1d(data[f"{name}_{part}"].values)[-1] for part in ("mean", "std"))
-            at = "at the end: " if data[f"{name}_mean"].ndim else ""
-            rows.append(SummaryRow(name, f"{at}mean {mean:.6g}, std {std:.3g}", unit_of(data[f"{name}_mean"].attrs)))
+            mean, std = (data[f"{name}_{moment}"] for moment in ("mean", "std"))
+            at = "at the end: " if mean.ndim else ""
+            last = f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}"
+            rows.append(SummaryRow(name, last, unit_of(mean.attrs)))
         ended = zip(data["status"].values, data["ended"].values, strict=True)
         rows += [SummaryRow("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
-        kept = "every motion" if (self.path / MOTIONS).is_dir() else "summaries"
+        kept = "every motion" if self._motions_folder.is_dir() else "summaries"
         return f"Results of a run of {len(self)} motions", [*rows, SummaryRow("kept", kept)]
 
 
 def open_run(path: str | PathLike[str]) -> RunResults:
-    """The results of a finished run.
+    """Open the results of a finished run.
 
     Parameters
     ----------
@@ -116,15 +125,20 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     Raises
     ------
     FileError
-        If there is no results store, it is not finished, or its summaries are damaged.
+        If the folder is no results store, is not finished, or its summaries are damaged.
     MissingDependencyError
         If zarr is not installed.
+
+    Examples
+    --------
+    >>> from viscoroll.io.runs import open_run
+    >>> open_run("results.zarr").to_pandas()  # doctest: +SKIP
     """
     import xarray as xr
 
     import_extra("zarr", "zarr", "runs")
     root = Path(path)
     start = start_of(root)
-    if found := problems(root, "end", start.run, start.motions):
-        raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
+    if faults := problems(root, "end", start.run, start.motions):
+        raise FileError(path, f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
     return RunResults(root, xr.open_zarr(root, chunks=None))

@@ -1,4 +1,4 @@
-"""What rolls in a block of a run, and what drives it: sections whose numbers are those of its motions."""
+"""Roller and drive of the motions of a block, from sections of a run file whose numbers may be arrays."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from typing import Any, Self
 import numpy as np
 
 from ...contact_law.parameters import Parameters, Roller
+from ...core.array_types import Floats
 from ...core.checks import check_array
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
 from ...cylinder import Cylinder, contact_length, scene_of
-from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
+from ...materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
 from ..config import make_roller
@@ -25,12 +26,15 @@ from ..config import make_roller
 
 @dataclass(frozen=True, eq=False)
 class Rollers(Roller):
-    """Cylinders each of a material of its own, in SI units.
+    """Cylinders that have a material each, in SI units.
 
-    like : their numbers, with one of their materials.
-    law, E_prime, T : what they deform by, or bodies of which one has a thickness; times over T.  Where each has a T of
-        its own times are counted in s: gamma does nothing but scale time (Eq. (22)), so that gamma/T in its place makes
-        it seconds, the same for all.
+    Attributes
+    ----------
+    like : a cylinder with their numbers, which may be arrays, and one of their materials.
+    law : series, bodies or alphas of their materials; the Pair where a body is a cover.
+    E_prime : contact modulus, Pa, a number or (n,).
+    T : unit of time of the law, s.  If each motion has its own, (n,), times are counted in s: gamma only scales time
+        (Eq. (22)), and gamma/T in place of gamma makes its unit the second for all motions.
     """
 
     like: Cylinder
@@ -45,12 +49,12 @@ class Rollers(Roller):
 
     @cached_property
     def _scene(self) -> Parameters:
-        one = self.like
-        law = self.law
+        """The dimensionless parameters."""
+        one, law = self.like, self.law
         if isinstance(law, Pair):
             law = law.cover(contact_length(one.R, one.load, self.E_prime))
-        found = scene_of(one.R, one.m, one.load, self.E_prime, self.T, law, one.mu, one.j)
-        return found.replace(gamma=found.gamma / self.T) if self.seconds else found
+        scene = scene_of(one.R, one.m, one.load, self.E_prime, self.T, law, one.mu, one.j)
+        return scene.replace(gamma=scene.gamma / self.T) if self.seconds else scene
 
     def scene(self) -> Parameters:
         return self._scene
@@ -60,21 +64,27 @@ class Rollers(Roller):
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        found = Scale(self.like.R, self.T, self.like.load, self.like.m)
+        """SI value of 1 of each dimensionless quantity."""
+        scale = Scale(self.like.R, self.T, self.like.load, self.like.m)
         if self.seconds:
-            found |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {"x": found["V"], "angle": found["omega"]}
-        return found
+            scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {"x": scale["V"], "angle": scale["omega"]}
+        return scale
 
 
 def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
-    """What rolls, one or one a motion; raises ParameterError, of a material FileError."""
+    """Return the roller of the motions of a block: a scene, a cylinder, or a cylinder for each motion.
+
+    path: of the run file, for errors and the files that it names.
+    content: its sections, with numbers or arrays (n,) in place of the inputs.
+    Raises ParameterError; of a material FileError.
+    """
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
     one = make_roller(path, content, {name: typical for name, (typical, _) in bodies.items()})
     if not isinstance(one, Cylinder):
         return one
-    each = {name: body for name, (_, body) in bodies.items()}
-    if any(isinstance(body, Solid) for body in each.values()):
-        pair = Pair(each.get("material") or one.pair.cylinder, each.get("base"), one.plane)
+    solids = {name: solid for name, (_, solid) in bodies.items()}
+    if any(isinstance(solid, Solid) for solid in solids.values()):
+        pair = Pair(solids.get("material") or one.pair.cylinder, solids.get("base"), one.plane)
         return Rollers(one, pair.law if pair.covered is None else pair, pair.E_prime, pair.T_ref)
     if np.ndim(one.T_epsilon):
         return Rollers(one, one.T_epsilon / one.T_sigma, one.E_prime, one.T_epsilon)
@@ -82,33 +92,38 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
 
 
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
-    """What drives the motions, as keywords of ``ensemble``."""
-    return {
-        name: _schedule(name, **given) if isinstance(given, dict) else given
-        for name, given in content.get("drive", {}).items()
-    }
+    """Return the loads of the section [drive] as keywords of :func:`viscoroll.ensemble`.
+
+    content: sections with numbers or arrays (n,).  Raises ParameterError.
+    """
+    drive = content.get("drive", {})
+    return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}
 
 
 def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
+    """Return a piecewise linear load; raise ParameterError that names it.
+
+    name: of the load.  times, values: of its corners, each a number or (n,).
+    """
     try:
-        return Schedule(*(np.stack(np.broadcast_arrays(*each), axis=-1) for each in (times, values)))
+        return Schedule(*(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values)))
     except ParameterError as error:
         raise ParameterError(name, error.value, error.allowed, f"{name}: {error}") from error
 
 
-def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid]:
-    """One of its draws, and it."""
-    if isinstance(given, Material):
-        return given, given
-    first = _first(given)
-    typical = materials_of(path, {name: first})[name]
-    series = series_of(path, name, given)
-    series = typical.prony if series is None else series
-    if np.ndim(given.get("temperature")):
-        shift = shifts_of(path, {name: first})[name]
-        series = series.slower([shift(each) for each in given["temperature"]])
-    E, nu = given.get("E", typical.E), given.get("nu", typical.nu)
-    thickness = given.get("thickness", typical.thickness)
+def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Solid]:
+    """Return (the material of the first motion, the material of all motions, which differ if it is a Solid).
+
+    path: of the run file.  name: "material" or "base".  section: its content, or the material if all is certain.
+    """
+    if isinstance(section, Material):
+        return section, section
+    first = _first(section)
+    typical = parse_materials(path, {name: first})[name]
+    series = parse_series(path, name, section) or typical.prony
+    if (factors := _time_factors(path, name, section)) is not None:
+        series = series.slower(factors)
+    E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical, typical
     if thickness is not None:
@@ -118,36 +133,38 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid
 
 
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
-    """Angular frequencies between which the data of each body hold, at the temperature of each motion.
+    """Return the band of angular frequencies that each body was measured in, at the temperature of each motion.
 
-    Parameters
-    ----------
     path : of the run file.
     content : its sections with the inputs of some motions.
-
-    Returns
-    -------
-    dict
-        What was measured of a body -> lowest and highest frequency, rad/s, numbers or one a motion; of bodies that
-        tell.
+    Returns the record of a measurement -> (lowest, highest frequency), rad/s, numbers or (n,); bodies without a record
+    are left out.
     """
-    found = {}
+    bands: dict[Measured, Any] = {}
     for name in SECTIONS:
-        given = content.get(name)
-        if given is None or (record := _body(path, name, given)[0].measured) is None:
+        section = content.get(name)
+        if section is None or (record := _body(path, name, section)[0].measured) is None:
             continue
-        factor: Any = 1.0
-        if isinstance(given, dict) and np.ndim(given.get("temperature", 0.0)):  # the record is at the first of them
-            shift = shifts_of(path, {name: _first(given)})[name]
-            factor = np.array([shift(each) for each in given["temperature"]])
-        found[record] = record.low / factor, record.high / factor
-    return found
+        factors = None if isinstance(section, Material) else _time_factors(path, name, section)
+        bands[record] = tuple(end if factors is None else end / factors for end in (record.low, record.high))
+    return bands
+
+
+def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
+    """Return the factors of the relaxation times at the temperature of each motion, (n,), over those at the first.
+
+    path, name, section: as of :func:`_body`.  None if the temperature is certain.
+    """
+    if not np.ndim(section.get("temperature", 0.0)):
+        return None
+    shift = parse_shifts(path, {name: _first(section)})[name]
+    return np.array([shift(temperature) for temperature in section["temperature"]])
 
 
 def _first(part: Any) -> Any:
-    """A section with the first of each of its arrays."""
+    """Return a part of a section with the first element of each of its arrays."""
     if isinstance(part, dict):
-        return {key: _first(each) for key, each in part.items()}
+        return {key: _first(member) for key, member in part.items()}
     if isinstance(part, list):
-        return [_first(each) for each in part]
+        return [_first(member) for member in part]
     return float(part[0]) if isinstance(part, np.ndarray) else part

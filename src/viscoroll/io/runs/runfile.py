@@ -6,7 +6,7 @@
     V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
     omega0 = 0.5
 
-    [drive]                        # if wanted
+    [drive]                        # optional
     torque = { times = [0.0, 1e-3, "same"], values = [0.0, 0.02, 0.0] }
 
     [run]
@@ -14,12 +14,15 @@
     seed = 7
     t = [1e-3, 2e-3, 3e-3]
 
-All dimensionless, or all in SI units with [cylinder], and perhaps [material] and [base].  All keys: docs/ensembles.md.
+All numbers are dimensionless, or, with [cylinder] and perhaps [material] and [base], in SI units.  All keys are in
+docs/ensembles.md.
 """
 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -31,7 +34,7 @@ import msgspec
 from ...core.array_types import Floats
 from ...core.errors import FileError, ParameterError, check_names
 from ...core.sections import read_toml, section_error
-from ...materials.file import as_toml, materials_of
+from ...materials.material_toml import material_as_toml, parse_materials
 from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
 from ...motion.drive import Drive
@@ -45,33 +48,40 @@ from .inputs import Inputs, inputs_in
 from .rollers import Rollers, drive_of, roller_of
 from .uncertain import correlated, inputs_of
 
-#: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
-_MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
+#: Largest number of motions of a block, by method: some seconds of work.
+_MOST_MOTIONS = {"flow": 1 << 20, "integrate": 1 << 16}
+#: Largest size of a block in memory, bytes.
+_MOST_BYTES = 1 << 27
+#: Keys of the section [start].
 START = ("V0", "omega0")
-#: settings that the digest leaves out: a store may grow with n, and its identity has the method and block that result
+#: Settings that the digest leaves out: a store may grow with n, and its identity contains the resulting method and
+#: block.
 _NOT_IN_DIGEST = ("n", "method", "block")
 
+#: A positive whole number.
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
+#: A list of numbers that is not empty.
 Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
+#: A number in [0, 1].
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
 
 
 class StartSection(msgspec.Struct):
-    """[start]: one is left out where [drive] prescribes it."""
+    """[start]: start speeds; one that [drive] prescribes is left out."""
 
     V0: float | None = None
     omega0: float | None = None
 
 
 class CourseSection(msgspec.Struct):
-    """{ times = [...], values = [...] }."""
+    """{ times = [...], values = [...] }: a piecewise linear load."""
 
     times: Numbers
     values: Numbers
 
 
 class DriveSection(msgspec.Struct):
-    """[drive]."""
+    """[drive]: loads, and prescribed speeds."""
 
     force: float | CourseSection | None = None
     torque: float | CourseSection | None = None
@@ -83,7 +93,7 @@ class DriveSection(msgspec.Struct):
 
 
 class TimesSection(msgspec.Struct):
-    """{ low, high, count, spacing }."""
+    """{ low, high, count, spacing }: equally spaced output times, or logarithms of these."""
 
     low: float
     high: float
@@ -94,16 +104,16 @@ class TimesSection(msgspec.Struct):
 class RunSection(msgspec.Struct, frozen=True):
     """[run].
 
-    n : motions, up to 1e12.
-    t : output times, in s with [cylinder].
-    seed : of every draw.
-    design : how inputs are drawn: each by itself, in a Latin hypercube, or along Sobol's sequence.
-    method, rtol, rest, unsteady, rested : as of :func:`viscoroll.ensemble`; with [cylinder] in SI units.
-    block : motions a block; the default fits the memory.
-    keep : summaries alone, or every motion with its inputs.
-    fields : of the motions that are kept.
+    n : number of motions, up to 1e12.
+    t : output times, dimensionless; in s with [cylinder].
+    seed : seed of all random inputs.
+    design : how inputs are drawn: independently, in a Latin hypercube, or along Sobol's sequence.
+    method, rtol, rest, unsteady, rested : as for :func:`viscoroll.ensemble`; with [cylinder] in SI units.
+    block : motions per block; the default fits the memory.
+    keep : the summaries alone, or every motion with its inputs.
+    fields : fields of the motions that are kept.
     summaries : quantities whose distribution is kept.
-    quantiles : which of them are shown.
+    quantiles : quantiles of these that are shown.
     """
 
     n: Whole
@@ -124,16 +134,16 @@ class RunSection(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What a run file asks for.
+    """A run, as a run file states it.
 
     Attributes
     ----------
     path, text : of the file.
     settings : its section [run].
-    inputs : what its other sections say of start, scene or cylinder, and what of it is uncertain.
-    t : output times, dimensionless or, with [cylinder], in seconds.
-    digest : SHA-256 of what the results depend on beside the number of motions, the method and the size of blocks:
-        other settings, inputs, samples.
+    inputs : its other sections, and which of their numbers are uncertain.
+    t : output times, dimensionless or, with [cylinder], in s, (t,).
+    digest : SHA-256 of what the results depend on, apart from the number of motions, the method and the size of
+        blocks: other settings, inputs, samples.
     """
 
     path: Path
@@ -145,7 +155,7 @@ class Run:
 
     @property
     def method(self) -> Literal["flow", "integrate"]:
-        """How every block is rolled: settled by the run as a whole, so that bits do not depend on blocks."""
+        """Method of all blocks.  It depends on the run as a whole, so that bits do not depend on blocks."""
         if self.settings.method != "auto":
             return self.settings.method
         if not self.mappable:
@@ -154,50 +164,50 @@ class Run:
 
     @property
     def mappable(self) -> bool:
-        """Whether only the start is uncertain, and nothing drives."""
+        """Whether a flow map serves: only start speeds are uncertain, and no load acts."""
         driven = self.inputs.content.get("drive") or self.settings.unsteady
         return not driven and set(self.inputs.uncertain) <= set(START)
 
     @cached_property
     def fastest(self) -> float:
-        """Speed that the flow map is made for; the few motions beyond are integrated."""
+        """Speed up to which the flow map is tabulated; the few faster motions are integrated."""
         R = self.inputs.content["cylinder"]["R"] if self.si else 1.0
         return max(self.inputs.largest("V0"), R * self.inputs.largest("omega0"))
 
     @property
     def si(self) -> bool:
-        """Whether everything in the file and in the results is in SI units."""
+        """Whether the file and the results are in SI units."""
         return "cylinder" in self.inputs.content
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """Fields of the motions that a block needs, kept or summarised."""
+        """Fields of the motions that are kept or summarised."""
         needed = {name for wanted in self.settings.summaries for name in QUANTITIES[wanted].fields}
         kept = set(self.settings.fields) if self.settings.keep == "all" else set()
         return tuple(name for name in FIELDS if name in needed | kept)
 
     @property
     def bytes_a_motion(self) -> int:
-        """Memory that a motion takes while its block is worked on."""
+        """Memory that a motion takes while its block is evaluated, bytes."""
         columns = len(self.fields) * self.t.size + 2 * len(self.inputs.uncertain) + 12
         return 8 * (columns + self.t.size)  # one output at a time is copied for its summary
 
     @property
     def block(self) -> int:
-        """Motions a block."""
+        """Number of motions in a full block."""
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)
-        most = _MAPPED if self.method == "flow" else _INTEGRATED
-        fits = 1 << max(_BYTES // self.bytes_a_motion, 1).bit_length() - 1  # a power of two suits Sobol
-        return min(most, fits, self.settings.n)
+        # a power of two suits Sobol's sequence
+        fits = 1 << max(_MOST_BYTES // self.bytes_a_motion, 1).bit_length() - 1
+        return min(_MOST_MOTIONS[self.method], fits, self.settings.n)
 
     @property
     def blocks(self) -> int:
-        """How many blocks."""
+        """Number of blocks."""
         return -(-self.settings.n // self.block)
 
     def edges(self, block: int) -> tuple[int, int]:
-        """First motion of a block, and first of the next."""
+        """Return the first motion of a block and the first of the next."""
         return block * self.block, min((block + 1) * self.block, self.settings.n)
 
 
@@ -211,14 +221,18 @@ def read_run(path: str | PathLike[str]) -> Run:
     Returns
     -------
     Run
-        Everything in it checked; nothing drawn or rolled yet.
+        The run, with all of the file checked; nothing is drawn or rolled yet.
 
     Raises
     ------
     FileError
-        A file that cannot be read or is not TOML, a misspelt key (with the nearest), a value of
-        the wrong type or with a unit, a range that leaves what the input allows, a sample
-        that cannot be read: each with its line.
+        A file that cannot be read or is not TOML, a misspelt key (with the nearest), a value of the wrong type or with
+        a unit, a range that exceeds what the input allows, a sample that cannot be read: each with its line.
+
+    Examples
+    --------
+    >>> from viscoroll.io.runs import read_run
+    >>> read_run("docs/examples/ensemble.toml").blocks  # doctest: +SKIP
     """
     path, content = Path(path), read_toml(path)
     inputs = inputs_of(path, content)
@@ -228,70 +242,80 @@ def read_run(path: str | PathLike[str]) -> Run:
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
             raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
-    materials = materials_of(path, medians)
-    # those that are certain are read once
-    known = {name: found for name, found in materials.items() if not inputs_in(inputs.content[name])}
-    inputs = correlated(path, replace(inputs, content=inputs.content | known))
+    materials = parse_materials(path, medians)
+    # a material without uncertain numbers is read once
+    certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
+    inputs = correlated(path, replace(inputs, content=inputs.content | certain))
     settings = msgspec.convert(content["run"], RunSection)
-    try:
-        given = settings.t
-        times = output_times(spread(**msgspec.to_builtins(given)) if isinstance(given, TimesSection) else given)
-    except ParameterError as error:
-        raise section_error(path, "run", "t", str(error)) from error
+    with _faults_in_run(path, "t"):
+        t = settings.t
+        times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
+    with _faults_in_run(path):
+        check_names("fields", settings.fields, FIELDS, "a field")
+        check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
-    digest = _digest(settings, times, content, [as_toml(each) for each in known.values()], inputs)
+    digest = _digest(settings, times, content, [material_as_toml(material) for material in certain.values()], inputs)
     run = Run(path, text, settings, inputs, times, digest)
-    _check_settings(run)
+    if not settings.summaries:
+        raise section_error(path, "run", "summaries", "summaries = []: must name at least one quantity")
+    if settings.method == "flow" and not run.mappable:
+        problem = "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, and where scenes differ"
+        raise section_error(path, "run", "method", problem)
     _check_inputs(run)
     return run
 
 
-def _check_settings(run: Run) -> None:
-    """Raise FileError for what msgspec cannot check of [run]."""
-    settings = run.settings
+@contextmanager
+def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
+    """Raise a ParameterError within as FileError of the section [run]; a context manager.
+
+    path: of the run file.  key: that is at fault; default: the name of the parameter.
+    """
     try:
-        check_names("fields", settings.fields, FIELDS, "a field")
-        check_names("summaries", settings.summaries, QUANTITIES, "a summary")
+        yield
     except ParameterError as error:
-        raise section_error(run.path, "run", error.name, str(error)) from error
-    if not settings.summaries:
-        raise section_error(run.path, "run", "summaries", "summaries = []: must name at least one quantity")
-    if settings.method == "flow" and not run.mappable:
-        problem = "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, and where scenes differ"
-        raise section_error(run.path, "run", "method", problem)
+        raise section_error(path, "run", key or error.name, str(error)) from error
 
 
 def _check_inputs(run: Run) -> None:
-    """Refuse, before anything is drawn, what a motion would: of the medians, of each input's ends, and of all ends."""
+    """Raise FileError for inputs that a motion refuses, before anything is drawn.
+
+    Checked are the medians, the ends of each input beside the medians of the others, and combinations of ends.
+    """
     inputs, medians = run.inputs, run.inputs.medians
-    try:
-        _begin(run, medians)
-    except ParameterError as error:
-        raise locate_error(run.path, inputs.content, error) from error
-    for at in inputs_in(inputs.content):
-        ends = inputs.ends(at.name)
+    _check_motions(run, medians)
+    for number in inputs_in(inputs.content):
+        ends = inputs.ends(number.name)
         try:
-            _begin(run, medians | {at.name: ends})
+            _begin_motions(run, medians | {number.name: ends})
         except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
                 raise locate_error(run.path, inputs.content, error) from error
-            reaches = f"{at.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
-            problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
-            raise section_error(
-                run.path, at.section, at.key, f"{reaches}: {problem}; add truncate = [low, high]"
-            ) from error
-    wholes = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
-    for values in (inputs.corners(), *wholes):
-        try:
-            _begin(run, values)
-        except ParameterError as error:
-            more = ParameterError(
-                error.name, error.value, error.allowed, f"{error} in every draw: truncate so that it is"
-            )
-            raise locate_error(run.path, inputs.content, more) from error
+            reaches = f"{number.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
+            problem = f"{getattr(error, 'problem', str(error)).rpartition('] ')[2]}; add truncate = [low, high]"
+            raise section_error(run.path, number.section, number.key, f"{reaches}: {problem}") from error
+    samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
+    for values in (inputs.corners(), *samples):
+        _check_motions(run, values, " in every draw: truncate so that it is")
 
 
-def _begin(run: Run, values: dict[str, Any]) -> None:
+def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
+    """Raise FileError, with its line, for motions that would be refused.
+
+    values: input -> number or (n,).  advice: last words of the message.
+    """
+    try:
+        _begin_motions(run, values)
+    except ParameterError as error:
+        refusal = ParameterError(error.name, error.value, error.allowed, f"{error}{advice}")
+        raise locate_error(run.path, run.inputs.content, refusal) from error
+
+
+def _begin_motions(run: Run, values: dict[str, Any]) -> None:
+    """Raise ParameterError, of a material FileError, for motions that would be refused; nothing is rolled.
+
+    values: input -> number or (n,).
+    """
     content, settings = run.inputs.filled(values), run.settings
     roller = roller_of(run.path, content)
     for name in ("unsteady", "rested"):
@@ -304,9 +328,13 @@ def _begin(run: Run, values: dict[str, Any]) -> None:
 
 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
-    """The ``digest`` of a :class:`Run`; comments and the order of keys do not change it."""
+    """Return the ``digest`` of a :class:`Run`; comments and the order of keys do not change it.
+
+    settings: section [run].  times: output times.  content: sections as read.  materials: certain materials as TOML.
+    inputs: whose samples count.
+    """
     kept = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _NOT_IN_DIGEST}
-    sections = {name: given for name, given in content.items() if name != "run"}
+    sections = {name: section for name, section in content.items() if name != "run"}
     samples = [
         [name, hashlib.sha256(values.tobytes()).hexdigest()]
         for columns in inputs.joint.values()

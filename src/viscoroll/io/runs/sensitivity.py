@@ -1,8 +1,8 @@
-"""Sobol indices of a run: which uncertain input the spread of its motions comes from.
+"""Sobol indices of a run, by which the variance of its motions is attributed to its uncertain inputs.
 
 Estimators are those of A. Saltelli et al., Computer Physics Communications 181 (2010) 259-270, on a scrambled Sobol
-sequence; scipy.stats.sobol_indices, which has them too, fails at one input (SciPy 1.17).  A base point costs a motion
-for every uncertain input and two more.
+sequence; scipy.stats.sobol_indices, which has them too, fails for a single input (SciPy 1.17).  The cost of a base
+point is one motion for every uncertain input and two more.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ...core.results import column_name, unit_of
 from ...motion.export import column_attributes, provenance
 from ...motion.summaries import QUANTITIES
 from ..sampling import points
-from .evaluate import look_at_materials, roll_inputs
+from .evaluate import roll_inputs, warn_of_materials
 from .inputs import Inputs, inputs_in
 from .runfile import Run
 
@@ -30,12 +30,15 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+#: Level of the confidence intervals.
 CONFIDENCE = 0.95
+#: Number of bootstrap resamples: the standard deviation of a half-width is then 7 % of it.
 _RESAMPLES = 100
-#: bytes that the outcomes of all motions may take
-_BYTES = 1 << 29
-#: motions a block: about a second where they are integrated
+#: Largest size of the outcomes of all motions, bytes.
+_MOST_BYTES = 1 << 29
+#: Largest number of motions of a block: about a second where they are integrated.
 _BLOCK = 1 << 14
+#: End of the name of an index or half-width -> its meaning.
 _INDICES = {
     "S1": "first-order Sobol index",
     "S1_conf": f"half-width of the {CONFIDENCE:.0%} confidence interval of the first-order Sobol index",
@@ -45,23 +48,23 @@ _INDICES = {
 
 
 def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progress: bool = False) -> xr.Dataset:
-    """First-order and total Sobol indices of the summarised quantities over all uncertain inputs.
+    """Estimate first-order and total Sobol indices of the summarised quantities over all uncertain inputs.
 
     Parameters
     ----------
-    run : see :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
-    n : base points in [16, 65536], rounded up to a power of two.
-    threads : default ``$VISCOROLL_THREADS`` or the cores available; the bits do not depend on it.
-    progress : draw a progress bar if it takes longer than a second.
+    run : of :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
+    n : number of base points in [16, 65536], rounded up to a power of two.
+    threads : default ``$VISCOROLL_THREADS`` or the number of cores; the bits do not depend on it.
+    progress : whether to draw a progress bar if it takes longer than a second.
 
     Returns
     -------
     xarray.Dataset
         For every quantity ``NAME_S1``, ``NAME_S1_conf``, ``NAME_ST``, ``NAME_ST_conf`` over (t, input), or over
-        input where it is one number a motion: the indices, dimensionless, and the half-widths of
+        input if the quantity is one number per motion: the indices, dimensionless, and the half-widths of
         their bootstrap intervals of 95 %.  A quantity that some motions do not have, or that
         varies by no more than rtol of its largest value at any t, has no indices: the attribute
-        ``refused`` says which, at which t and why.  There its entries are NaN, and where it has
+        ``refused`` states which, at which t and why.  There its entries are NaN, and if it has
         none at any t it is left out.
 
     Raises
@@ -71,50 +74,57 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         input; n out of range, or so many output times that their values would take more than 0.5 GB; no
         quantity left.
 
+    Examples
+    --------
+    >>> from viscoroll.io.runs import read_run
+    >>> from viscoroll.io.runs.sensitivity import sobol_indices
+    >>> sobol_indices(read_run("docs/examples/sensitivity.toml"), n=256)  # doctest: +SKIP
+
     Notes
     -----
-    Variance shares known in closed form lie inside the stated intervals (``tests/runs/test_sensitivity.py``).
-    The bootstrap takes the points for random ones, which are less even: intervals err on the wide side.
+    Variance shares in closed form lie inside the stated intervals (``tests/runs/test_sensitivity.py``).
+    The bootstrap treats the points as random ones, which are less even: intervals are rather too wide.
     """
     import xarray as xr
 
-    from .store import about
+    from .identity import about
 
     names = _independent(run.inputs)
     progress = check_bool("progress", progress)
     base = (
         1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
-    )  # a Sobol sequence is even only over so many points
-    rows = base * (len(names) + 2)
+    )  # Sobol's sequence is even over powers of two only
+    motions = base * (len(names) + 2)
     summaries = tuple(dict.fromkeys(run.settings.summaries))
-    settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
-    rolled = replace(run, settings=settings)
-    look_at_materials(rolled)
-    outcomes, status = _outcomes(rolled, _points(len(names), base, run.settings.seed), threads, progress)
+    settings = msgspec.structs.replace(run.settings, n=motions, keep="summaries", summaries=summaries)
+    run = replace(run, settings=settings)
+    warn_of_materials(run)
+    outcomes, status = _outcomes(run, _points(len(names), base, run.settings.seed), threads, progress)
     refused: list[str] = []
     data: dict[str, Any] = {}
     for name, values in outcomes.items():
         over = ("t",) * QUANTITIES[name].over_time
         noise = settings.rtol * np.abs(values, where=np.isfinite(values), out=np.zeros_like(values)).max()
-        each = [_indices(one.reshape(-1, base), noise, settings.seed) for one in values]
+        indices, reasons = zip(*(_indices(row.reshape(-1, base), noise, settings.seed) for row in values), strict=True)
         times = [f" at t = {t:g}" for t in run.t] if over else [""]
-        refused += [f"{name}{at}: {reason}" for at, (_, reason) in zip(times, each, strict=True) if reason]
-        found = np.stack([rows for rows, _ in each], axis=1)
-        of = QUANTITIES[name].about(run.si)["long_name"]
-        for (key, text), one in zip(_INDICES.items(), found if np.isfinite(found).any() else (), strict=False):
-            told = {"long_name": f"{text} of: {of}", "units": "1"}
-            data[f"{name}_{key}"] = (*over, "input"), one if over else one[0], told
+        refused += [f"{name}{time}: {reason}" for time, reason in zip(times, reasons, strict=True) if reason]
+        if not np.isfinite(indices).any():
+            continue
+        meaning = QUANTITIES[name].about(run.si)["long_name"]
+        for (key, text), rows in zip(_INDICES.items(), np.stack(indices, axis=1), strict=True):
+            attrs = {"long_name": f"{text} of: {meaning}", "units": "1"}
+            data[f"{name}_{key}"] = (*over, "input"), rows if over else rows[0], attrs
     if not data:
         raise ParameterError("summaries", "; ".join(refused), "quantities that vary and that every motion has")
     coordinates = {
         "t": ("t", run.t, column_attributes("t", run.si)),
         "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
     }
-    described = about(rolled) | provenance("Sobol indices of motions of a viscoelastic cylinder")
+    attrs = about(run) | provenance("Sobol indices of motions of a viscoelastic cylinder")
     for of_blocks in ("motions_a_block", "blocks"):
-        del described[of_blocks]
+        del attrs[of_blocks]
     ended = zip(*np.unique(status, return_counts=True), strict=True)
-    return xr.Dataset(data, coordinates, described).assign_attrs(
+    return xr.Dataset(data, coordinates, attrs).assign_attrs(
         design="Saltelli's, on a scrambled Sobol sequence", asked_base_points=n, base_points=base,
         resamples=_RESAMPLES, confidence=CONFIDENCE, refused="\n".join(refused),
         **{f"ended: {MotionStatus(code).message}": int(count) for code, count in ended},
@@ -122,56 +132,64 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 
 
 def _independent(inputs: Inputs) -> tuple[str, ...]:
-    """Names of the uncertain inputs, each a dimension of its own; raises ParameterError if they are not."""
+    """Return the names of the uncertain inputs; raise ParameterError if there are none or they are not independent."""
     if not inputs.uncertain:
         raise ParameterError("run file", "no uncertain input", "one with a distribution")
     if inputs.correlated:
         allowed = "left out: Sobol indices are defined for independent inputs only"
         raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
-    places = {at.name: f"[{at.section}] {at.name}" for at in inputs_in(inputs.content)}
+    sections = {number.name: f"[{number.section}] {number.name}" for number in inputs_in(inputs.content)}
     for file, columns in inputs.joint.items():
         if len(columns) > 1:
             allowed = "distributions, or columns of a file each: Sobol indices are defined for independent inputs only"
-            raise ParameterError(", ".join(map(places.__getitem__, columns)), f"rows of {file}", allowed)
+            raise ParameterError(", ".join(map(sections.__getitem__, columns)), f"rows of {file}", allowed)
     return inputs.uncertain
 
 
 def _points(count: int, base: int, seed: int) -> Floats:
-    """Points (input, motion) of the unit cube: base points, as many others, and the first with each of the second."""
-    one, other = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
-    mixed = [np.where(np.arange(count)[:, np.newaxis] == n, other, one) for n in range(count)]
-    return np.hstack([one, other, *mixed])
+    """Return points of the unit cube, (input, motion): A, B, and A with each row of B in turn.
+
+    count: number of inputs.  base: number of points of A and of B.  seed: of the sequence.
+    """
+    A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
+    mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
+    return np.hstack([A, B, *mixed])
 
 
 def _outcomes(
-    run: Run, places: Floats, threads: int | None, progress: bool
+    run: Run, cube: Floats, threads: int | None, progress: bool
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
-    """(values of each quantity over (t, motion), how the motions ended): block by block, no motion is kept."""
-    rows = places.shape[1]
+    """Roll all motions, block by block, and return (values of each quantity (t, motion), how each motion ended).
+
+    run: states the quantities.  cube: points of the unit cube, (input, motion).
+    threads, progress: as of :func:`sobol_indices`.
+    """
+    motions = cube.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
-    size = 8 * rows * sum(times.values())
-    if size > _BYTES:
+    size = 8 * motions * sum(times.values())
+    if size > _MOST_BYTES:
         allowed = f"less, or t shorter: {sum(times.values())} quantities and times would take {size / 1e9:.1f} GB"
-        raise ParameterError("n", rows // (len(places) + 2), allowed)
-    outcomes = {name: np.empty((count, rows)) for name, count in times.items()}
-    status = np.empty(rows, np.int8)
+        raise ParameterError("n", motions // (len(cube) + 2), allowed)
+    outcomes = {name: np.empty((count, motions)) for name, count in times.items()}
+    status = np.empty(motions, np.int8)
 
     def work(start: int, stop: int) -> None:
-        motions = roll_inputs(run, run.inputs.values(places[:, start:stop]), stop - start, threads)
-        status[start:stop] = motions.status
+        rolled = roll_inputs(run, run.inputs.values(cube[:, start:stop]), stop - start, threads)
+        status[start:stop] = rolled.status
         for name, values in outcomes.items():
             for k, row in enumerate(values):
-                row[start:stop] = QUANTITIES[name].values(motions, k)
+                row[start:stop] = QUANTITIES[name].values(rolled, k)
 
     # one block at a time, its motions on all threads: a flow map is then made once
-    run_blocks(work, rows, min(_BLOCK, run.block), threads=1, progress="sensitivity" if progress else None)
+    run_blocks(work, motions, min(_BLOCK, run.block), threads=1, progress="sensitivity" if progress else None)
     return outcomes, status
 
 
 def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
-    """(The rows of ``_INDICES`` over inputs from outcomes (point, base), ""); or NaN, and why there are none.
+    """Return (indices and half-widths, in rows as ``_INDICES``, over inputs; "") or (NaN, why there are none).
 
-    ``noise`` : what rtol leaves open of the largest outcome at any t.
+    values: outcomes (A, B and mixed points, base point).  noise: part of a value that rtol leaves open.
+    seed: of the bootstrap.
     """
     from scipy.special import ndtri
 
@@ -181,25 +199,28 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     if not values.std() > noise:
         return found, "it varies by no more than rtol of its largest value"
     random, base = np.random.default_rng(seed), values.shape[1]
-    again = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
+    resampled = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
     found[0::2] = _estimated(values)
-    found[1::2] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(again, axis=0, ddof=1)
+    found[1::2] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(resampled, axis=0, ddof=1)
     return found, ""
 
 
 def _estimated(values: Floats) -> Floats:
-    """First-order and total indices of outcomes (point, base)."""
-    one, other, *others = values - values[:2].mean()
+    """Return first-order and total indices, (2, input), of outcomes (A, B and mixed points, base point)."""
+    A, B, *others = values - values[:2].mean()
     mixed = np.array(others)
-    return np.array([(other * (mixed - one)).mean(axis=1), 0.5 * ((mixed - one) ** 2).mean(axis=1)]) / values[:2].var()
+    return np.array([(B * (mixed - A)).mean(axis=1), 0.5 * ((mixed - A) ** 2).mean(axis=1)]) / values[:2].var()
 
 
 def table(indices: xr.Dataset) -> pd.DataFrame:
-    """A row for each quantity, time and input that has indices, the largest total index first at each t."""
+    """Return a row for each quantity, time and input that has indices, the largest total index first at each t.
+
+    indices: of :func:`sobol_indices`.
+    """
     import pandas as pd
 
     tables = []
-    for name in (str(each).removesuffix("_S1") for each in indices if str(each).endswith("_S1")):
+    for name in (str(key).removesuffix("_S1") for key in indices if str(key).endswith("_S1")):
         frame = pd.DataFrame({key: indices[f"{name}_{key}"].to_series() for key in _INDICES}).dropna().reset_index()
         frame.insert(0, "quantity", name)
         over = ["t"] * ("t" in frame)

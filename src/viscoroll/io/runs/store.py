@@ -1,12 +1,12 @@
-"""A results store: a zarr hierarchy that any number of processes fill block by block.
+"""Results store: a zarr hierarchy that any number of processes fill block by block.
 
     results.zarr/
       V_mean, V_quantiles, V_histogram, ...             the summaries: xarray.open_zarr(path)
-      motions/V, omega, x, onset_time, status, ...      every motion (keep = "all"): one block = one chunk
-      records/start, 000000000, 000000001, ..., end     what is done (see :mod:`records`)
+      motions/V, omega, x, onset_time, status, ...      every motion (keep = "all"): one block is one chunk
+      records/start, 000000000, 000000001, ..., end     the complete parts (see :mod:`records`)
 
-Every file is written whole or not at all, its record after it, and nothing in it depends on when,
-where or in which order the blocks were worked on: two stores of one run are the same files.
+Each file is written whole or not at all, its record after it, and no file depends on when, where or in which order the
+blocks were evaluated: two stores of one run consist of the same bytes.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,23 +28,34 @@ from . import zarr_files
 from .columns import attributes
 from .evaluate import roll_block, roll_inputs
 from .identity import ADVICE, about, identity, refuse_another
-from .records import RECORDS, Record, damaged, encoded, make_folder, put, read_record, refuse_unreadable
+from .records import RECORDS, Record, damaged, encoded, make_folder, read_record, refuse_unreadable, write_files
 from .runfile import Run
 
+#: Group of the motions in a store.
 MOTIONS = "motions"
+#: File in the folder of records that one process locks.
 _LOCK = ".lock"
-_EACH = ("onset_time", "rest_time", "status", "flow")
+#: Columns of one number for each motion that are kept beside the fields.
+_END_COLUMNS = ("onset_time", "rest_time", "status", "flow")
 
 
 @dataclass(frozen=True)
 class Store:
-    """Results of ``run`` in the folder ``root``."""
+    """Results of a run in a folder.
+
+    Attributes
+    ----------
+    root : the folder.
+    run : the run.
+    """
 
     root: Path
     run: Run
 
-    def begin(self) -> None:
-        """Make the folder and the metadata of all motions, or check that it is this run's, perhaps with fewer motions.
+    def start(self) -> None:
+        """Create the folder and the metadata of all motions, or check that they belong to this run.
+
+        The store of the same run with fewer motions is extended.
 
         Raises
         ------
@@ -53,35 +64,40 @@ class Store:
         """
         self.refuse_other()
         make_folder(self.root / RECORDS)
-        self._sweep()
-        self._drop_end()
-        self._keep("start", metadata(self.run), about=about(self.run))
+        self._remove_temporary_files()
+        self._remove_old_end()
+        self._write_part("start", metadata(self.run), about=about(self.run))
 
-    def _keep(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
-        """Write files, then the record of them; raises FileError."""
-        record = Record(identity(self.run), put(self.root, files), self._motions(name), **more)
-        write_bytes(_path(self.root, name), encoded(record))
+    def _write_part(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
+        """Write the files of a part, then its record; raise FileError if that fails.
+
+        name: "start", "end" or the number of a block.  files: path below the store -> content.
+        more: other fields of the :class:`Record`.
+        """
+        record = Record(identity(self.run), write_files(self.root, files), self._motions(name), **more)
+        write_bytes(_record_path(self.root, name), encoded(record))
 
     def _motions(self, name: str | int) -> int:
-        """How many motions a record is of: of a block its own, else all."""
+        """Return the number of motions of a block, or, for "start" and "end", of the run."""
         if isinstance(name, str):
             return self.run.settings.n
         start, stop = self.run.edges(name)
         return stop - start
 
-    def _drop_end(self) -> None:
-        """Remove the summaries of fewer motions, their record first: from then on the store is not finished."""
-        end = read_record(_path(self.root, "end"))
+    def _remove_old_end(self) -> None:
+        """Remove the summaries of fewer motions, their record first, so that the store is not finished any more."""
+        own = _record_path(self.root, "end")
+        end = read_record(own)
         if end is None or end.motions == self.run.settings.n:
             return
         try:
-            for path in (_path(self.root, "end"), *(self.root / name for name in end.files)):
+            for path in (own, *(self.root / name for name in end.files)):
                 path.unlink(missing_ok=True)
         except OSError as error:
             raise FileError(path, f"cannot be removed ({error.strerror or error})") from error
 
     def refuse_other(self) -> None:
-        """Raise FileError unless the folder is new, or begun by the same run, perhaps with fewer motions."""
+        """Raise FileError unless the folder is new, or of the same run, perhaps with fewer motions."""
         root = self.root
         if not root.exists():
             return
@@ -89,8 +105,8 @@ class Store:
             raise FileError(root, f"is a file: {ADVICE}")
         refuse_unreadable(root)
         blocks = sorted((root / RECORDS).glob("[0-9]*"))
-        whole = map(read_record, (_path(root, "start"), _path(root, "end"), *blocks))
-        record = next((found for found in whole if found is not None), None)
+        records = map(read_record, (_record_path(root, "start"), _record_path(root, "end"), *blocks))
+        record = next((record for record in records if record is not None), None)
         if record is not None:
             refuse_another(root, self.run, record)
             return
@@ -99,51 +115,71 @@ class Store:
             raise FileError(root, f"is no results store, it holds {', '.join(others[:3])}: {ADVICE}")
 
     def missing(self) -> Iterator[int]:
-        """Blocks that are not there, or not whole: their records and all their files are read."""
+        """Yield the blocks that are missing or damaged; the records of all blocks and all their files are read."""
         own = identity(self.run)
         for block in range(self.run.blocks):
             if problems(self.root, block, own, self._motions(block)):
                 yield block
 
-    def work(self, block: int) -> int:
-        """Roll a block and store it; returns its number of motions.  Raises FileError."""
-        files, summary, count = made(self.run, block)
-        self._keep(block, files, summary=summary)
+    def evaluate(self, block: int) -> int:
+        """Roll the motions of a block, store them, and return their number; raise FileError if writing fails."""
+        files, summary, count = block_content(self.run, block)
+        self._write_part(block, files, summary=summary)
         return count
 
-    def end(self) -> None:
-        """Merge the summaries of all blocks and write them; raises FileError."""
+    def finish(self) -> None:
+        """Merge the summaries of all blocks and write them; raise FileError if a block is damaged."""
         dataset = summary_dataset(
             merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
         )
         files = zarr_files.dataset_files(dataset.assign_attrs(about(self.run)))
         files[".zmetadata"] = zarr_files.consolidated(files | metadata(self.run))
-        self._keep("end", files)
-        self._sweep()
+        self._write_part("end", files)
+        self._remove_temporary_files()
 
-    def _sweep(self) -> None:
-        """Remove what processes that were killed in a write left behind, before this start or, workers, since."""
-        for left_over in self.root.rglob(".*.tmp-*"):
+    def _remove_temporary_files(self) -> None:
+        """Remove the files that killed processes, of this call or an earlier one, did not finish writing."""
+        for path in self.root.rglob(".*.tmp-*"):
             with suppress(OSError):
-                left_over.unlink()
+                path.unlink()
 
     def _summaries(self) -> Iterator[Summary]:
+        """Yield the summary of each block in order; raise FileError if its record is damaged."""
         for block in range(self.run.blocks):
-            record = read_record(_path(self.root, block))
+            record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
                 raise FileError(self.root, f"block {block} was damaged meanwhile: the same command goes on")
             yield record.summary
 
 
-def made(run: Run, block: int) -> tuple[dict[str, bytes], Summary, int]:
-    """What there is to store of a block: files, summary, number of motions."""
+class BlockContent(NamedTuple):
+    """What a store holds of a block.
+
+    files : path below the store -> content.
+    summary : of its motions.
+    motions : number of its motions.
+    """
+
+    files: dict[str, bytes]
+    summary: Summary
+    motions: int
+
+
+def block_content(run: Run, block: int) -> BlockContent:
+    """Roll the motions of a block and return what the store holds of it.
+
+    run, block: the run, and the number of the block.
+    """
     values, motions = roll_block(run, block)
     files = _motion_files(run, columns_of(run, values, motions), block) if run.settings.keep == "all" else {}
-    return files, summarise(motions, run.settings.summaries), len(motions)
+    return BlockContent(files, summarise(motions, run.settings.summaries), len(motions))
 
 
 def metadata(run: Run) -> dict[str, bytes]:
-    """Metadata of the group of all motions, if they are kept; a single motion tells names and types."""
+    """Return the metadata of the group of all motions, if they are kept: path below the store -> content.
+
+    run: whose motion of medians is rolled for names and types.
+    """
     if run.settings.keep == "summaries":
         return {}
     values = {name: np.atleast_1d(value) for name, value in run.inputs.medians.items()}
@@ -151,46 +187,53 @@ def metadata(run: Run) -> dict[str, bytes]:
 
 
 def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
+    """Return the chunks of a block, or without ``block`` the metadata: path below the store -> content.
+
+    columns: name -> values over (motion,) or (motion, t).
+    """
     import xarray as xr
 
-    described: dict[str, Any] = {
+    variables: dict[str, Any] = {
         name: (("motion", "t")[: values.ndim], values, attributes(name, run.si)) for name, values in columns.items()
     }
-    motions = xr.Dataset(described, {"t": ("t", run.t, attributes("t", run.si))}, about(run))
+    motions = xr.Dataset(variables, {"t": ("t", run.t, attributes("t", run.si))}, about(run))
     files = zarr_files.motion_files(motions, run.settings.n, run.block, block)
     return {f"{MOTIONS}/{name}": content for name, content in files.items()}
 
 
 def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
-    """What is kept of every motion."""
+    """Return the columns that are kept of motions: inputs, fields and how they ended, by name.
+
+    run: states the fields.  values: inputs by name.  motions: with these inputs.
+    """
     columns = {name: values[name] for name in run.inputs.uncertain}
-    columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_EACH)}
+    columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
     return columns | {"flow": columns["flow"].astype(np.int8)}
 
 
 def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
-    """What is damaged or missing of a record "start", "end" or a block: its own path, or those of its files.
+    """Return the paths, below the store, that are missing or damaged of a part; its record, or files that it names.
 
-    run, motions : what the record has to be of.
+    root: folder of the store.  name: "start", "end" or the number of a block.
+    run, motions: identity and number of motions that the record must state.
     """
-    record = read_record(_path(root, name))
+    path = _record_path(root, name)
+    record = read_record(path)
     if record is None or (record.run, record.motions) != (run, motions):
-        return [str(_path(root, name).relative_to(root))]
+        return [str(path.relative_to(root))]
     return damaged(root, record)
 
 
-def _path(root: Path, name: str | int) -> Path:
+def _record_path(root: Path, name: str | int) -> Path:
+    """Return the path of the record of a part; name: "start", "end" or the number of a block."""
     return root / RECORDS / (name if isinstance(name, str) else f"{name:09d}")
 
 
 @contextmanager
 def locked(root: Path) -> Iterator[None]:
-    """Keep other processes from starting to work on the store.
+    """Keep other processes from writing to the store in ``root``; a context manager.
 
-    Raises
-    ------
-    FileError
-        If another process has it.
+    Raises FileError if another process writes to it, or the disk does not allow locks.
     """
     from filelock import FileLock, Timeout
 

@@ -1,9 +1,9 @@
-"""Sections of run files -> :class:`Inputs`: distributions, columns of tables of numbers, correlations."""
+"""Sections of a run file -> :class:`Inputs`: distributions, columns of tables of numbers, correlations."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,130 +14,154 @@ from ...core.errors import FileError
 from ...core.extras import import_extra
 from ...core.scale import si_unit
 from ...core.sections import check_keys, section_error, suggestion
-from ...materials.file import SECTIONS
+from ...materials.material_toml import SECTIONS
 from ..config import SCHEMA
 from ..measurements import column_in_unit, named_table
 from .inputs import Distribution, Input, Inputs
 
-#: what the names of inputs of a section begin with
+#: Section -> first letters of the names of its inputs; those of the other sections have none.
 PREFIXES = {"base": "base_", "drive": "drive_"}
+#: Sections that may have uncertain numbers.
 _SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive")
-#: keys that a name leaves out, or has in another form
+#: Key -> the word for it in the name of an input, if that is another; "" is left out.
 _WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
-#: of a material, what may be uncertain
-_SOLID = ("E", "nu", "prony", "creep", "temperature", "thickness")
-_ONE = {"distribution", "file", "column"}
+#: Keys of a material that may be uncertain.
+_UNCERTAIN_IN_MATERIAL = ("E", "nu", "prony", "creep", "temperature", "thickness")
+#: Keys by which a table of TOML is an uncertain number.
+_KEYS_OF_INPUT = {"distribution", "file", "column"}
 
 
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
-    """The inputs of a file that was read, independent; raises FileError."""
+    """Return the inputs of a run file, without correlations; raise FileError.
+
+    path: of the run file.  content: its sections as read.
+    """
     reader = _Reader(path, "cylinder" in content)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
     return Inputs(content | sections, reader.random, reader.joint)
 
 
+@dataclass
 class _Reader:
-    """Files what is uncertain, and puts an :class:`Input` in its place."""
+    """Collects the uncertain numbers of a run file, and replaces each by an :class:`Input`.
 
-    def __init__(self, path: Path, si: bool) -> None:
-        self.path, self.si = path, si
-        self.random: dict[str, Distribution] = {}
-        self.joint: dict[str, dict[str, Floats]] = {}
-        #: file -> how it was first written: 'rows.csv' and './rows.csv' share their rows
-        self.files: dict[Path, str] = {}
+    path, si: of the run file, and whether it is in SI units.
+    random, joint: as of :class:`Inputs`.
+    files: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows.
+    """
 
-    def section(self, name: str, given: Any) -> Any:
-        if not isinstance(given, dict):
-            return given
-        may = _SOLID if name in SECTIONS else tuple(given)
-        return {key: self.part(each, name, key, (key,)) if key in may else each for key, each in given.items()}
+    path: Path
+    si: bool
+    random: dict[str, Distribution] = field(default_factory=dict)
+    joint: dict[str, dict[str, Floats]] = field(default_factory=dict)
+    files: dict[Path, str] = field(default_factory=dict)
 
-    def part(self, given: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
-        """What stands at a key; ``words``: the keys down to it, and places in lists."""
-        if isinstance(given, list):
-            return [self.part(each, section, key, (*words, str(n))) for n, each in enumerate(given, 1)]
-        if not isinstance(given, dict):
-            return given
-        if not given.keys() & _ONE:
-            for name in given:
-                if near := suggestion(name, _ONE):
+    def section(self, name: str, section: Any) -> Any:
+        """Return a section with inputs in place of its uncertain numbers.
+
+        name: of the section.  section: its content, or what stands in its place, which is refused elsewhere.
+        """
+        if not isinstance(section, dict):
+            return section
+        keys = _UNCERTAIN_IN_MATERIAL if name in SECTIONS else section
+        return {key: self.part(value, name, key, (key,)) if key in keys else value for key, value in section.items()}
+
+    def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
+        """Return a value, or the :class:`Input` in its place; of a list or table, all its members so.
+
+        value: what stands at a key.  section, key: where it stands; of a member of a table "section.key" and its key.
+        words: keys from the section down to it, and positions in lists, of which its name is made.
+        """
+        if isinstance(value, list):
+            return [self.part(member, section, key, (*words, str(n))) for n, member in enumerate(value, 1)]
+        if not isinstance(value, dict):
+            return value
+        if not value.keys() & _KEYS_OF_INPUT:
+            for name in value:
+                if near := suggestion(name, _KEYS_OF_INPUT):
                     raise section_error(self.path, section, key, f"{key}: unknown key {name!r}{near}")
-            return {name: self.part(each, f"{section}.{key}", name, (*words, name)) for name, each in given.items()}
-        own = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
-        found = Input(PREFIXES.get(section.partition(".")[0], "") + own, section, key)
-        if "distribution" in given:
-            self.random[found.name] = self.distribution(found, given)
+            within = f"{section}.{key}"
+            return {name: self.part(member, within, name, (*words, name)) for name, member in value.items()}
+        name = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
+        number = Input(PREFIXES.get(section.partition(".")[0], "") + name, section, key)
+        if "distribution" in value:
+            self.random[number.name] = self.distribution(number, value)
         else:
-            self.column(found, given)
-        return found
+            self.add_column(number, value)
+        return number
 
-    def fault(self, at: Input, problem: str) -> FileError:
-        return section_error(self.path, at.section, at.key, f"{at.name}: {problem}")
+    def fault(self, number: Input, problem: str) -> FileError:
+        """Return the error of an uncertain number, with its line.  problem: what is wrong."""
+        return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
 
-    @np.errstate(all="ignore")  # scipy may overflow on what is refused here
-    def distribution(self, at: Input, given: dict[str, Any]) -> Distribution:
-        """A scipy.stats distribution, perhaps truncated."""
-        law = self.law(at, given)
+    @np.errstate(all="ignore")  # scipy may overflow for parameters that are refused here
+    def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
+        """Return the distribution of an uncertain number, truncated if its ``table`` states ``truncate``."""
+        law = self.frozen_law(number, table)
         low, high = (float(end) for end in law.support())
-        cut = given.get("truncate", [-math.inf, math.inf])
+        cut = table.get("truncate", [-math.inf, math.inf])
         if not (isinstance(cut, list) and len(cut) == 2 and all(_is_number(end) and end == end for end in cut)):
-            raise self.fault(at, f"truncate = {cut!r:.40}: must be [low, high]; inf and -inf leave an end")
+            raise self.fault(number, f"truncate = {cut!r:.40}: must be [low, high]; inf and -inf leave an end")
         low, high = max(low, float(cut[0])), min(high, float(cut[1]))
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
-            raise self.fault(at, f"truncate = {cut!r:.40}: nothing of the distribution is left")
+            raise self.fault(number, f"truncate = {cut!r:.40}: nothing of the distribution is left")
         return Distribution(law, low, high)
 
-    def law(self, at: Input, given: dict[str, Any]) -> Any:
-        """The frozen distribution."""
+    def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
+        """Return the frozen distribution of scipy.stats that a ``table`` names, with its parameters."""
         from scipy import stats
 
-        which = given["distribution"]
-        found = getattr(stats, which, None) if isinstance(which, str) else None
-        if not isinstance(found, stats.rv_continuous):
-            known = [key for key, value in vars(stats).items() if isinstance(value, stats.rv_continuous)]
-            near = suggestion(str(which), known)
-            raise self.fault(at, f"distribution {which!r:.40} is no continuous one of scipy.stats{near}")
-        shapes = [shape.strip() for shape in (found.shapes or "").split(",") if shape.strip()]
-        check_keys(self.path, f"{at.section}.{at.key}", given, ("distribution", *shapes, "loc", "scale", "truncate"))
-        values = {key: value for key, value in given.items() if key not in ("distribution", "truncate")}
-        for key, value in values.items():
+        name = table["distribution"]
+        law = getattr(stats, name, None) if isinstance(name, str) else None
+        if not isinstance(law, stats.rv_continuous):
+            near = suggestion(
+                str(name), [key for key, value in vars(stats).items() if isinstance(value, stats.rv_continuous)]
+            )
+            raise self.fault(number, f"distribution {name!r:.40} is no continuous one of scipy.stats{near}")
+        shapes = law.shapes.split(", ") if law.shapes else []
+        keys = ("distribution", *shapes, "loc", "scale", "truncate")
+        check_keys(self.path, f"{number.section}.{number.key}", table, keys)
+        parameters = {key: value for key, value in table.items() if key not in ("distribution", "truncate")}
+        for key, value in parameters.items():
             if not _is_number(value) or not math.isfinite(value):
-                raise self.fault(at, f"{key} = {value!r:.40}: must be a finite number without a unit")
-        missing = [shape for shape in shapes if shape not in values]
-        if missing:
-            raise self.fault(at, f"{which} also needs {', '.join(missing)}")
-        frozen = found(**{key: float(value) for key, value in values.items()})
+                raise self.fault(number, f"{key} = {value!r:.40}: must be a finite number without a unit")
+        if missing := [shape for shape in shapes if shape not in parameters]:
+            raise self.fault(number, f"{name} also needs {', '.join(missing)}")
+        frozen = law(**{key: float(value) for key, value in parameters.items()})
         if not np.isfinite(frozen.ppf(0.5)):
-            raise self.fault(at, f"scipy.stats.{which} does not allow these parameters")
+            raise self.fault(number, f"scipy.stats.{name} does not allow these parameters")
         return frozen
 
-    def column(self, at: Input, given: dict[str, Any]) -> None:
-        """File a column of a CSV, netCDF or Parquet file."""
-        check_keys(self.path, f"{at.section}.{at.key}", given, ("file", "column", "distribution"))
-        file, column = given.get("file"), given.get("column")
+    def add_column(self, number: Input, table: dict[str, Any]) -> None:
+        """Read the column of a CSV, netCDF or Parquet file that the ``table`` of an uncertain number names."""
+        check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
+        file, column = table.get("file"), table.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
-            raise self.fault(at, "must name a distribution, or a file and a column")
-        where = f"column {column!r} of {file}"
+            raise self.fault(number, "must name a distribution, or a file and a column")
+        where, path = f"column {column!r} of {file}", self.path.parent / file
         try:
             # strengths and times of a series, and corners of drives, have no unit of their own
-            unit = si_unit(at.key) if self.si and "." not in at.section else "1"
-            values = read_column(self.path.parent / file, column, unit)
+            values = read_column(path, column, si_unit(number.key) if self.si and "." not in number.section else "1")
         except (OSError, ValueError, KeyError, FileError) as error:
             text = " ".join(str(error.problem if isinstance(error, FileError) else error).split())
-            raise self.fault(at, f"{where} cannot be read ({text:.200})") from error
-        first = self.files.setdefault((self.path.parent / file).resolve(), file)
-        others = self.joint.setdefault(first, {})
-        if others and next(iter(others.values())).size != values.size:
-            raise self.fault(at, f"{where}: other columns have another length")
-        others[at.name] = values
+            raise self.fault(number, f"{where} cannot be read ({text:.200})") from error
+        columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
+        if columns and next(iter(columns.values())).size != values.size:
+            raise self.fault(number, f"{where}: other columns have another length")
+        columns[number.name] = values
 
 
 def _is_number(value: Any) -> bool:
+    """Whether a value of TOML is a number."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def read_column(path: Path, column: str, unit: str) -> Floats:
-    """One column of numbers; of a CSV in this unit, if the file gives one."""
+    """Return a column of finite numbers, (n,).
+
+    path: a .csv, .nc or .parquet file.  column: its name.  unit: to convert to, if a CSV states another.
+    Raises ValueError, OSError, KeyError or FileError.
+    """
     if path.suffix == ".csv":
         values = column_in_unit(named_table(path, (column,)), column, unit)
     elif path.suffix == ".parquet":
@@ -158,29 +182,32 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
 
 def correlated(path: Path, inputs: Inputs) -> Inputs:
-    """The same under the Gaussian copula of [correlation]; raises FileError."""
-    given, random = inputs.content.get("correlation", {}), inputs.random
-    if not isinstance(given, dict):
+    """Return the inputs with the Gaussian copula of the section [correlation]; raise FileError.
+
+    path: of the run file.  inputs: without correlations.
+    """
+    section, random = inputs.content.get("correlation", {}), inputs.random
+    if not isinstance(section, dict):
         raise section_error(
             path, "", "correlation", "correlation: must be a section [correlation] with lines like V0.mu = 0.5"
         )
-    for a, row in given.items():
+    pairs: dict[tuple[str, str], Any] = {}
+    for a, row in section.items():
         if not isinstance(row, dict):
             raise section_error(path, "correlation", a, f"{a} = {row!r:.40}: must be a line like V0.mu = 0.5")
-    pairs = {(a, b): value for a, row in given.items() for b, value in row.items()}
+        pairs |= {(a, b): value for b, value in row.items()}
     names = tuple(name for name in random if any(name in pair for pair in pairs))
     matrix = np.eye(len(names))
     for (a, b), value in pairs.items():
-        for name in (a, b):
-            if name not in random:
-                problem = f"{name!r} has no distribution: must be one of {', '.join(random)}{suggestion(name, random)}"
-                raise section_error(path, "correlation", a, problem)
-        if a == b or not _is_number(value) or not -1.0 < value < 1.0:
-            raise section_error(
-                path, "correlation", a, f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)"
-            )
-        if pairs.get((b, a), value) != value:
+        problem = ""
+        if unknown := [name for name in (a, b) if name not in random]:
+            names_allowed = f"must be one of {', '.join(random)}{suggestion(unknown[0], random)}"
+            problem = f"{unknown[0]!r} has no distribution: {names_allowed}"
+        elif a == b or not _is_number(value) or not -1.0 < value < 1.0:
+            problem = f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)"
+        elif pairs.get((b, a), value) != value:
             problem = f"{a}.{b} = {value!r}: must be that of {b}.{a} = {pairs[b, a]!r:.40}"
+        if problem:
             raise section_error(path, "correlation", a, problem)
         n, m = names.index(a), names.index(b)
         matrix[n, m] = matrix[m, n] = value

@@ -1,4 +1,4 @@
-"""Look through a results store: is everything there, and as it was meant?"""
+"""Check of a results store against its records: :func:`verify`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,15 @@ from .store import problems
 
 @dataclass(frozen=True)
 class Verdict:
-    """``damaged`` files, and the ``missing`` blocks out of ``blocks``; ``finished``: the summaries are there."""
+    """Result of :func:`verify`; ``str`` states it in words.
+
+    Attributes
+    ----------
+    blocks : number of blocks of the run.
+    missing : blocks that are missing or damaged.
+    damaged : files that are damaged, and files of the start that are missing.
+    finished : whether the summaries are complete.
+    """
 
     blocks: int
     missing: tuple[int, ...]
@@ -22,7 +30,7 @@ class Verdict:
 
     @property
     def ok(self) -> bool:
-        """Whether the store is complete and whole."""
+        """Whether the store is complete and undamaged."""
         return self.finished and not self.missing and not self.damaged
 
     def __str__(self) -> str:
@@ -45,12 +53,17 @@ def verify(path: str | PathLike[str]) -> Verdict:
     Returns
     -------
     Verdict
-        Which files are damaged and which blocks missing; ``ok`` where none is, a text by ``str``.
+        Damaged files and missing blocks; ``ok`` if there are none, a text by ``str``.
 
     Raises
     ------
     FileError
-        If there is no results store, or the record of its start is damaged.
+        If the folder is no results store, or the record of its start is damaged.
+
+    Examples
+    --------
+    >>> from viscoroll.io.runs import verify
+    >>> print(verify("results.zarr"))  # doctest: +SKIP
 
     Notes
     -----
@@ -60,15 +73,15 @@ def verify(path: str | PathLike[str]) -> Verdict:
     motions, size, blocks = (int(start.about[name]) for name in ("motions", "motions_a_block", "blocks"))
     parts: dict[str | int, int] = {"start": motions}
     parts |= {block: min(size, motions - block * size) for block in range(blocks)} | {"end": motions}
-    found = {part: problems(root, part, start.run, count) for part, count in parts.items()}
-    missing = tuple(block for block in range(blocks) if found[block])
-    # of a block or an end that was not made yet there is nothing to be damaged
-    damaged = (name for part, names in found.items() for name in names if part == "start" or (root / name).exists())
-    return Verdict(blocks, missing, tuple(damaged), not found["end"])
+    faults = {part: problems(root, part, start.run, count) for part, count in parts.items()}
+    missing = tuple(block for block in range(blocks) if faults[block])
+    # a block or an end without files was not evaluated yet: it is missing, not damaged
+    damaged = (name for part, names in faults.items() for name in names if part == "start" or (root / name).exists())
+    return Verdict(blocks, missing, tuple(damaged), not faults["end"])
 
 
 def start_of(path: str | PathLike[str]) -> Record:
-    """The record of its start; raises FileError."""
+    """Return the record "start" of a store; raise FileError if the folder has none, or a damaged one."""
     if not Path(path).is_dir():
         raise FileError(path, "is no results store: there is no such folder")
     refuse_unreadable(Path(path))

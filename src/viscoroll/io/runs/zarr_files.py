@@ -1,6 +1,6 @@
-"""The files of a zarr hierarchy (format 2) as bytes: zarr encodes in memory, the store writes.
+"""Files of a zarr hierarchy (format 2) as bytes: zarr encodes in memory, and the store writes.
 
-So every file can be written whole, synced, and held against the digest of what was meant.
+So each file is written whole, synced, and compared with the digest of its content.
 """
 
 from __future__ import annotations
@@ -16,33 +16,38 @@ from ...core.extras import import_extra
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Names of the metadata files of zarr format 2.
 _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
 def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None = None) -> dict[str, bytes]:
-    """The group of all ``count`` motions without their chunks, or the chunks of block ``number``, whose they are."""
+    """Return files of the group of all motions: path below the group -> content.
+
+    motions: dataset over (motion, t), of one block.  count: motions of the run.  block: motions of a full block.
+    number: of the block, whose chunks are returned; None: return the metadata and the arrays that all motions share.
+    """
     zarr = import_extra("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=motions.attrs)
     start = 0 if number is None else number * block
-    for name, one in motions.variables.items():
-        of_each = "motion" in one.dims
-        more = one.shape[1:] if of_each else one.shape
+    for name, variable in motions.variables.items():
+        of_motions = "motion" in variable.dims
+        shape = variable.shape[of_motions:]
         array = group.create_array(
-            name, shape=(*(count,) * of_each, *more), chunks=(*(block,) * of_each, *more), dtype=one.dtype,
+            name, shape=(*(count,) * of_motions, *shape), chunks=(*(block,) * of_motions, *shape), dtype=variable.dtype,
             # with zarr's own fill value, 0, xarray would take t = 0 for missing
-            fill_value=np.nan if one.dtype.kind == "f" else None, config={"write_empty_chunks": True},
-            attributes=one.attrs | {"_ARRAY_DIMENSIONS": list(one.dims)},
+            fill_value=np.nan if variable.dtype.kind == "f" else None, config={"write_empty_chunks": True},
+            attributes=variable.attrs | {"_ARRAY_DIMENSIONS": list(variable.dims)},
         )  # fmt: skip
-        if of_each == (number is not None):
-            array[start : start + len(one)] = one.values
+        if of_motions == (number is not None):
+            array[start : start + len(variable)] = variable.values
     content = _as_bytes(files)
-    return content if number is None else {key: each for key, each in content.items() if not _is_metadata(key)}
+    return content if number is None else {key: chunk for key, chunk in content.items() if not _is_metadata(key)}
 
 
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
-    """All files of a small dataset."""
+    """Return all files of a small dataset: path -> content."""
     zarr = import_extra("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
@@ -51,14 +56,19 @@ def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
 
 
 def consolidated(files: dict[str, bytes]) -> bytes:
-    """The file .zmetadata of a hierarchy, by which readers find everything at once."""
-    found = {key: json.loads(text) for key, text in sorted(files.items()) if _is_metadata(key)}
-    return json.dumps({"metadata": found, "zarr_consolidated_format": 1}, indent=1).encode()
+    """Return the content of .zmetadata, from which readers take all metadata at once.
+
+    files: path -> content, of the hierarchy.
+    """
+    metadata = {key: json.loads(text) for key, text in sorted(files.items()) if _is_metadata(key)}
+    return json.dumps({"metadata": metadata, "zarr_consolidated_format": 1}, indent=1).encode()
 
 
 def _is_metadata(key: str) -> bool:
+    """Whether a path is that of a metadata file."""
     return key.rpartition("/")[2] in _METADATA
 
 
 def _as_bytes(files: Mapping[str, Any]) -> dict[str, bytes]:
+    """Return the content of zarr's buffers: path -> bytes."""
     return {key: buffer.to_bytes() for key, buffer in files.items()}

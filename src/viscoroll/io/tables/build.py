@@ -12,9 +12,9 @@ from ...contact_law.contact import contact
 from ...core.array_types import Floats
 from ...core.errors import ParameterError
 from ...cylinder import Cylinder
-from ...materials.law_file import described, law_of
-from ...materials.law_store import content_of
-from ...materials.law_table import LawTable
+from ...materials.law.netcdf import bodies_as_toml, parse_law
+from ...materials.law.table import LawTable
+from ...materials.law_file import dataset_content
 from ...materials.prony_forms import HIGHEST_ALPHA
 from ...scene import Scene
 from . import schema
@@ -113,7 +113,7 @@ def build(
     table.attrs |= {name: float(getattr(what, name)) for name in numbers if name not in axes}
     material = what.pair if isinstance(what, Cylinder) else what.material
     if material is not None:
-        table.attrs["material"] = described(material)
+        table.attrs["material"] = bodies_as_toml(material)
     _state_errors(table, what)
     if method == "direct":
         for name, difference in differences(table, what).items():
@@ -124,7 +124,7 @@ def build(
 def _roller_of(what: Any) -> Scene | Cylinder:
     """Return the roller of a grid: ``what`` itself, or the scene with kappa = mu = 1 of a law; else ParameterError."""
     if getattr(what, "attrs", {}).get(schema.KIND) == "law":
-        what = law_of(content_of(what), "law")
+        what = parse_law(dataset_content(what), "law")
     if isinstance(what, LawTable):
         what = Scene(kappa=1.0, mu=1.0, material=what)
     if not isinstance(what, Scene | Cylinder):

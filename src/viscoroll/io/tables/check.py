@@ -10,8 +10,8 @@ import numpy as np
 from ... import __version__
 from ...core.checks import check_integer
 from ...core.errors import FileError
-from ...materials.law_file import axis_of, law_of
-from ...materials.law_store import AXIS, KIND, content_of, errors_of
+from ...materials.law.netcdf import parse_axis, parse_law
+from ...materials.law_file import AXIS, KIND, dataset_content, stated_errors
 from ...scene import Scene
 from . import schema
 from .build import RELATIVE_FIELDS, differences, errors_at, random_points
@@ -103,13 +103,13 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     source = table.encoding.get("source", "table")
     if not is_law(table):
         return _check_grid(table, count, seed, source)
-    content = content_of(table)
-    read = axis_of if content.attributes[KIND] == AXIS else law_of
+    content = dataset_content(table)
+    read = parse_axis if content.attributes[KIND] == AXIS else parse_law
     errors = measured_errors(read(content, source), count, seed)
     meaning = f"relative; {count} places, against the formulas of the modes"
     return [
         Check(f"{table.attrs['title']}: {name}", errors[name], SAMPLE_RATIO * stated + ROUNDING, meaning)
-        for name, stated in errors_of(table).items()
+        for name, stated in stated_errors(table).items()
     ]
 
 

@@ -12,8 +12,8 @@ from ...core.array_types import Floats
 from ...core.checks import broadcast_shape, check_array
 from ...core.errors import OutOfTableError, ParameterError, check_names
 from ...core.results import Values
-from ...materials.grid_splines import compiled, spline
-from ...materials.law_grid import friction_limit
+from ...materials.law.grid import friction_limit
+from ...materials.law.splines import fit_spline, pack_spline
 from . import schema
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ class Interpolant:
             raise ParameterError("field", name, "of a grid over V and delta")
         dims, found = self._spline(name)
         logs = () if self._linear else ("V", "alpha")
-        return spline_at, compiled(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
+        return spline_at, pack_spline(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
 
     def _map_points(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
@@ -147,7 +147,7 @@ class Interpolant:
             field = self._table[name].squeeze()
             dims = tuple(map(str, field.dims))
             axes = [self._map_axis(dim, self._table[dim].values) for dim in dims]
-            self._splines[name] = dims, spline(field.values, axes, 1 if self._linear else 3)
+            self._splines[name] = dims, fit_spline(field.values, axes, 1 if self._linear else 3)
         return self._splines[name]
 
 

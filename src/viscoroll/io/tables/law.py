@@ -11,11 +11,12 @@ from ...contact_law.contact_table import evaluate_law
 from ...core.array_types import Floats
 from ...core.errors import ParameterError, exactly_one_error
 from ...cylinder import Cylinder
-from ...materials import law_axis
-from ...materials.cover_rows import at_speed
-from ...materials.law_file import as_dataset, table_of
-from ...materials.law_modes import by_modes
-from ...materials.law_table import FUNCTIONS, LawTable
+from ...materials.law import alpha_axis
+from ...materials.law.cover_rows import solve_at_speed
+from ...materials.law.evaluate import evaluate_by_modes
+from ...materials.law.netcdf import law_as_dataset, law_table_of
+from ...materials.law.pack import AXIS_FUNCTIONS, FUNCTIONS
+from ...materials.law.table import LawTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,23 +72,23 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     """
     if (alpha is None) == (material is None):
         raise exactly_one_error("material", "alpha", both=alpha is not None)
-    table: LawTable | law_axis.LawAxis
+    table: LawTable | alpha_axis.LawAxis
     if alpha is not None:
         if base is not None or np.shape(alpha) != (2,):
             raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
-        table = law_axis.law_axis(*alpha)
+        table = alpha_axis.law_axis(*alpha)
     elif isinstance(material, Cylinder):
         pair = material.pair
-        table = table_of(pair if pair.covered is None else material.scene().material, base)
+        table = law_table_of(pair if pair.covered is None else material.scene().material, base)
         if pair.covered is not None:  # a layer, which the scene of the cylinder has in units of its l0
             table = replace(table, T_ref=material.T_ref, pair=pair)
     else:
-        table = table_of(material, base)
-    return as_dataset(table, measured_errors(table))
+        table = law_table_of(material, base)
+    return law_as_dataset(table, measured_errors(table))
 
 
 def measured_errors(
-    table: LawTable | law_axis.LawAxis, count: int | None = None, seed: int = _SEED
+    table: LawTable | alpha_axis.LawAxis, count: int | None = None, seed: int = _SEED
 ) -> dict[str, float]:
     """Return the largest relative error of every function at random points before its fast limit.
 
@@ -100,20 +101,20 @@ def measured_errors(
     seed : of the points.
     """
     random = np.random.default_rng(seed)
-    if isinstance(table, law_axis.LawAxis):
+    if isinstance(table, alpha_axis.LawAxis):
         octaves = len(table.rows)
         alphas = np.exp2(table.first + octaves * random.random(_ALPHAS_PER_OCTAVE * octaves)).tolist()
         found = [measured_errors(table.at(alpha), count and 1 + count // len(alphas), seed) for alpha in alphas]
         worst = {name: max(errors[name] for errors in found) for name in FUNCTIONS}
         worst["m"] = worst["m_half_space"] + worst["m_cylinder"]
-        return {name: worst[name] for name in law_axis.FUNCTIONS}
+        return {name: worst[name] for name in AXIS_FUNCTIONS}
     if table.cover is not None:
         return _measured_errors_of_cover(table, count or _COVER_SPEEDS, random)
     rows, e0 = table.coefficients.shape[0], table.e0
     # kappa |V| = 1/(2 sqrt(H)) and v = 1/F lie within [1/(2 zeta sqrt(alpha)), 1/zeta].
     octaves = rows + np.log2(table.alpha) / 2.0 + 3.0
     zeta = np.exp2(2.0 - e0 - octaves * random.random(count or int(_POINTS_PER_OCTAVE * octaves)))
-    (shift, growth, half_space, cylinder), _, N = by_modes(table.material, zeta)
+    (shift, growth, half_space, cylinder), _, N = evaluate_by_modes(table.material, zeta)
     root, F, M = np.sqrt(1.0 + 2.0 * growth), 1.0 + shift, half_space + cylinder
     exact = 1.0 / root, shift, half_space, cylinder, N, 1.0 / F, (root / F) ** 2
     scales = exact[0], exact[1], M, M, np.full(zeta.size, np.abs(N).max()), exact[5], exact[6]
@@ -136,7 +137,7 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
     cover: Any = table.material
     slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
     u = slow * (fast / slow) ** random.random(count)
-    exact = np.array([at_speed(cover.modes, cover.thickness, each, orders=_COVER_TERMS) for each in u.tolist()]).T
+    exact = np.array([solve_at_speed(cover, each, orders=_COVER_TERMS) for each in u.tolist()]).T
     found = evaluate_law(table, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, _COVER_FIELDS)
     L, M = exact[1], u * exact[4]
     free = found[2] * (2.0 if cover.on == "base" else -2.0)

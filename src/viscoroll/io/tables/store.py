@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...core.errors import FileError
 from ...core.files import read_sealed, write_dataset
-from ...materials import law_store
+from ...materials import law_file
 from . import schema
 
 if TYPE_CHECKING:
@@ -23,13 +23,13 @@ _ERROR_NAMES = {"spline_error": "spline", "linear_error": "linear", "interpolati
 
 def is_law(table: Any) -> bool:
     """Whether a dataset ``table`` is the law of a material or of every alpha; else it is a grid, or no table."""
-    return getattr(table, "attrs", {}).get(schema.KIND) in law_store.KINDS
+    return getattr(table, "attrs", {}).get(schema.KIND) in law_file.KINDS
 
 
 def check(table: Any, path: Any) -> None:
     """Raise FileError, which names ``path``, if ``table`` is neither a law nor a grid."""
     if is_law(table):
-        law_store.check(law_store.content_of(table), path)
+        law_file.check_law(law_file.dataset_content(table), path)
     else:
         schema.check(table, path)
 
@@ -127,7 +127,7 @@ def info(path: str | PathLike[str]) -> str:
     lines = [f"{path}: {about[schema.KIND]}, {size:.0f} kB", about["title"], ""]
     if is_law(table):
         lines += [f"  {'function':<14}largest relative error"]
-        lines += [f"  {name:<14}{error:.1e}" for name, error in law_store.errors_of(table).items()]
+        lines += [f"  {name:<14}{error:.1e}" for name, error in law_file.stated_errors(table).items()]
     else:
         axes = {axis: table[axis].values for axis in schema.axes_of(table)}
         lines += [f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items()]
@@ -138,5 +138,5 @@ def info(path: str | PathLike[str]) -> str:
                 f"{word} {field.attrs[key]:.2g}" for key, word in _ERROR_NAMES.items() if key in field.attrs
             )
             lines.append(f"  {name:<26}{', '.join(map(str, field.dims)):<18}{errors}")
-    keys = ("material", "comment", "source", "history", law_store.CHECKSUM)
+    keys = ("material", "comment", "source", "history", law_file.CHECKSUM)
     return "\n".join([*lines, "", *(f"{key}: {about[key]}" for key in keys if key in about)])

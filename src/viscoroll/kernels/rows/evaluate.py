@@ -7,8 +7,8 @@
 
 ``law`` is a :class:`record.Law` whatever made its rows, so that its readers are compiled once.  The law of one material
 (``LawTable.record``) has all its rows, and all threads share it.  The law of one alpha for each state
-(``materials.law_each.law_of_alphas``) or one material for each (``law_of_materials``) belongs to one thread, which
-makes it for a block of states or motions.
+(``materials.law.per_element.record_of_alphas``) or one material for each (``record_of_materials``) belongs to one
+thread, which makes it for a block of states or motions.
 
 Such a law has one material selected at a time.  ``select_material`` gives a new material the next version number and
 writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader that finds

@@ -65,7 +65,7 @@ class Law(NamedTuple):
 
     rows : head and rows, (1 + number of rows) * ROW_SIZE numbers, dimensionless.
     marks : head and versions of the parts, (1 + number of rows) * PARTS_PER_ROW integers.
-    N_rows : rows of N and of its integral (:func:`...materials.law_build.added`); empty for steady rolling.
+    N_rows : rows of N and of its integral (:func:`...materials.law.pack.pack_unsteady`); empty for steady rolling.
     selector : address of the kernel (n, source) that selects the material of state n; 0 if all rows are complete.
     maker : address of the kernel (position in ``rows``, source) that makes a part; 0 if all rows are complete.
     source : address of the record that these kernels read (:mod:`..compile.intrinsics`).

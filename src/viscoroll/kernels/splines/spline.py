@@ -2,7 +2,7 @@
 
 A spline is one vector of doubles: a head, its three axes, its coefficients.  An axis is a head, the edges of its
 intervals, and for each interval the basis splines that are not 0 there, as polynomials of the distance from its left
-edge.  ``viscoroll.materials.grid_splines`` writes it.
+edge.  ``viscoroll.materials.law.splines`` writes it.
 """
 
 from typing import NamedTuple

@@ -1,8 +1,10 @@
-/* The contact law of viscoelastic cylinders that roll with partial slip, from the table of one material or pair.
+/* The contact law of viscoelastic cylinders that roll with partial slip, from the table of one material or pair, or of
+ * a cover (a layer of finite thickness) at one ratio of thickness and contact length.
  *
  * C99 and C++, one header, no allocation, no state, thread safe; of libm: frexp, log, log1p, sqrt, fabs, fmin, fmax.
  * Dimensionless: V in R/T_ref, forces over the load P, moments over P R.  V and slip = omega - V have any sign.
  * All values are NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300.
+ * Of a cover N is not known: it is NaN.
  *
  *     vr_state s = vr_contact(&rubber, kappa, mu, V, slip);
  *     vr_slopes d;
@@ -20,9 +22,14 @@ typedef struct {
   int rows, e0;                /* row 0: x in [0, 2^e0); row n: x in [2^(e0+n-1), 2^(e0+n)); beyond: the fast limit */
   double alpha, limit[3][2];   /* sum J_j/T_j and sum J_j/T_j (ln 2 T_j - 0.5772...): of all, half-space, cylinder */
   const double (*c)[VR_TERMS][VR_FUNCTIONS]; /* coefficients of powers of t */
+  const double (*creep)[VR_TERMS][2]; /* of a cover, over kappa |V|: 2 kappa delta_star/mu and 2 kappa delta_0;
+                                         a null pointer of half-spaces */
+  double fast[8]; /* of a cover as kappa |V| -> infinity, each with its factor of 1/(kappa |V|): lam, 2 kappa delta_0;
+                     epsilon kappa |V|; unused; share, with its factor of F */
 } vr_law;
 
-typedef struct { double lam, epsilon, delta_star, beta, Q, M, M_half_space, M_cylinder, N; } vr_state;
+/* delta_0: creep of free rolling on a cover by the strain that the pressure makes; 0 of half-spaces */
+typedef struct { double lam, epsilon, delta_star, delta_0, beta, Q, M, M_half_space, M_cylinder, N; } vr_state;
 /* dQ_dV at fixed omega, dQ_domega at fixed V; at V = 0 they are not finite */
 typedef struct { double dQ_dV, dQ_domega, dM_dV, dM_half_space_dV, dM_cylinder_dV; } vr_slopes;
 
@@ -78,6 +85,34 @@ static inline void vr_speed(const vr_law *law, double u, double out[5], double *
     if (slope) slope[f] = -half * z * (2.0 * m - l[0]) / u;
   }
   out[VR_N] = 0.25 * (law->alpha - 1.0) * z * z;
+  if (law->creep)
+    out[VR_LAM] = law->fast[0] + law->fast[1] / u, out[VR_EPSILON] = law->fast[4] / u, out[VR_N] = NAN;
+}
+
+/* 2 kappa delta_star/mu, 2 kappa delta_0 and d(2 kappa delta_0)/du at u = kappa |V|, of a cover */
+static inline void vr_creep(const vr_law *law, double u, double out[3]) {
+  vr_place p = vr_at(law, u);
+  const double(*c)[2];
+  int k;
+  if (p.row < 0) { /* L = L_1 + C/4u, as L_1 = alpha^-1/2 */
+    double L = 1.0 / sqrt(law->alpha);
+    out[0] = L + 0.25 * law->limit[0][1] / u;
+    out[1] = law->fast[2] + law->fast[3] / u, out[2] = -law->fast[3] / (u * u);
+    return;
+  }
+  c = law->creep[p.row];
+  for (out[0] = out[1] = out[2] = 0.0, k = VR_TERMS - 1; k >= 0; k--)
+    out[0] = out[0] * p.t + c[k][0], out[2] = out[2] * p.t + out[1], out[1] = out[1] * p.t + c[k][1];
+  out[2] *= p.dt_dx;
+}
+
+/* delta_0 at a speed and its slope over |V|; 0 of half-spaces */
+static inline double vr_free_creep(const vr_law *law, double kappa, double V, double *slope) {
+  double creep[3];
+  *slope = 0.0;
+  if (!law->creep || !(kappa * fabs(V) <= 1e300)) return 0.0;
+  vr_creep(law, kappa * fabs(V), creep);
+  return *slope = 0.5 * creep[2], 0.5 * creep[1] / kappa;
 }
 
 /* eta/F and H/F^2 at v = 1/F; slope, if not NULL: d/dv of the second */
@@ -91,6 +126,7 @@ static inline void vr_stick(const vr_law *law, double v, double out[2], double *
   double y = 1.0 / v, b = law->limit[0][1] - law->limit[0][0] * log(y);
   out[0] = 1.0 - 0.5 * law->alpha * y * b, out[1] = law->alpha * out[0] * out[0];
   if (slope) *slope = law->alpha * out[0] * (law->alpha * y) * y * (b - law->limit[0][0]);
+  if (law->creep) out[0] = law->fast[6] + law->fast[7] / v;
 }
 
 /* (H/F^2 at v2 less that at v1)/(v2 - v1), v1 <= v2 < 2 v1, without cancellation */
@@ -122,10 +158,13 @@ static inline double vr_secant(const vr_law *law, double v1, double v2) {
 /* a NaN for every value */
 static inline void vr_nothing(vr_state *s, vr_slopes *d) {
   s->lam = s->epsilon = s->delta_star = s->beta = s->Q = s->M = s->M_half_space = s->M_cylinder = s->N = NAN;
+  s->delta_0 = NAN;
   if (d) d->dQ_dV = d->dQ_domega = d->dM_dV = d->dM_half_space_dV = d->dM_cylinder_dV = NAN;
 }
 
-static inline void vr_solve(const vr_law *law, double kappa, double mu, double V, double slip,
+/* The state at a slip less that of free rolling, V delta_0, which the caller has taken off, and the slopes at fixed
+ * delta_0.  slip: that difference; d: the slopes, or a null pointer. */
+static inline void vr_solve(const vr_law *law, double kappa, double mu, double V, double slip, double delta_0,
                             vr_state *s, vr_slopes *d) {
   double u = kappa * fabs(V), f[5], m[2] = {0.0, 0.0}, a[2], b[2], p1, p2, q;
   double sign = (slip > 0.0) - (slip < 0.0), delta = slip == 0.0 ? 0.0 : fabs(slip / V);
@@ -134,8 +173,11 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
     return;
   }
   vr_speed(law, u, f, d ? m : (double *)0);
-  double L = f[VR_LAM] * (1.0 + f[VR_EPSILON]), D = 2.0 * kappa * delta / mu, w = L - D;
+  double creep[3] = {f[VR_LAM] * (1.0 + f[VR_EPSILON])};
+  if (law->creep) vr_creep(law, u, creep);
+  double L = creep[0], D = 2.0 * kappa * delta / mu, w = L - D;
   s->lam = f[VR_LAM], s->epsilon = f[VR_EPSILON], s->N = f[VR_N], s->delta_star = 0.5 * mu * L / kappa;
+  s->delta_0 = delta_0;
   s->M_half_space = V * f[VR_M_HALF_SPACE], s->M_cylinder = V * f[VR_M_CYLINDER];
   s->M = V * (f[VR_M_HALF_SPACE] + f[VR_M_CYLINDER]);
   if (d) {
@@ -158,13 +200,16 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
 }
 
 static inline vr_state vr_contact(const vr_law *law, double kappa, double mu, double V, double slip) {
+  double slope, delta_0 = vr_free_creep(law, kappa, V, &slope);
   vr_state s;
-  vr_solve(law, kappa, mu, V, slip, &s, (vr_slopes *)0);
+  vr_solve(law, kappa, mu, V, slip - V * delta_0, delta_0, &s, (vr_slopes *)0);
   return s;
 }
 
 static inline void vr_contact_slopes(const vr_law *law, double kappa, double mu, double V, double slip,
                                      vr_state *s, vr_slopes *d) {
-  vr_solve(law, kappa, mu, V, slip, s, d);
+  double slope, delta_0 = vr_free_creep(law, kappa, V, &slope);
+  vr_solve(law, kappa, mu, V, slip - V * delta_0, delta_0, s, d);
+  if (law->creep) d->dQ_dV -= (delta_0 + fabs(V) * slope) * d->dQ_domega; /* d(V delta_0)/dV */
 }
 #endif

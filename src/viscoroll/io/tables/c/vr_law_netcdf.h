@@ -30,7 +30,7 @@ static inline int vr_law_open(const char *path, vr_law *law) {
   if (!e && !(e = nc_inq_varid(id, "e0", &v))) e = nc_get_var_int(id, v, &law->e0);
   if (!e && !(e = nc_inq_varid(id, "alpha", &v))) e = nc_get_var_double(id, v, &law->alpha);
   if (!e && !(e = nc_inq_varid(id, "fast_limit", &v))) e = nc_get_var_double(id, v, &law->limit[0][0]);
-  law->rows = (int)rows, law->c = (const double(*)[VR_TERMS][VR_FUNCTIONS])c;
+  law->creep = 0, law->rows = (int)rows, law->c = (const double(*)[VR_TERMS][VR_FUNCTIONS])c;
   free(one), nc_close(id);
   if (e) free(c), law->c = NULL;
   return e;

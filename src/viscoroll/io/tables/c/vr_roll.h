@@ -41,8 +41,10 @@ static inline double vr_creep_speed(double V, double rest, double *slope) {
 static inline void vr_contact_near_rest(const vr_law *law, double kappa, double mu, double V, double slip, double rest,
                                         vr_state *s, vr_slopes *d) {
   double bend, speed = vr_creep_speed(V, rest, &bend), part = V / speed, more = (1.0 - part * bend) / speed;
-  vr_contact_slopes(law, kappa, mu, speed, slip, s, d);
+  double slope, delta_0 = vr_free_creep(law, kappa, speed, &slope);
+  vr_solve(law, kappa, mu, speed, slip - V * delta_0, delta_0, s, d);
   d->dQ_dV = (d->dQ_dV + d->dQ_domega) * bend;
+  if (law->creep) d->dQ_dV -= (delta_0 + V * slope * bend) * d->dQ_domega; /* d(V delta_0)/dV */
   d->dM_half_space_dV = part * bend * d->dM_half_space_dV + more * s->M_half_space;
   d->dM_cylinder_dV = part * bend * d->dM_cylinder_dV + more * s->M_cylinder;
   d->dM_dV = d->dM_half_space_dV + d->dM_cylinder_dV;

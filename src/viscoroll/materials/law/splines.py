@@ -1,4 +1,4 @@
-"""Tensor splines on grids, by scipy, and as what compiled code reads (``kernels.splines``)."""
+"""Tensor splines on grids, by scipy, and in the form that compiled code reads (``kernels.splines``)."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from ..core.array_types import Floats
+from ...core.array_types import Floats
 
 
-def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
-    """The tensor spline through values on a grid, not-a-knot, along few nodes of lower degree; no axes: the value.
+def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
+    """Return the not-a-knot tensor spline through values on a grid, of lower degree along axes of few nodes.
 
     Parameters
     ----------
     values : (nodes of the first axis, nodes of the second, ...).
-    axes : coordinates of the nodes, increasing.
+    axes : coordinates of the nodes, increasing, one array for each axis; none for a single value.
     degree : 1 or 3.
 
     Returns
     -------
-    scipy.interpolate.NdBSpline, or ``values`` where there are no axes.
+    scipy.interpolate.NdBSpline, or ``values`` without axes.
     """
     from scipy.interpolate import NdBSpline, make_interp_spline
 
@@ -34,18 +34,16 @@ def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 
 
 def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
-    """An axis of a spline as ``kernels.splines.spline`` reads it.
+    """Return an axis of a spline in the form that ``kernels.splines.spline`` reads.
 
-    Parameters
-    ----------
-    knots : of a not-a-knot spline.
-    degree : 0 to 3.
-    log : whether the spline runs in the logarithm of the coordinate.
-    stride : how many coefficients one step along the axis is.
+    knots: of a not-a-knot spline.
+    degree: 0 to 3.
+    log: whether the spline runs in the logarithm of the coordinate.
+    stride: number of coefficients that one step along the axis is.
     """
     from scipy.interpolate import BSpline
 
-    from ..kernels.splines.spline import TERMS
+    from ...kernels.splines.spline import TERMS
 
     edges = knots[degree : knots.size - degree]
     of, own = np.arange(edges.size - 1)[:, np.newaxis], np.arange(degree + 1)
@@ -56,15 +54,15 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     return np.concatenate([[edges.size - 1, degree + 1, log, stride], edges, basis.ravel()])
 
 
-def compiled(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds: tuple[float, float]) -> Floats:
-    """A spline over some of V, delta and alpha as the vector that ``kernels.splines.spline`` reads.
+def pack_spline(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds: tuple[float, float]) -> Floats:
+    """Return a spline over some of V, delta and alpha as the vector that ``kernels.splines.spline`` reads.
 
     Parameters
     ----------
-    found : of :func:`spline`; the value of a field over no axis.
-    axes : those that it is over, in their order.
-    logs : those in whose logarithm it runs.
-    bounds : to which values are clipped.
+    found : a spline of :func:`fit_spline`, or the value of a field over no axis.
+    axes : names of its axes, in their order.
+    logs : names of the axes in whose logarithm it runs.
+    bounds : lowest and highest value, to which results are clipped.
     """
     # an axis that the field is not over: no interval, one basis spline, which is 1
     vectors = dict.fromkeys(("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15))

@@ -1,4 +1,4 @@
-"""A material as netCDF that carries its series: ``to_netcdf`` and ``from_netcdf`` of :class:`viscoroll.Material`."""
+"""A material as netCDF that contains its series: ``to_netcdf`` and ``from_netcdf`` of :class:`viscoroll.Material`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from .. import __version__
 from ..core.errors import FileError, ParameterError
 from ..core.files import seal_matches, write_dataset
-from .law_store import content_at
+from .law_file import read_content
 from .measured import Measured
 from .prony import Prony
 
@@ -20,10 +20,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _Made = TypeVar("_Made")
+#: suffix of netCDF files
 SUFFIX = ".nc"
-#: what a file says of itself; another number where one of this version could not be read any more
+#: attribute ``schema`` of a file; its number changes if an older version could not read the file
 _SCHEMA = "viscoroll material 1"
+#: variables of each form of the series
 _FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
+#: meaning and unit of each variable
 _MEANING = {
     "E": ("strengths of relaxation over E_long", "1"),
     "tau": ("relaxation times over T_ref", "1"),
@@ -40,12 +43,17 @@ _MEANING = {
     "measured_high": ("last angular frequency of the data", "rad s-1"),
     "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
 }
+#: variables that a file may lack
 _OPTIONAL = ("density", "thickness", "temperature")
+#: fields of the measured band, which a file may lack
 _BAND = ("low", "high", "misfit")
 
 
-def as_dataset(material: Any) -> xr.Dataset:
-    """Both forms of the series over "mode", slowest first, and the constants; ``given`` names the form to trust."""
+def material_as_dataset(material: Any) -> xr.Dataset:
+    """Return both forms of the series over "mode", slowest first, and the constants of a ``material`` as a dataset.
+
+    The attribute ``given`` names the form from which the material is read.
+    """
     import xarray as xr
 
     series, band = material.prony, material.measured
@@ -68,15 +76,20 @@ def as_dataset(material: Any) -> xr.Dataset:
     )  # fmt: skip
 
 
-def save(material: Any, path: str | PathLike[str]) -> None:
-    """Write a material, sealed; raises FileError."""
-    write_dataset(as_dataset(material), path, sealed=True)
+def save_material(material: Any, path: str | PathLike[str]) -> None:
+    """Write a ``material`` to the file ``path``, sealed; raises FileError."""
+    write_dataset(material_as_dataset(material), path, sealed=True)
 
 
-def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
-    """What ``make`` gives of the arguments of a material that :func:`save` wrote; raises FileError."""
+def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
+    """Read a file of :func:`save_material`; raises FileError.
+
+    path: of the file.
+    make: constructor of the material, called with its parameters by name.
+    Returns the material.
+    """
     try:
-        numbers, about = content_at(path, "material of this package", "write it again")
+        numbers, about = read_content(path, "material of this package", "write it again")
         if about.get("schema") != _SCHEMA:
             raise FileError(path, f"is no material: its schema is {about.get('schema')!r}, not {_SCHEMA!r}")
         if seal_matches(Path(path).read_bytes()) is None:

@@ -1,4 +1,4 @@
-"""The law of a grid: Q over V and delta and M over V as splines, from a file of this package or of another program."""
+"""The law of a grid: splines of Q over V and delta and of M over V, from a file of this package or another program."""
 
 from __future__ import annotations
 
@@ -9,37 +9,39 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.array_types import Floats
-from ..core.checks import check_array, check_number
-from ..core.errors import FileError, OutOfTableError, ParameterError
-from ..core.files import read_sealed
-from ..core.units import conversion_factor
-from .grid_splines import compiled, spline
+from ...core.array_types import Floats
+from ...core.checks import check_array, check_number
+from ...core.errors import FileError, OutOfTableError, ParameterError
+from ...core.files import read_sealed
+from ...core.units import conversion_factor
+from .splines import fit_spline, pack_spline
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Variables of a grid -> their SI unit; a moment divided by a length is a force.
+#: SI unit of each variable of a grid; a moment divided by a length is a force
 UNITS = {"V": "m/s", "delta": "1", "Q": "N/m", "M": "N", "M_half_space": "N", "M_cylinder": "N"}
-#: Ways to interpolate to an alpha between the nodes, by the number of nodes.
-_WAYS = ("nearest", "linear", "quadratic", "cubic")
-#: At the ends of delta this part of the largest |Q| counts as full slip: files may hold six digits.
+#: methods to interpolate to an alpha between the nodes, by the number of nodes less 1
+_METHODS = ("nearest", "linear", "quadratic", "cubic")
+#: fraction of the largest |Q| from which on the ends of delta count as full slip: files may have six digits only
 _FULL_SLIP = 1.0 - 1e-5
+#: largest file that is read, bytes
 _MOST_BYTES = 1 << 31
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LawGrid:
-    """What :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes a function of V and omega of it.
+    """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes a function of V and
+    omega of it.
 
-    Attributes
-    ----------
-    splines : Q, M_half_space and M_cylinder as :func:`viscoroll.materials.grid_splines.compiled` writes them; over
-        load and load times radius, or N/m and N.
+    Attributes ----------
+    splines : Q, M_half_space and M_cylinder, as :func:`viscoroll.materials.law.splines.pack_spline` writes them; Q
+    divided by the load and M divided by load times radius, or in N/m and N.
     V : slowest and fastest speed; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
-    slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond.
-    R : radius in m, 1 where all is dimensionless.
+    slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond
+    them.
+    R : radius in m; 1 for a dimensionless grid.
     title : of the file.
     """
 
@@ -54,18 +56,23 @@ class LawGrid:
         return f"LawGrid(for vr.law alone: {self.title})"
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
-        """Raise OutOfTableError for a state outside of the axes."""
+        """Raise OutOfTableError for a state outside the axes.
+
+        V: speed, of the unit of the grid.
+        omega: angular velocity, likewise.
+        """
         if np.abs(V) > self.V[1]:
             raise OutOfTableError("V", float(V), -self.V[1], self.V[1])
         raise OutOfTableError("delta", float(np.divide(omega * self.R - V, V)), *self.delta)
 
 
 def friction_limit(attributes: Any) -> float:
-    """Largest |Q| that the law admits, Eq. (15): mu, in SI units mu times the load; infinite where no mu is stated.
+    """Return the largest |Q| that the law allows, Eq. (15): mu, or in SI units mu times the load; infinite without a
+    mu.
 
     Parameters
     ----------
-    attributes : of a grid.
+    attributes : attributes of a grid.
 
     Returns
     -------
@@ -76,14 +83,18 @@ def friction_limit(attributes: Any) -> float:
 
 
 def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
-    """The law of a grid from a netCDF file of any program; None of a file that is no netCDF or has no Q over V, delta.
+    """Read the law of a grid from a netCDF file of any program.
 
-    Parameters
-    ----------
-    path : variables V(V) > 0, delta(delta), Q over both and M over V, perhaps M_half_space and M_cylinder, each with an
-        attribute ``units``; all over alpha too where there is an axis of that name.  Global attributes: mu, and where V
-        has a unit R in m and the load in N/m.
-    alpha : where the grid has an axis of it; between its nodes by a spline in ln alpha.
+    Parameters ----------
+    path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
+    M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
+    attributes: mu, and where V has a unit R in m and the load in N/m.
+    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.
+
+    Returns
+    -------
+    LawGrid or None
+        None for a file that is no netCDF or has no Q over V and delta.
 
     Raises
     ------
@@ -91,7 +102,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         A damaged file; a variable that is missing, has other dimensions or other units, is not finite or does not
         increase; no R beside speeds with a unit.
     ParameterError
-        An alpha that the grid does not hold, or none where it has that axis.
+        An alpha outside the grid, or none for a grid with that axis.
     """
     import xarray as xr
 
@@ -110,7 +121,12 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 
 
 def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
-    """A grid at one alpha, where it is over any; raises ParameterError."""
+    """Return a grid at one alpha; raises ParameterError.
+
+    table: grid, with or without an axis alpha.
+    path: of the file, for errors.
+    alpha: wanted value, or None.
+    """
     if "alpha" not in table.dims:
         return table
     low, high = table["alpha"].values[[0, -1]]
@@ -118,12 +134,15 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
         raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds")
     if low == high:
         return table.squeeze("alpha")
-    way: Any = _WAYS[min(table.sizes["alpha"], len(_WAYS)) - 1]
-    return table.assign_coords(alpha=np.log(table["alpha"])).interp(alpha=np.log(alpha), method=way)
+    method: Any = _METHODS[min(table.sizes["alpha"], len(_METHODS)) - 1]
+    return table.assign_coords(alpha=np.log(table["alpha"])).interp(alpha=np.log(alpha), method=method)
 
 
 def _in_si(table: xr.Dataset) -> xr.Dataset:
-    """A grid in SI units where its V has a unit, else without dimension; raises ParameterError."""
+    """Return a grid in SI units if its V has a unit, else without dimension; raises ParameterError.
+
+    table: grid whose variables have an attribute ``units``.
+    """
     names = [name for name in UNITS if name in table.variables]
     given = {name: str(table[name].attrs.get("units", "missing")) for name in names}
     for name, unit in given.items():
@@ -137,13 +156,16 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
 
 
 def _law_of(table: xr.Dataset) -> LawGrid:
-    """The law of a grid in SI units; raises KeyError and ValueError, among these ParameterError."""
+    """Return the law of a grid in SI units; raises KeyError, and ValueError, of which ParameterError is one.
+
+    table: grid at one alpha.
+    """
     V, delta = check_array("V", table["V"].values, low=0.0, strict=True), table["delta"].values
     axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}
     for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
         field = table[name] if name in table else 0.5 * table["M"]
-        found = spline(field.transpose(*over).values, [axes[each] for each in over], 3)
-        splines[name] = compiled(found, over, ("V",), (-most, most) if name == "Q" else (-np.inf, np.inf))
+        found = fit_spline(field.transpose(*over).values, [axes[each] for each in over], 3)
+        splines[name] = pack_spline(found, over, ("V",), (-most, most) if name == "Q" else (-np.inf, np.inf))
     return LawGrid(
         splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
         slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= _FULL_SLIP * most).all()),

@@ -1,0 +1,1 @@
+"""The law of a material as rows of polynomials: evaluation by modes, fit, layout, tables, files."""

@@ -1,0 +1,312 @@
+"""The law of a cover over speed: solutions of :mod:`.cover_solve` at nodes of u = kappa |V|, as rows of polynomials.
+
+A scene fixes l0/h, so that theta = lam l0/(2 h) follows from the half contact length that carries the load; all
+quantities are then smooth functions of u alone.  They are computed at twelve nodes an octave, from slow to fast, each
+from a start that is extrapolated from the nodes before.  Octaves are interpolated between these nodes.  Below the first
+octave there is a polynomial of u, beyond the last one a polynomial of 1/u, both with the limits of elastic layers.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from ...core.array_types import Floats
+from ...core.errors import ParameterError
+from ..cover import Cover
+from .cover_pressure import local_strain
+from .cover_solve import LARGEST_THETA, CoverModes, modes_of_cover, solve
+from .pack import CoverRows, constant_rows, steady_table
+from .rows import NODES, Rows, row_range
+
+#: nodes an octave of u at which the cover is solved; with 12 and the neighbours below rows agree with the solve to
+#: 1e-11
+PER_OCTAVE = 12
+#: nodes on either side of an octave that take part in its polynomial; with 18 it is accurate to rounding
+_ASIDE = 18
+#: index of lam among the quantities that are computed at the nodes
+_LAM = 0
+#: index of L = 2 kappa delta_star/mu
+_LIMIT = 1
+#: index of 2 kappa delta_0 of a cover on the base
+_FREE = 2
+#: index of epsilon
+_EPSILON = 3
+#: index of M/V
+_MOMENT = 4
+#: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row in 1/u
+_FAST_OCTAVES = 4
+#: octaves of rows beyond those, after which the first order in 1/u is accurate to rounding
+_BEYOND = 42
+#: nodes of the polynomials at either end, from 0.05 to 1 of their range: wide enough for the noise of the solve, which
+#: loses digits there, not to be amplified at 0
+_END_NODES = 52
+#: degree of these polynomials
+_END_DEGREE = 10
+#: the secant method ends where the product of the last two relative errors of the load is below this: the next step
+#: then leaves an error below rounding
+_LOAD_ERRORS = 1e-14
+#: least distance of two points of the secant method in ln z, for which rounding does not dominate the slope
+_LEAST_STEP = 1e-8
+#: most steps of the secant method; it needs 4 to 6
+_MOST_STEPS = 40
+#: thickness divided by l0 below which the half contact is longer than six thicknesses for any nu, and nothing is solved
+_THINNEST = 0.01
+#: nodes from which the start for the next one is extrapolated
+_EXTRAPOLATED = 8
+
+
+def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
+    """Compute the law of a cover; takes 0.1 to 0.3 s.
+
+    cover: one cover.
+    thickest: thickness divided by l0 that determines the number of rows, for several covers to have as many; default:
+        that of the cover.
+    Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
+    """
+    # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder
+    modes, thickness, side = modes_of_cover(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
+    slow_limit = _solve_elastic(modes, thickness, 1.0) if thickness > _THINNEST else None
+    if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
+        allowed = f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
+        raise ParameterError("thickness", f"{thickness:.3g} (over l0)", allowed)
+    if not modes.series.a.size:
+        lam, L, free = slow_limit[_LAM], slow_limit[_LIMIT], side * slow_limit[_FREE]
+        table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
+        return CoverRows(0, table, constant_rows(L, free), np.array([L, lam, free, *np.zeros(5)]))
+    fast_limit = _solve_elastic(modes, thickness, modes.alpha)
+    # the solve loses digits of delta_0: its limits are extrapolated, to join the values at the nodes
+    slow_limit[_FREE] = fast_limit[_FREE] = math.nan
+    e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
+    last = math.frexp(modes.series.a[-1] * max(1.0, thickest or thickness))[1] + _FAST_OCTAVES
+    first_node = e0 * PER_OCTAVE - _END_NODES + 1
+    u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
+    values = _solve_nodes(modes, thickness, u, slow_limit[_LAM])
+    values[_FREE] *= side
+    rows = Rows(e0, last - e0 + 1 + _BEYOND)
+    slow, slow_limit = _fit_slow_row(u[:_END_NODES], values[:, :_END_NODES], slow_limit, rows)
+    inside = _interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
+    x = rows.x[last - e0 + 1 :]
+    fast, limits = _fit_fast_rows(u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last))
+    powers = rows.fit_slopes(*np.concatenate([slow, inside, fast], axis=2))
+    powers[:, 0, 0] = slow_limit
+    share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
+    nothing = np.zeros_like(press)
+    bodies = (powers[_MOMENT], nothing) if side > 0.0 else (nothing, powers[_MOMENT])
+    table = steady_table([powers[_LAM], powers[_EPSILON], *bodies, share, press])
+    return CoverRows(e0, table, powers[[_LIMIT, _FREE]], limits)
+
+
+def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
+    """Solve one state of a cover, without rows; the rows are compared with it.
+
+    cover: one cover.
+    u: kappa |V|, dimensionless, > 0.
+    orders: terms of the pressure; default: as many as rows are made with.
+    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V.
+    """
+    modes, thickness = modes_of_cover(cover), cover.thickness
+    z = 0.5 / u / math.sqrt(1.0 + (modes.alpha - 1.0) * u / (u + 1.0)) / (1.0 + 0.2 / thickness)
+    return _solve_node(modes, thickness, u, math.log(z), 2.0, orders)[0]
+
+
+def _solve_node(
+    modes: CoverModes,
+    thickness: float,
+    u: float,
+    start: float,
+    slope: float,
+    orders: int | None = None,
+    stiffness: float = 1.0,
+) -> tuple[Floats, float, float]:
+    """Solve for the half contact length that carries the load, ln H = -ln(4 stiffness u^2), by the secant method.
+
+    modes: of the cover.
+    thickness: divided by l0.
+    u: kappa |V|.
+    start: first approximation of ln z.
+    slope: first approximation of d ln H/d ln z.
+    orders: terms of the pressure; None: the default of the solve.
+    stiffness: stiffness of the bodies divided by their long-time stiffness.
+    Returns (lam, L, 2 kappa delta_0, epsilon and M/V as an array; ln z; d ln H/d ln z).
+    """
+    y, goal, previous = start, -math.log(4.0 * stiffness * u * u), None
+    for _ in range(_MOST_STEPS):
+        z = math.exp(y)
+        state = solve(modes, z, z * u / thickness, orders)
+        error = math.log(state.load) - goal
+        lengths = 2.0 * z * u, 2.0 * u * state.creep_limit, 2.0 * u * state.strain
+        values = np.array([*lengths, state.shift / z, state.moment])
+        if previous is not None:
+            slope = min(max((error - previous[1]) / (y - previous[0]), 0.5), 8.0)
+        step = -error / slope
+        if previous is not None and abs(error * previous[1]) < _LOAD_ERRORS:
+            values = values + (values - previous[2]) * (step / (y - previous[0]))
+            values[_FREE] += 2.0 * u * local_strain(modes, z, state)
+            return values, y + step, slope
+        previous = y, error, values
+        y += min(max(step, -0.7), 0.7) if abs(step) > _LEAST_STEP else math.copysign(_LEAST_STEP, step)
+    raise ParameterError("thickness", f"{thickness:g} (over l0)", "larger: the load of the layer was not met")
+
+
+def _solve_nodes(modes: CoverModes, thickness: float, u: Floats, lam: float) -> Floats:
+    """Solve the states of a cover at increasing speeds.
+
+    modes: of the cover.
+    thickness: divided by l0.
+    u: kappa |V|, shape (n,).
+    lam: contact length at rest divided by l0.
+    Returns the five quantities at each node, (5, n).
+    """
+    values, logs, slope = np.empty((5, u.size)), np.empty(u.size), 2.0
+    for n, speed in enumerate(u.tolist()):
+        last = logs[max(n - _EXTRAPOLATED, 0) : n][::-1]
+        binomials = [math.comb(last.size, k) for k in range(1, last.size + 1)]
+        start = float(sum((-1.0) ** np.arange(last.size) * binomials * last)) if n else math.log(0.5 * lam / speed)
+        values[:, n], logs[n], slope = _solve_node(modes, thickness, speed, start, slope)
+    return values
+
+
+def _solve_elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
+    """Solve the cover as an elastic layer; slopes and creep depend on the shape of the contact alone.
+
+    modes: of the cover.
+    thickness: divided by l0.
+    alpha: 1 for its long-time stiffness; its alpha for the instantaneous stiffness.
+    Returns the five quantities: epsilon 0; M/V is 0 at once, and at long times T_mean, or NaN (not known) beside a body
+    that deforms too.
+    """
+    instant = alpha != 1.0
+    elastic = modes.elastic(modes.layer_instant * modes.alpha if instant else modes.share)
+    start = math.log(0.5 / (1.0 + 0.2 / thickness) / math.sqrt(alpha))
+    values = _solve_node(elastic, thickness, 0.5, start, 2.0, stiffness=alpha)[0]
+    T_mean = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
+    values[_EPSILON], values[_MOMENT] = 0.0, 0.0 if instant else T_mean
+    return values
+
+
+def _fit_slow_row(u: Floats, values: Floats, limits: Floats, rows: Rows) -> tuple[Floats, Floats]:
+    """Fit the row [0, 2^e0), where all quantities are polynomials of u.
+
+    u, values: nodes in that row, (n,), and the quantities there, (5, n).
+    limits: for u -> 0, (5,); NaN: not known.
+    rows: of the cover.
+    Returns (values and slopes over ln u at the nodes of the row, (2, 5, 1, nodes); all limits, (5,)).
+    """
+    limits, _, fitted = _fit_end(u / math.ldexp(1.0, rows.e0), values, limits, rows.t[0])
+    return fitted[:, :, None], limits
+
+
+def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: float) -> tuple[Floats, Floats]:
+    """Fit the rows beyond the last octave, where limits, epsilon u and M u^2/V are polynomials of 1/u.
+
+    u, values: last nodes, (n,), and the quantities there, (5, n).
+    limits: for u -> infinity, (5,); NaN: not known.
+    x: nodes of these rows, (rows, nodes).
+    begin: where they begin.
+    Returns (values and slopes over ln u at x, (2, 5, rows, nodes); :attr:`.pack.CoverRows.limits`).
+    """
+    y, x_inverse = begin / u, (begin / x).ravel()
+    values = values.copy()
+    values[_MOMENT] /= y
+    limits, factors, (fitted, slopes) = _fit_end(y, values, limits, x_inverse)
+    fitted[_MOMENT], slopes[_MOMENT] = fitted[_MOMENT] * x_inverse, (slopes[_MOMENT] + fitted[_MOMENT]) * x_inverse
+    first = np.array([_value_at_0(y, factor) for factor in factors]) * begin
+    first[_MOMENT] *= begin
+    order = [_LIMIT, _LAM, _FREE]
+    packed = np.array([*limits[order], *first[order], *first[[_EPSILON, _MOMENT]]])
+    return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
+
+
+def _fit_end(y: Floats, values: Floats, limits: Floats, wanted: Floats) -> tuple[Floats, Floats, Floats]:
+    """Fit values = limit + y P(y) with a polynomial P of degree 10, by least squares.
+
+    y: nodes in [0.05, 1], (n,).
+    values: at the nodes, (5, n).
+    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial of degree 10 is taken.
+    wanted: points in [0, 1], (m,).
+    Returns (limits, (5,); (values - limit)/y at the nodes, (5, n); values and derivatives with respect to ln y at
+    the points, (2, 5, m)).
+    """
+    from numpy.polynomial.chebyshev import chebder, chebfit, chebval
+
+    given = zip(values, limits, strict=True)
+    limits = np.array([_value_at_0(y, row) if np.isnan(limit) else limit for row, limit in given])
+    factors = (values - limits[:, None]) / y
+    terms = chebfit(2.0 * y - 1.0, factors.T, _END_DEGREE)
+    P, slope = chebval(2.0 * wanted - 1.0, terms), 2.0 * chebval(2.0 * wanted - 1.0, chebder(terms))
+    return limits, factors, np.stack([wanted * P + limits[:, None], wanted * (P + wanted * slope)])
+
+
+def _value_at_0(y: Floats, values: Floats) -> float:
+    """Return the value at 0 of the polynomial of degree 10 that fits ``values`` at nodes ``y`` in [0.05, 1]."""
+    return float(np.polynomial.chebyshev.Chebyshev.fit(y, values, _END_DEGREE, [0.0, 1.0])(0.0))
+
+
+def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
+    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes.
+
+    values: at the nodes of the solve, (5, n).
+    begin: index of the node where the first octave begins.
+    count: number of octaves.
+    Returns values and slopes over ln u at the nodes of the octaves, (2, 5, octaves, nodes).
+    """
+    windows = np.lib.stride_tricks.sliding_window_view(values, PER_OCTAVE + 2 * _ASIDE + 1, axis=1)
+    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
+    return np.stack([around @ matrix for matrix in _interpolation_matrices()])
+
+
+@lru_cache(maxsize=1)
+def _interpolation_matrices() -> tuple[Floats, Floats]:
+    """Return the matrices from values at the 49 nodes around an octave to its row, by the barycentric formula.
+
+    Returns (matrix to values, matrix to slopes over ln u) at the 24 nodes of the row, (49, 24) each.
+    """
+    count = PER_OCTAVE + 2 * _ASIDE + 1
+    nodes = (np.arange(count) - _ASIDE) / PER_OCTAVE
+    weights = np.array([(-1.0) ** k * math.comb(count - 1, k) for k in range(count)])
+    inverse = 1.0 / (np.log2(0.5 * (NODES + 3.0)) - nodes[:, None])
+    terms = weights[:, None] * inverse
+    basis = terms / terms.sum(axis=0)
+    slopes = basis * ((terms * inverse).sum(axis=0) / terms.sum(axis=0) - inverse)
+    return basis, slopes / math.log(2.0)
+
+
+def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
+    """Return eta/F and H/F^2 at the nodes of v = 2 u/L(u), and their derivatives with respect to ln v.
+
+    Where the stick zone has the creep limit F' = w/(2 u), its law is that of the whole contact at the speed u' with
+    L(u')/(2 u') = F': H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').
+
+    rows: octaves of u and of v.
+    powers: coefficients of the five quantities, (5, rows, 24).
+    limits: :attr:`.pack.CoverRows.limits`.
+    Returns two arrays (2, rows, nodes).
+    """
+    v = rows.x.ravel()
+    u = v.copy()
+    for _ in range(60):
+        (L, lam), (d_L, d_lam) = _read_lengths(rows, powers, limits, u)
+        step = np.log(v * L / (2.0 * u)) / (1.0 - d_L / L)
+        u *= np.exp(step)
+        if np.abs(step).max() < 1e-15:
+            break
+    (L, lam), (d_L, d_lam) = _read_lengths(rows, powers, limits, u)
+    dlnu_dlnv, share, press = 1.0 / (1.0 - d_L / L), lam / L, 1.0 / (L * L)
+    slopes = dlnu_dlnv * np.stack([share * (d_lam / lam - d_L / L), -2.0 * press * d_L / L])
+    return np.stack([share, press]).reshape(2, *rows.x.shape), slopes.reshape(2, *rows.x.shape)
+
+
+def _read_lengths(rows: Rows, powers: Floats, limits: Floats, u: Floats) -> tuple[Floats, Floats]:
+    """Return L and lam at u and their derivatives with respect to ln u, by the rows and, beyond these, by the limits.
+
+    rows, powers, limits: as of :func:`_stick_functions`.
+    u: kappa |V|, (n,).
+    Returns two arrays (2, n).
+    """
+    end = math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
+    values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
+    first = limits[3:5, None] / u
+    return np.where(u > end, limits[:2, None] + first, values), np.where(u > end, -first, slopes)

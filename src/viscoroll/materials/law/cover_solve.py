@@ -1,0 +1,325 @@
+"""Steady rolling on a bonded viscoelastic layer of finite thickness, solved by Chebyshev polynomials.
+
+Plane strain, a constant Poisson's ratio, one Prony series; the layer is bonded to a rigid core or bed and the other
+body is rigid or an elastic half-space.  The pressure is not changed by shear, as everywhere in this package.
+
+Notation.  z is the half length of the contact over V T_ref, theta the half length over the thickness h, u = k h the
+wave number times the thickness, v = u theta.  Slopes and creep are over V T_ref/R.  The pressure over E'/(4 pi) is
+sqrt(1 - x^2) sum q_m U_{m-1}(x) for x in [-1, 1].  With relaxation rates a_i and creep rates b_j the exponents on the
+contact are alpha_i = a_i z and beta_j = b_j z.
+
+The transforms of the surface displacements of the layer are those of a half-space times L (normal displacement by
+pressure), T (tangential displacement by shear) and C (tangential displacement by pressure).  L - 1 decays like
+exp(-2 u): the layer adds a smooth operator S to the Hilbert transform, and to the memory of each creep mode an excess
+c.  The unknowns are the coefficients q up to order N = 14 + 6 theta; the exponentials of the relaxation modes enter by
+their first N coefficients, so that alpha may be arbitrarily large.
+
+Sources of the method: the law of the half-space in closed form (:mod:`.evaluate`), and the layer's kernels as in
+Johnson, Contact Mechanics (1985), Sect. 5.8.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.array_types import Floats
+from ..cover import Cover
+from ..prony import Prony
+from .evaluate import modes_record
+
+#: terms of the pressure for theta -> 0
+_TERMS = 14
+#: further terms for each unit of theta; found by doubling all: results change by 3e-14 up to theta = 1
+_TERMS_PER_THETA = 6
+#: largest half contact length divided by the thickness; there doubling the terms still changes results by less than
+#: 1e-10
+LARGEST_THETA = 6.0
+#: step of the trapezoidal rule in s for integrals over the wave number u = 0.6 ln(1 + e^s); halving it changes nothing
+_STEP = 0.3
+#: factor of ln(1 + e^s) in that substitution
+_SCALE = 0.6
+#: ends of that rule in s, beyond which the integrands are below rounding
+_ENDS = -26.0, 20.0 / 0.6
+#: step of the trapezoidal rule in s for integrals over t = 2 ln(1 + e^s), the memory of one polynomial
+_DECAY_STEP = 0.14
+#: factor of ln(1 + e^s) in that substitution
+_DECAY_SCALE = 2.0
+#: ends of that rule in s
+_DECAY_ENDS = -33.0, 18.0
+#: alpha_i from which on ratios of Bessel functions I_n/I_0 of the orders used here are 1 to rounding
+LARGE_ALPHA = 1e8
+#: beta_j from which on the memory of a polynomial vanishes to rounding
+_LARGE_BETA = 1e12
+
+
+class LayerNodes(NamedTuple):
+    """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on Poisson's ratio alone.
+
+    u : nodes, wave number times thickness, (n,).
+    du : weights of the rule.
+    L : (L - 1)/u times the weights.
+    T : (T - 1)/u times the weights.
+    C : C less its limit for short waves.
+    local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu).
+    """
+
+    u: Floats
+    du: Floats
+    L: Floats
+    T: Floats
+    C: Floats
+    local: float
+
+
+class CoverState(NamedTuple):
+    """The contact at one half length z and one theta; slopes and creep in units of V T_ref/R.
+
+    load : H = P/(pi/2) in the unit of the pressure; z^2 for an elastic half-space.
+    shift : g, the shift of the contact ahead of the axis.
+    moment : M/(P V).
+    creep_limit : delta_star/(mu V), the creep from which on the whole contact slips.
+    strain : part of the mean strain of the layer's surface by the pressure (weighted with the pressure) that is due to
+        the finite thickness; positive where the surface is stretched.  :func:`.cover_pressure.local_strain` is the
+        rest.
+    q, X : terms of the pressure, and amplitudes of the relaxation modes.
+    """
+
+    load: float
+    shift: float
+    moment: float
+    creep_limit: float
+    strain: float
+    q: Floats
+    X: Floats
+
+
+class CoverModes:
+    """The series of a cover in the form that the solve uses.
+
+    layer : series of the layer.
+    total : series of both bodies together; the layer's own if the other body is rigid.
+    share : the layer's part of the long-time compliance, in (0, 1].
+    nu, other_nu : Poisson's ratios of the layer and of the other body.
+    other : series of the other body; default: elastic.
+    """
+
+    def __init__(
+        self, layer: Prony, total: Prony, share: float, nu: float, other_nu: float, other: Prony | None = None
+    ) -> None:
+        self.series, self.J, self.alpha = modes_record(total.modes), total.modes.J, float(total.alpha)
+        self.share, self.nodes, self.nus = share, layer_nodes(nu), (nu, other_nu)
+        self.layer_J, self.layer_b = share * layer.J, 1.0 / layer.T
+        self.layer_instant = share / float(layer.alpha)
+        self.other = Prony.elastic() if other is None else other
+        self.other_local = (1.0 - share) * _half_space_coupling(other_nu)
+
+    def elastic(self, share: float) -> CoverModes:
+        """Return the same bodies without relaxation; ``share``: the layer's part of the compliance."""
+        return CoverModes(Prony.elastic(), Prony.elastic(), share, *self.nus)
+
+    def compliance(self, k: Floats) -> Any:
+        """Return the complex compliance of both bodies for exp(i k Y), (n,); ``k`` in units of 1/(V T_ref), (n,)."""
+        return _compliance(self.alpha, self.J, self.series.b, k)
+
+    def layer_part(self, k: Floats) -> Any:
+        """Return the layer's complex part of that compliance, (n,); ``k`` as there."""
+        if self.share == 1.0:
+            return np.ones(k.size, np.complex128)
+        other = _compliance(self.other.alpha, self.other.J, 1.0 / self.other.T, k)
+        return 1.0 - (1.0 - self.share) * other / self.compliance(k)
+
+    def layer_storage(self, k: Floats) -> Any:
+        """Return the real part of the layer's share of that compliance, (n,); ``k`` as there."""
+        b = self.layer_b
+        return self.layer_instant + (self.layer_J * (b**2 / (b**2 + k[:, None] ** 2))).sum(axis=1)
+
+
+def _compliance(alpha: float, J: Floats, b: Floats, k: Floats) -> Any:
+    """Return the complex compliance of a series for exp(i k Y), (n,).
+
+    alpha: instantaneous divided by long-time modulus.
+    J, b: strengths and rates of creep, (modes,).
+    k: wave numbers in units of 1/(V T_ref), (n,).
+    """
+    return 1.0 / alpha + (J * b / (b - 1j * k[:, None])).sum(axis=1)
+
+
+def modes_of_cover(cover: Cover) -> CoverModes:
+    """Return the series of a ``cover`` in the form that the solve uses."""
+    return CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu, cover.other)
+
+
+def _half_space_coupling(nu: float) -> float:
+    """Return the coupling C of a half-space with Poisson's ratio ``nu``."""
+    return (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
+
+
+def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Return nodes and weights of an integral over [0, inf): the trapezoidal rule in s, scale ln(1 + e^s) the variable.
+
+    Nodes are dense towards 0; for the integrands here the rule converges exponentially.
+
+    step: in s.
+    scale: of the variable.
+    ends: first and last s.
+    """
+    s = np.arange(*ends, step)
+    return scale * np.logaddexp(0.0, s), step * scale / (1.0 + np.exp(-s))
+
+
+@lru_cache(maxsize=64)
+def layer_nodes(nu: float) -> LayerNodes:
+    """Return the kernels of a layer at the nodes; ``nu``: its Poisson's ratio.
+
+    Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
+    """
+    u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
+    kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
+    denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
+    rest = (2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap) * e
+    local = (kap - 1.0) / (kap + 1.0)
+    coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / ((kap + 1.0) * denominator) - local
+    weights = du / (u * denominator)
+    return LayerNodes(u, du, -weights * (rest + 4.0 * u * e), -weights * (rest - 4.0 * u * e), coupling, local)
+
+
+def bessel(v: Floats, order: int) -> Floats:
+    """Return J_0 ... J_order at v, each with the sign (-1)^(n//2), accurate to 1e-15 absolute.
+
+    They are the Chebyshev coefficients of cos(v x) and sin(v x), by a discrete sum long enough for aliases to vanish.
+
+    v: arguments >= 0, (n,).
+    order: highest order.
+    Returns [order, argument].
+    """
+    count = (int(v.max() + 0.5 * order) + 24) & ~1
+    phi = (np.arange(count // 2) + 0.5) * (math.pi / count)
+    arguments = np.multiply.outer(np.cos(phi), v)
+    cosines = np.cos(np.arange(order + 1)[:, None] * phi) * (2.0 / count)
+    values = np.empty((order + 1, v.size))
+    values[::2], values[1::2] = cosines[::2] @ np.cos(arguments), cosines[1::2] @ np.sin(arguments)
+    return values
+
+
+@lru_cache(maxsize=1)
+def _decay_nodes() -> tuple[Floats, Floats]:
+    """Return 2 sinh^2(t/2) at the nodes of t, (n,), and the weights times sinh(t) exp(-n t), [order, node]."""
+    t, weights = _half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
+    orders = np.arange(_term_count(LARGEST_THETA) * 2 + 1)[:, None]
+    return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
+
+
+def _decays(beta: Floats, order: int) -> Floats:
+    """Return D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx, [order, mode].
+
+    beta: b_j z, (modes,).
+    order: highest n.
+    """
+    beta = np.minimum(beta, _LARGE_BETA)
+    x, weights = _decay_nodes()
+    return weights[: order + 1] @ np.exp(-x[:, None] * beta) * beta
+
+
+def _term_count(theta: float) -> int:
+    """Return the number of terms of the pressure at ``theta``."""
+    return math.ceil(_TERMS + _TERMS_PER_THETA * theta)
+
+
+class _Exponentials(NamedTuple):
+    """The relaxation and creep modes on a contact of half length z, as for a half-space.
+
+    ratio : I_n/I_0 of alpha_i, [order, mode].
+    root : sqrt(I_1/I_0), (modes,).
+    k : K_0/K_1 of beta_j, (modes,).
+    x : B^-1 sqrt(r) (e, Q^T), the matching at the front edge, of the half-space and of a source by each creep mode,
+        (modes, 1 + modes).
+    sigma : source that an excess memory of 1 is, (modes,).
+    """
+
+    ratio: Floats
+    root: Floats
+    k: Floats
+    x: Floats
+    sigma: Floats
+
+
+def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
+    """Evaluate the modes on a contact.
+
+    modes: of the cover.
+    z: half contact length divided by V T_ref.
+    N: highest order of the terms of the pressure.
+    """
+    from scipy.special import ive, k0e, k1e
+
+    a, b, e, _, _, Q = modes.series
+    alpha, beta = np.minimum(a * z, LARGE_ALPHA), b * z
+    ratio = ive(np.arange(N + 1)[:, None], alpha) / ive(0, alpha)
+    root, k = np.sqrt(ratio[1]), k0e(beta) / k1e(beta)
+    B = np.eye(root.size) + root[:, None] * ((Q.T * k) @ Q) * root
+    x = np.linalg.solve(B, np.column_stack([root * e, root[:, None] * Q.T]))
+    return _Exponentials(ratio, root, k, x, np.sqrt(modes.J * b) / (beta * k1e(beta)))
+
+
+def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[Floats, Floats]:
+    """Return the contributions of the layer to the slope and to the memory.
+
+    v: u theta at the nodes, (n,).
+    A: signed Bessel functions there, (N + 1, n).
+    beta: b_j z, (modes,).
+    weights: (L - 1)/u times the weights of the rule and the layer's complex part of the compliance, (n,).
+    Returns (S, c): the slope is sum (S q)_n T_n, S (N + 1, N); c q, c (modes, N), is the excess memory of that slope in
+    each creep mode.
+    """
+    N = len(A) - 1
+    n, m = np.arange(N + 1), np.arange(1, N + 1)
+    odd = m % 2 == 1
+    even_part, odd_part = (2.0 * (A @ (A[1:] * part).T) for part in (weights.real, weights.imag))
+    S = np.where((n[:, None] + m) % 2 == 1, odd_part * np.where(odd, m, -m), even_part * m)
+    S[0] *= 0.5
+    # excess memory of exp(i v x): its own less that of its Chebyshev series, which decays
+    D = _decays(beta, N)
+    memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
+    memory -= 2.0 * (D[2::2].T @ A[2::2]) + 2j * (D[1::2].T @ A[1::2])
+    weighted = memory * weights
+    return S, np.where(odd, weighted.imag @ A[1:].T, weighted.real @ A[1:].T) * m
+
+
+def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) -> CoverState:
+    """Solve the contact of a given half length, by one linear system.
+
+    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 it is that of a half-space.
+
+    modes: of the cover.
+    z: half contact length divided by V T_ref, > 0.
+    theta: half contact length divided by the thickness, in (0, 6].
+    orders: terms of the pressure; default: 14 + 6 theta.
+    """
+    nodes, N = modes.nodes, orders or _term_count(theta)
+    v = nodes.u * theta
+    A, J = bessel(v, N), modes.compliance(v / z)
+    part = modes.layer_part(v / z)
+    ratio, root, k, x, sigma = _exponentials(modes, z, N)
+    _, b, e, t, _, Q = modes.series
+    X0, Xi = e / root * x[:, 0], (e / root)[:, None] * x[:, 1:] * sigma
+    S, c = _layer_operator(v, A, b * z, nodes.L * part)
+    Phi = 2.0 * ratio[1:]
+    right = Phi @ X0
+    right[0] += z
+    q: Any = np.linalg.solve(np.eye(N) + S[1:] + Phi @ (Xi @ c), right)
+    excess = sigma * (c @ q)
+    # T_mean - sum X + s_0 without cancellation
+    shift: Any = t @ (k * (Q @ (root * (x[:, 0] - x[:, 1:] @ excess)))) + t @ excess + S[0] @ q
+    moment = shift + z * q[1] / (2.0 * q[0])
+    # transform of the pressure divided by pi z, times v: its even and odd terms
+    mq = np.arange(1, N + 1) * q
+    odd, even = mq[::2] @ A[1::2], mq[1::2] @ A[2::2]
+    source = (nodes.T - nodes.L) * part * (even - 1j * odd)
+    limit = z + shift + np.sum((source * np.exp(1j * v) * J).real)
+    power = (even**2 + odd**2) / v**2
+    strain = -2.0 * theta * np.sum(nodes.du * nodes.C * modes.layer_storage(v / z) * power) / q[0]
+    return CoverState(float(z * q[0]), float(shift), float(moment), float(limit), float(strain), q, X0 - Xi @ (c @ q))

@@ -1,0 +1,116 @@
+"""Rows of the law of one material or pair, fitted to the formulas of its modes.
+
+The formulas are evaluated once, at 24 nodes an octave of w = 1/z.  The polynomials of w are then inverted: for the
+functions of u, w = 2 u (1 + 2 h/z)^(1/2), for those of v, w = v (1 + g/z).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...core.array_types import Floats
+from .evaluate import evaluate_by_modes
+from .pack import FUNCTIONS, steady_table
+from .rows import Rows
+
+#: as rows._ROUNDING, for N, whose formula has larger rounding errors; dimensionless
+_ROUNDING_OF_N = 3e-15
+#: Newton steps for w from an error of 1e-3: two leave 1e-13, whose effect is of second order and below rounding
+_NEWTON_STEPS = 2
+
+
+@dataclass(frozen=True)
+class _FunctionsOfW:
+    """Polynomials of w = 1/z for g/z, h/z, and m of half-space and cylinder.
+
+    rows : octaves of w.
+    powers : coefficients, [function, row, power].
+    values : values at the nodes, [function, node].
+    """
+
+    rows: Rows
+    powers: Floats
+    values: Floats
+
+    def at_speed(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return lam, epsilon, and M/V of half-space and cylinder at u, and their derivatives with respect to ln u.
+
+        u: kappa |V|, shape (n,).
+        Returns two arrays (4, n).
+        """
+        (shift, rise, *parts), (d_shift, d_rise, *d_parts) = self._solve(u, 1, lambda whole: 2.0 * np.sqrt(whole))
+        lam = 1.0 / np.sqrt(1.0 + 2.0 * rise)
+        return np.stack([lam, shift, *parts]), np.stack([-(lam**3) * d_rise, d_shift, *d_parts])
+
+    def at_stick_limit(self, v: Floats) -> tuple[Floats, Floats]:
+        """Return eta/F and H/F^2 at v, and their derivatives with respect to ln v.
+
+        v: 1/F(eta), shape (n,).
+        Returns two arrays (2, n).
+        """
+        (shift, rise, *_), (d_shift, d_rise, *_) = self._solve(v, 0, lambda whole: whole)
+        share = 1.0 / (1.0 + shift)
+        press, fall = (1.0 + 2.0 * rise) * share**2, share * d_shift
+        return np.stack([share, press]), np.stack([-share * fall, 2.0 * (d_rise * share**2 - press * fall)])
+
+    def _solve(self, x: Floats, which: int, factor: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
+        """Return the functions where w = x factor(1 + g/z) or w = x factor(1 + 2 h/z), by Newton's method.
+
+        x: u or v, shape (n,).
+        which: 0 for g/z, 1 for 2 h/z.
+        factor: the function that multiplies x, of arrays.
+        Returns values and derivatives with respect to ln x, (4, n) each.
+        """
+        nodes = self.rows.x.ravel()
+        x_of_nodes = nodes * (1.0 / factor(1.0 + (1 + which) * self.values[which]))
+        w = np.exp(np.interp(np.log(x), np.log(x_of_nodes), np.log(nodes)))
+        for _ in range(_NEWTON_STEPS):
+            (value,), (slope,) = self.rows.read(self.powers[[which]], w)
+            whole = 1.0 + (1 + which) * value
+            w += (x * factor(whole) - w) / (1.0 - slope / whole)
+        values, slopes = self.rows.read(self.powers, w)
+        whole = 1.0 + (1 + which) * values[which]
+        dlnw_dlnx = 1.0 / (1.0 - slopes[which] / whole)
+        return values + slopes * ((x * factor(whole) / w - 1.0) * dlnw_dlnx), slopes * dlnw_dlnx
+
+
+def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
+    """Fit the rows of the law of steady rolling.
+
+    material: an alpha, a series, or two bodies.
+    rows: octaves of u and of v.
+    alpha: instantaneous divided by long-time stiffness.
+    T_mean: sums J_j T_j of half-space and cylinder, in units of T_ref; shape (2,).
+    Returns the table (rows, 24 powers, 7 functions) with NaN for N.
+    """
+    e0, mean = rows.e0, float(T_mean.sum())
+    w = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(alpha)))
+    by_modes = evaluate_by_modes(material, 1.0 / w.x.ravel())
+    powers = w.fit_slopes(*(part.reshape(-1, *w.x.shape) for part in by_modes[:2]))
+    powers[:2, 0, :2], powers[2:, 0, 0] = [0.0, math.ldexp(0.5 * mean, e0)], T_mean
+    functions, x = _FunctionsOfW(w, powers, by_modes.values), rows.x.ravel()
+    both = zip(functions.at_speed(x), functions.at_stick_limit(x), strict=True)
+    powers = rows.fit_slopes(*(np.concatenate(parts).reshape(-1, *rows.x.shape) for parts in both))
+    powers[[0, 4, 5], 0, 0], powers[1, 0, :2], powers[2:4, 0, 0] = 1.0, [0.0, math.ldexp(mean, e0)], T_mean
+    return steady_table(powers)
+
+
+def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
+    """Return a table with N.
+
+    material: an alpha, a series, or two bodies.
+    table: rows of its steady rolling, (rows, 24 powers, 7 functions).
+    e0: exponent of the end of the first row.
+    """
+    rows, whole = Rows(e0, len(table)), table.copy()
+    (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())
+    *N, at_rest = evaluate_by_modes(material, np.append(0.5 * lam / rows.x.ravel(), np.inf)).N
+    powers = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
+    powers[0, 0] = at_rest
+    whole[:, :, FUNCTIONS.index("N")] = powers
+    return whole

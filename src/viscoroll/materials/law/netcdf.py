@@ -1,0 +1,222 @@
+"""Laws as datasets and files: of a :class:`LawTable` or a :class:`LawAxis`, and back bit for bit."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from numbers import Real
+from os import PathLike
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...core.array_types import Floats
+from ...core.checks import check_array, check_number
+from ...core.errors import FileError, ParameterError
+from ..bodies import Bodies
+from ..cover import Cover
+from ..law_file import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, make_dataset, read_law
+from ..material import Material
+from ..material_toml import material_as_toml, parse_materials, parse_series, series_as_toml
+from ..pair import Pair
+from ..prony import Prony, lock_array
+from ..prony_forms import HIGHEST_ALPHA
+from .alpha_axis import LawAxis
+from .grid import load_grid
+from .pack import CoverRows, steady_columns, steady_table
+from .table import LawTable, law_table, make_table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: attributes of a cover that its file states besides the series
+_COVER_ATTRIBUTES = ("nu", "thickness", "on", "part", "other_nu")
+#: attributes of a table that the file of a cover states
+_COVER_NUMBERS = ("e0", "alpha", "T_ref")
+
+
+def law_table_of(material: Any, base: Any = None) -> LawTable:
+    """Return the law of a material as users give it; raises ParameterError.
+
+    material: Prony, Bodies, alpha, Material, Pair, or a LawTable, which is returned.
+    base: Material of the half-space, only beside a Material; default: that of the cylinder.
+    """
+    if base is not None and not isinstance(material, Material):
+        raise ParameterError("base", "given", "left out unless material is a Material")
+    if isinstance(material, LawTable | Prony | Bodies):
+        return law_table(material)
+    if isinstance(material, Material):
+        material = Pair(material, base)
+    if isinstance(material, Pair):
+        return replace(law_table(material.law), T_ref=material.T_ref, pair=material)
+    if not isinstance(material, Real):
+        allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
+        raise ParameterError("material", f"of type {type(material).__name__}", allowed)
+    return law_table(float(check_array("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
+
+
+def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
+    """Return the content of the file of a ``law``; ``errors``: largest relative error of each function."""
+    if isinstance(law, LawAxis):
+        return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
+    if law.cover is None:
+        bodies, material = "unlike" if law.unlike else "alike", bodies_as_toml(law.pair or law.material)
+        return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
+    cover: Any = law.material
+    cover.refuse_unknown_split("a file")
+    creep = np.moveaxis(law.cover.creep, 0, -1)
+    numbers = SimpleNamespace(
+        coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1), limits=law.cover.limits,
+        **{name: getattr(law, name) for name in _COVER_NUMBERS},
+    )  # fmt: skip
+    text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(law.material)
+    return make_dataset(numbers, COVER, _title(law), errors, material=text)
+
+
+def _title(table: LawTable) -> str:
+    """Return the bodies of a ``table`` in words."""
+    if table.pair is None:
+        return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
+    bodies = (table.pair.cylinder, table.pair.base)
+    return " on ".join(body.name or "a material without a name" for body in bodies if body is not None)
+
+
+def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
+    """Load the law of one material or pair from a file, for use wherever a Prony or Bodies is used.
+
+    Parameters
+    ----------
+    path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
+        delta, of ``viscoroll tables build`` or of another program (:func:`viscoroll.materials.law.grid.load_grid`).
+    alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
+        T_epsilon for the unit of time.
+
+    Returns
+    -------
+    LawTable, or of a grid LawGrid
+        A LawGrid is for :func:`viscoroll.law` alone: motions are integrated from rows.  A LawTable is bit for bit
+        that of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of
+        :class:`viscoroll.Cylinder`, it stands for its :class:`viscoroll.Material`, and for the base where it has one.
+
+    Raises
+    ------
+    FileError
+        A file that is missing, cut or damaged in any byte, no law, or of another schema; an alpha beyond the file's.
+    ParameterError
+        An alpha beside the file of one material, or none for that of every alpha.
+    """
+    try:
+        content = read_law(path)
+    except FileError:
+        if (grid := load_grid(path, alpha)) is None:
+            raise
+        return grid
+    if content.attributes[KIND] != AXIS:
+        if alpha is not None:
+            raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material")
+        return parse_law(content, path)
+    axis = parse_axis(content, path)
+    low, high = axis.alpha
+    if alpha is None or not low <= check_number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
+        wider = "`viscoroll tables law --alpha LOW:HIGH` writes others"
+        raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds ({wider})")
+    return axis.at(alpha)
+
+
+def parse_law(content: Content, path: Any) -> LawTable:
+    """Return the law of one material; raises FileError for a file that does not state its material.
+
+    content: of the file, verified.
+    path: of the file, for errors.
+    """
+    numbers, attributes = content
+    kind = attributes[KIND]
+    if kind == AXIS:
+        raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
+    with _refuse_incomplete(path):
+        given, pair = _parse_bodies(attributes["material"], path)
+        coefficients, e0 = _coefficients(content), int(numbers["e0"])
+        if kind == COVER:
+            table = steady_table(np.moveaxis(coefficients[..., :-2], -1, 0))
+            creep = np.moveaxis(coefficients[..., -2:], -1, 0)
+            law = make_table(given, cover=CoverRows(e0, table, creep, numbers["limits"]))
+        else:
+            law = law_table(given, coefficients=coefficients)
+        return replace(law, e0=e0, T_ref=float(numbers["T_ref"]), pair=pair)
+
+
+def parse_axis(content: Content, path: Any) -> LawAxis:
+    """Return the law of all alpha; raises FileError for an incomplete file.
+
+    content: of the file, verified.
+    path: of the file, for errors.
+    """
+    with _refuse_incomplete(path):
+        coefficients, numbers = _coefficients(content), content.numbers
+        rows = tuple(map(int, numbers["rows"]))
+        if coefficients.ndim != len(KINDS[AXIS].dims) + 1 or len(rows) != len(coefficients):
+            raise ValueError(f"functions of shape {coefficients.shape[:-1]}")
+        return LawAxis(coefficients, rows, int(numbers["first"]), int(numbers["e0"]))
+
+
+def _coefficients(content: Content) -> Floats:
+    """Return the coefficients of all functions of a file, (..., functions), read only; ``content``: of the file."""
+    names = KINDS[content.attributes[KIND]].functions
+    return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(np.float64))
+
+
+@contextmanager
+def _refuse_incomplete(path: Any) -> Iterator[None]:
+    """Raise FileError in place of any error of parsing an incomplete file; ``path``: of the file."""
+    try:
+        yield
+    except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
+        text = " ".join(str(error).split())
+        raise FileError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
+
+
+def bodies_as_toml(given: Any) -> str:
+    """Return TOML that reads back to the bit: of a pair as in scene files, of others dimensionless.
+
+    given: Pair, Cover, Bodies, Prony or alpha.
+    """
+    if isinstance(given, Pair):
+        text = material_as_toml(given.cylinder)
+        text += "" if given.base is None else f"\n{material_as_toml(given.base, 'base')}"
+        return f'plane = "{given.plane}"\n{text}'
+    if isinstance(given, Cover):
+        lines = (f"{name} = {json.dumps(getattr(given, name))}" for name in _COVER_ATTRIBUTES)
+        return "\n".join(["[cover]", series_as_toml(given.layer), *lines, ""])
+    if isinstance(given, Bodies):
+        parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
+        return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])
+    return f"[scene]\n{series_as_toml(given) if isinstance(given, Prony) else f'alpha = {given!r}'}\n"
+
+
+def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
+    """Parse text of :func:`bodies_as_toml`.
+
+    text: TOML.
+    path: of the file, for errors.
+    Returns (Cover, Bodies, Prony or alpha; the bodies in SI units, or None).
+    """
+    content = tomllib.loads(text)
+    pair = None
+    if "material" in content:
+        bodies = parse_materials(path, content)
+        pair = Pair(bodies["material"], bodies.get("base"), content["plane"])
+    if "cover" in content:
+        given = content["cover"]
+        return Cover(parse_series(path, "cover", given), **{name: given[name] for name in _COVER_ATTRIBUTES}), pair
+    if pair is not None:
+        return pair.law, pair
+    if "bodies" in content:
+        given = content["bodies"]
+        series = {name: parse_series(path, "bodies", given[name]) for name in ("cylinder", "base")}
+        return Bodies(**series, share=given["share"]), None
+    given = content["scene"]
+    return given["alpha"] if "alpha" in given else parse_series(path, "scene", given), None

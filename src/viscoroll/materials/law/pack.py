@@ -1,0 +1,264 @@
+"""The layout of rows: the only module that knows where a function stands in a table or in the record of a law.
+
+A table is an array (rows, 24 powers, 7 functions) with the functions in the order of :data:`FUNCTIONS`.  Kernels read
+the same rows from a record (:mod:`...kernels.rows.record`), where functions that are needed together lie side by side.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.array_types import Floats, Integers
+from ..prony import Block, lock_array
+from .evaluate import modes_record
+from .rows import TERMS, Rows, row_range
+
+#: functions of a table in their order: the first five depend on u = kappa |V|, the others on v = 1/F(eta)
+FUNCTIONS = ("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
+#: columns of the functions of steady rolling, all but N
+_STEADY = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
+#: functions of a table over alpha in their order; m is M/V of both bodies, which are alike
+AXIS_FUNCTIONS = ("lam", "epsilon", "m", "N", "share", "press")
+#: columns of a table that those are taken from
+_AXIS_COLUMNS = [FUNCTIONS.index(name) for name in ("lam", "epsilon", "m_half_space", "N", "share", "press")]
+#: functions of a table over alpha that are divided by c = (alpha - 1)/alpha, as their limits for alpha -> 1 are then
+#: finite
+_DIVIDED_BY_C = [AXIS_FUNCTIONS.index(name) for name in ("epsilon", "m", "N")]
+#: column of M/V of the half-space in a table over alpha
+_AXIS_M = AXIS_FUNCTIONS.index("m")
+
+
+class CoverRows(NamedTuple):
+    """The law of a cover over u = kappa |V|.
+
+    e0 : exponent of the end of the first row.
+    coefficients : table (rows, 24 powers, 7 functions) with NaN for N, which is not known for covers.
+    creep : rows of L = 2 kappa delta_star/mu and of 2 kappa delta_0, shape (2, rows, 24 powers).
+    limits : for u -> infinity L, lam and 2 kappa delta_0; then the factors of 1/u of their first order; then
+        epsilon u and M u^2/V; shape (8,).
+    """
+
+    e0: int
+    coefficients: Floats
+    creep: Floats
+    limits: Floats
+
+
+def steady_table(powers: Any, N: float = math.nan) -> Floats:
+    """Return a table made of the functions of steady rolling.
+
+    powers: six arrays (rows, 24 powers), of lam, epsilon, m_half_space, m_cylinder, share and press.
+    N: constant that fills the column of N; NaN: N is not known.
+    Returns the table (rows, 24 powers, 7 functions).
+    """
+    powers = np.stack(powers, axis=-1)
+    table = np.full((*powers.shape[:-1], len(FUNCTIONS)), N)
+    table[..., _STEADY] = powers
+    return table
+
+
+def steady_columns(table: Floats) -> Floats:
+    """Return a table without N, (rows, 24 powers, 6 functions); the reverse of :func:`steady_table`."""
+    return table[..., _STEADY]
+
+
+def constant_rows(*values: float) -> Floats:
+    """Return one row for each of several constants ``values``, shape (values, 1, 24 powers)."""
+    rows = np.zeros((len(values), 1, TERMS))
+    rows[:, 0, 0] = values
+    return rows
+
+
+def to_axis(table: Floats, c: Floats) -> Floats:
+    """Convert tables of a standard linear solid to functions that have finite limits for alpha -> 1.
+
+    table: (..., rows, 24 powers, 7 functions).
+    c: (alpha - 1)/alpha, in a shape that broadcasts.
+    Returns (..., rows, 24 powers, 6 functions), as :data:`AXIS_FUNCTIONS`.
+    """
+    columns = table[..., _AXIS_COLUMNS]
+    columns[..., _AXIS_M] *= 2.0
+    columns[..., _DIVIDED_BY_C] /= c
+    return columns
+
+
+def from_axis(columns: Floats, c: float) -> Floats:
+    """Convert functions over alpha to a table; the reverse of :func:`to_axis`.
+
+    columns: (rows, 24 powers, 6 functions); changed in place.
+    c: (alpha - 1)/alpha.
+    Returns the table (rows, 24 powers, 7 functions); each body has half of M.
+    """
+    columns[..., _DIVIDED_BY_C] *= c
+    columns[..., _AXIS_M] *= 0.5
+    return columns[..., [AXIS_FUNCTIONS.index(name if name in AXIS_FUNCTIONS else "m") for name in FUNCTIONS]]
+
+
+def interleave_pairs(a: Floats, b: Floats) -> Floats:
+    """Return rows in which two powers of one function are followed by the same two of the other: a0 a1 b0 b1 a2 ...
+
+    a, b: coefficients, (rows, powers) each, with an even number of powers.
+    Returns (rows, 2 powers).
+    """
+    both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
+    return both.reshape(len(a), -1)
+
+
+def allocate_rows(count: int) -> tuple[Floats, Integers]:
+    """Return numbers and marks of a record of ``count`` rows, with those in front, zeroed; no material is selected."""
+    from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE, SELECTED
+
+    marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
+    marks[SELECTED] = -1
+    return np.zeros((count + 1) * ROW_SIZE), marks
+
+
+def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:
+    """Return the record of a law that kernels read, with all rows in place.
+
+    table: (rows, 24 powers, 7 functions).
+    e0: exponent of the end of the first row.
+    alpha: instantaneous divided by long-time stiffness.
+    fast_limit: W and C of the fast limit, of both bodies, half-space and cylinder, shape (3, 2).
+    cover: rows of a cover of finite thickness; None for half-spaces.
+    """
+    from ...kernels.rows.record import E0, ROW_COUNT, ROW_SIZE, Law
+
+    count, front, L, cover_rows = len(table), np.append([alpha, 1.0 / math.sqrt(alpha)], fast_limit), None, None
+    if cover is not None:
+        front, cover_rows, L = _pack_cover_front(cover), lock_array(_pack_cover(cover)), cover.creep[0]
+    rows, marks = allocate_rows(count)
+    rows[: front.size] = front
+    rows[ROW_SIZE:] = _pack_rows(table, e0, front[0], front[2:4], L).ravel()
+    marks[[ROW_COUNT, E0]] = count, e0
+    return Law(lock_array(rows), lock_array(marks), lock_array(np.empty(0)), 0, 0, 0, cover_rows)
+
+
+def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floats | None) -> Floats:
+    """Return the rows of a record (:mod:`...kernels.rows.evaluate`).
+
+    L^2 press(2 u/L) = 1 is made to hold to rounding, as Q would lose digits by an error in it.
+
+    table: (rows, 24 powers, 7 functions).
+    e0: exponent of the end of the first row.
+    alpha: value of press for v -> infinity.
+    fast: W and C of the fast limit of both bodies together.
+    cover_L: rows of L = 2 kappa delta_star/mu of a cover; None: L = lam (1 + epsilon).
+    Returns (rows, numbers of a row).
+    """
+    rows = Rows(e0, len(table))
+    lam, epsilon, half_space, cylinder, _, share, press = np.moveaxis(table, -1, 0)
+    u = rows.x.ravel()
+    (lam_at, epsilon_at), _ = rows.read(np.stack([lam, epsilon]), u)
+    L = lam_at * (1.0 + epsilon_at) if cover_L is None else rows.read(cover_L[None], u)[0][0]
+    for _ in range(2):
+        value, slope = _read_press(rows, press, 2.0 * u / L, alpha, fast)
+        # Newton's method for L^2 press(2 u/L) = 1
+        A = value - 0.5 * slope
+        L, dL = L - 0.5 * (L * value - 1.0 / L) / A, -0.5 * L * slope / A
+    lengths = rows.fit_slopes(L.reshape(rows.x.shape), dL.reshape(rows.x.shape))
+    lengths[0, 0] = 1.0 if cover_L is None else cover_L[0, 0]
+    pairs = (lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder)
+    return np.concatenate([*(interleave_pairs(*pair) for pair in pairs), press, share], axis=1)
+
+
+def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats) -> tuple[Floats, Floats]:
+    """Return H/F^2 and its derivative with respect to ln v, by the rows or, beyond these, by the fast limit.
+
+    rows, press: octaves of v, and coefficients of H/F^2, (rows, 24 powers).
+    v: 1/F(eta), shape (n,).
+    alpha: value for v -> infinity.
+    fast: W and C of the fast limit.
+    Returns two arrays (n,).
+    """
+    last = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
+    (value,), (slope,) = rows.read(press[None], last)
+    bracket = fast[1] + fast[0] * np.log(v)
+    share, share_slope = 1.0 - 0.5 * alpha * bracket / v, alpha**2 * (bracket - fast[0]) / v
+    beyond = v > last
+    return np.where(beyond, alpha * share**2, value), np.where(beyond, share_slope * share, slope)
+
+
+def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
+    """Return the rows of N of a record, with those of its integral over u.
+
+    table: (rows, 24 powers, 7 functions) with N.
+    e0: exponent of the end of the first row.
+    alpha: instantaneous divided by long-time modulus.
+    Returns one array: rows of N and of its integral from the point t = 0 of each row; then the integral from infinity
+    down to that point, for each row and the end of the last; then likewise the integral from u = 0 up to it.
+    """
+    N = table[..., FUNCTIONS.index("N")]
+    du_dt, integral = np.ldexp(0.25, e0 + np.arange(len(N))), np.zeros_like(N)
+    du_dt[0] = math.ldexp(1.0, e0)
+    integral[:, 1:] = du_dt[:, None] * N[:, :-1] / np.arange(1.0, TERMS)
+    to_end, to_begin = integral.sum(axis=1), integral @ (-1.0) ** np.arange(TERMS)
+    to_begin[0] = 0.0  # the first row begins at t = 0
+    beyond = (alpha - 1.0) / (16.0 * alpha * math.ldexp(1.0, e0 + len(N) - 1))
+    parts = np.append(to_end - to_begin, beyond)
+    from_top, from_rest = -np.cumsum(parts[::-1])[::-1] - np.append(to_begin, 0.0), np.append(0.0, np.cumsum(parts))
+    from_top[-1], from_rest[:-2] = 0.0, from_rest[:-2] - to_begin
+    pairs = np.stack([N, integral], axis=1).reshape(len(N), 2, -1, 2).swapaxes(1, 2)
+    return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
+
+
+def _pack_cover_front(cover: CoverRows) -> Floats:
+    """Return the numbers in front of the rows of a ``cover``, shape (8,).
+
+    With them the formulas of the fast limit of half-spaces give that of the cover, L = L_1 (1 + a/u) and M = b V/u^2,
+    without logarithms.
+    """
+    L, _, _, L_slope, _, _, _, moment = cover.limits
+    on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
+    half_space, cylinder = (moment, 0.0) if on_base else (0.0, moment)
+    return np.array([1.0 / (L * L), L, 0.0, 4.0 * L_slope, 0.0, 8.0 * half_space, 0.0, 8.0 * cylinder])
+
+
+def _pack_cover(cover: CoverRows) -> Floats:
+    """Return the numbers of a ``cover`` that kernels read in addition to its rows (:mod:`...kernels.rows.cover`)."""
+    L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
+    share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
+    front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
+    creep = cover.creep[1]
+    return np.append(front, np.concatenate([creep, interleave_pairs(creep, creep)], axis=1))
+
+
+def pack_axis(records: list[Any], c: Floats) -> Floats:
+    """Return the rows of several alphas as the alpha axis of the kernels has them (:mod:`...kernels.rows.alpha_axis`).
+
+    records: records of the laws of standard linear solids, with equal numbers of rows.
+    c: (alpha - 1)/alpha of each.
+    Returns (records, rows, parts, 24 powers): without the parts of M of either body, M/V and epsilon divided by c.
+    """
+    from ...kernels.rows.alpha_axis import ALPHA_PARTS
+    from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, ROW_SIZE
+
+    values = np.array([record.rows[ROW_SIZE:].reshape(-1, ROW_SIZE) for record in records])
+    pairs = values[..., :BODY_MOMENTS].reshape(*values.shape[:2], -1, 2, 2)
+    pairs[..., 1, :] /= c[:, None, None, None]
+    values = np.concatenate([values[..., :BODY_MOMENTS], values[..., H_OVER_F2:]], axis=-1)
+    return values.reshape(*values.shape[:2], ALPHA_PARTS, -1)
+
+
+def pack_materials(block: Block) -> Floats:
+    """Return the numbers of materials from which kernels make rows by a grid of z (:mod:`...kernels.rows.z_grid`).
+
+    block: materials of equal numbers of modes.
+    Returns (materials, numbers): alpha, 1/sqrt(alpha), W and C of the fast limit of both bodies, half-space and
+    cylinder, sums J_j T_j of half-space and cylinder, e0, number of rows, number of modes; then the modes.
+    """
+    modes, count = block.modes, block.rows.size
+    weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights
+    alpha, W = np.broadcast_to(modes.alpha, count), modes.J * modes.b
+    C = W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
+    sums = [(share * term).sum(axis=-1) for share in (1.0, weights, 1.0 - weights) for term in (W, C)]
+    means = [(share * modes.J / modes.b).sum(axis=-1) for share in (weights, 1.0 - weights)]
+    e0, rows, mode_count = np.zeros(count), np.ones(count), np.full(count, modes.a.shape[-1])
+    if modes.a.shape[-1]:
+        e0, rows = row_range(modes.b[:, 0], modes.a[:, -1])
+    *vectors, Q = modes_record(modes, weights)
+    front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, e0, rows, mode_count]
+    return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)

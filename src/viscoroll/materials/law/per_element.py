@@ -1,0 +1,173 @@
+"""Laws of arrays in which every element has its own alpha, material or cover: rows are made where kernels read them."""
+
+from __future__ import annotations
+
+import threading
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ...core.array_types import Floats, Integers
+from ..bodies import Bodies
+from ..cover import Cover
+from ..prony import Prony, lock_array
+from .alpha_axis import OCTAVES, alpha_terms, tables_of_octave
+from .cover_rows import cover_rows
+from .evaluate import refuse_distant_times
+from .pack import allocate_rows, pack_axis, pack_materials
+from .table import make_table
+
+_lock = threading.Lock()
+#: rows of every octave of alpha that this process has used, (rows, parts, terms, powers); they are kept until it ends
+_octaves: dict[int, Floats] = {}
+#: address and number of rows of each of them, which kernels read; 0 rows: not used yet
+_octave_table = np.zeros((OCTAVES, 2), np.int64)
+
+
+def record_of_alphas(alpha: Floats) -> Any:
+    """Return the record of the laws of states or motions that have an alpha each, for use by one thread.
+
+    The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
+
+    alpha: one value for each element, or one for all, >= 1.
+    """
+    from ...kernels.rows import alpha_axis
+    from ...kernels.rows.record import E0
+
+    alpha = np.ascontiguousarray(alpha, dtype=np.float64)
+    octaves = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
+    with _lock:
+        for octave in octaves[_octave_table[octaves, 1] == 0].tolist():
+            tables = tables_of_octave(octave)
+            rows = pack_axis([table.record for table in tables], np.array([table.T_mean for table in tables]))
+            terms = lock_array(np.moveaxis(alpha_terms(rows), 0, 2))
+            _octaves[octave], _octave_table[octave] = terms, (terms.ctypes.data, len(terms))
+    numbers, marks = allocate_rows(int(_octave_table[octaves, 1].max()))
+    marks[E0] = alpha_axis.ALPHA_E0
+    return _lazy_record(
+        alpha_axis, alpha_axis.select_alpha, rows=numbers, marks=marks, alpha=alpha, state_count=alpha.size,
+        octaves=_octave_table,
+    )  # fmt: skip
+
+
+def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
+    """Return an order of states in which those of one octave of alpha and one of kappa |V| follow each other.
+
+    They then read rows that are close in memory: states in random order take half as long again.
+
+    alpha, kappa, V: of the states, dimensionless, shape (n,), or one for all.
+    Returns indices (n,); none for a single state.
+    """
+    octaves = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
+    return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
+
+
+def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
+    """Return the record of the laws of states or motions that have a material each, for use by one thread.
+
+    The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
+
+    materials: many series, pairs or covers.
+    which: index of the material of each element, shape (n,).
+    """
+    used, index = np.unique(which, return_inverse=True)
+    index = np.ascontiguousarray(index, dtype=np.int64)
+    if isinstance(materials, Cover):
+        return _record_of_covers(materials.thickness[used], materials, index)
+    from ...kernels.rows import series, z_grid
+
+    blocks = list(materials.blocks(used))
+    most_modes = max((block.modes.a.shape[-1] for block in blocks), default=0)
+    numbers = np.zeros((used.size, z_grid.SERIES_START + series.series_size(most_modes)))
+    for block in blocks:
+        if block.modes.a.shape[-1]:
+            refuse_distant_times(block.modes.b.min(), block.modes.a.max())
+        packed = pack_materials(block)
+        numbers[block.rows, : packed.shape[1]] = packed
+    row_count = int(numbers[:, z_grid.FIRST_EXPONENT + 1].max(initial=1.0))
+    nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max(initial=1.0)))
+    workspace = np.empty(series.workspace_size(most_modes))
+    rows, marks = allocate_rows(row_count)
+    return _lazy_record(
+        z_grid, z_grid.select_series, rows=rows, marks=marks, material_index=index, state_count=index.size,
+        materials=numbers, material_size=numbers.shape[1], numbers=np.empty(z_grid.work_size(nodes)), node_count=nodes,
+        node_versions=np.zeros(nodes // series.LANES, np.int64), workspace=workspace, workspace_size=workspace.size,
+        unlike=any(block.weights is not None for block in blocks),
+    )  # fmt: skip
+
+
+def _lazy_record(
+    kernels: Any, select: Any, rows: Floats, marks: Integers, cover_rows: Floats | None = None, **fields: Any
+) -> Any:
+    """Return the record of a law whose rows are made by kernels where they are read.
+
+    kernels: module with the kernel ``make_part`` and the type SOURCE of the data that both kernels read.
+    select: kernel that makes the law of one element the current one.
+    rows, marks: numbers and marks of the record, which the kernels write.
+    cover_rows: likewise the numbers that covers have in addition; None for half-spaces.
+    fields: the other fields of SOURCE, numbers or arrays, of which the address is passed.
+    """
+    from ...kernels.compile.intrinsics import function_address
+    from ...kernels.rows.record import Law
+
+    fields |= {"rows": rows, "marks": marks} | ({} if cover_rows is None else {"cover_rows": cover_rows})
+    source = np.zeros(1, kernels.SOURCE)
+    for name, value in fields.items():
+        source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
+    # the marks keep all arrays alive of which the kernels have the addresses
+    owner = SimpleNamespace(__array_interface__=marks.__array_interface__, arrays=(source, fields))
+    selector, maker = (function_address(kernel, kernels.SOURCE) for kernel in (select, kernels.make_part))
+    rows, marks, N_rows = map(lock_array, (rows.view(), np.asarray(owner), np.empty(0)))
+    cover_rows = None if cover_rows is None else lock_array(cover_rows.view())
+    return Law(rows, marks, N_rows, selector, maker, int(source.ctypes.data), cover_rows)
+
+
+def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
+    """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
+
+    thickness: of each cover, divided by l0, shape (covers,).
+    covers: covers of which all but the thickness is taken.
+    index: index of the cover of each element, shape (n,).
+    """
+    from ...kernels.numerics.interpolation import to_chebyshev
+    from ...kernels.rows import thickness_axis
+    from ...kernels.rows.record import E0, ROW_COUNT
+
+    position = np.log2(thickness)
+    octave = np.floor(position)
+    laws = {}
+    for exponent in np.unique(octave).tolist():
+        with _lock:
+            laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent))
+    nodes = thickness_axis.NODES
+    weights = np.polynomial.chebyshev.chebvander(2.0 * (position - octave) - 1.0, nodes - 1) @ to_chebyshev(nodes)
+    octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
+    records = [record for _, record in laws.values()]
+    rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
+    marks[E0] = records[0].marks[E0]
+    return _lazy_record(
+        thickness_axis, thickness_axis.select_cover, rows=rows, marks=marks, cover_index=index, state_count=index.size,
+        cover_rows=np.zeros(max(record.cover_rows.size for record in records)), cover_count=thickness.size,
+        weights=np.ascontiguousarray(weights), octaves=np.array(octaves, np.int64),
+    )  # fmt: skip
+
+
+@lru_cache(maxsize=32)
+def _laws_of_octave(thinnest: Cover) -> tuple[Floats, Any]:
+    """Return the laws at the nodes of an octave of thickness; made once a process.
+
+    thinnest: cover at the lower end of the octave.
+    Returns the numbers of their records, (nodes, numbers in front and rows, then those of the cover), and one of these
+    records.
+    """
+    from ...kernels.numerics.interpolation import chebyshev, to_doubles
+    from ...kernels.rows.thickness_axis import NODES
+
+    numbers = []
+    for node in to_doubles(chebyshev(NODES)).tolist():
+        cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * node))
+        record = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
+        numbers.append(np.concatenate([record.rows, record.cover_rows]))
+    return np.array(numbers), record

@@ -1,0 +1,267 @@
+"""Materials in files: sections [material] and [base] of TOML, or a netCDF file -> :class:`Material`."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from ..core.errors import FileError, ParameterError
+from ..core.sections import as_struct, read_toml, section_error
+from .law_file import is_law, read_law
+from .material import Material
+from .material_netcdf import SUFFIX
+from .measured import Measured
+from .prony import Prony
+from .shift import WLF, Arrhenius, relative_shift
+
+#: sections of a file that describe a body
+SECTIONS = ("material", "base")
+#: what is missing from a file without them
+_NO_MATERIAL = "section [material] is missing: it needs E and nu"
+
+
+class PronySection(msgspec.Struct):
+    """Key prony = { E = [...], tau = [...] }: the parameters of :class:`Prony`."""
+
+    E: list[float]
+    tau: list[float]
+
+
+class CreepSection(msgspec.Struct):
+    """Key creep = { J = [...], T = [...] }: the parameters of :meth:`Prony.creep`."""
+
+    J: list[float]
+    T: list[float]
+    alpha: float | None = None
+
+
+class FileSection(msgspec.Struct, kw_only=True):
+    """Section [material] or [base] that names a netCDF or TOML file; thickness, shift and temperature as below."""
+
+    file: str
+    thickness: float | None = None
+    wlf: WLF | None = None
+    arrhenius: Arrhenius | None = None
+    temperature: float | None = None
+
+
+class MaterialSection(FileSection, kw_only=True):
+    """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`, and a temperature.
+
+    T_epsilon, T_sigma : retardation and relaxation time of one mode, s, instead of a series.
+    creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
+    wlf, arrhenius : time-temperature shift.
+    temperature : temperature of the material, degrees Celsius.
+    reference : temperature at which moduli and times are as given, degrees Celsius; default: where the shift is 1.
+    """
+
+    file: None = None  # type: ignore[assignment]
+    E: float
+    nu: float
+    T_epsilon: float | None = None
+    T_sigma: float | None = None
+    prony: PronySection | None = None
+    creep: CreepSection | None = None
+    T_ref: float | None = None
+    name: str = ""
+    density: float | None = None
+    measured: Measured | None = None
+    reference: float | None = None
+
+
+def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
+    """Read the materials of a TOML file by section, "material" and "base"; of a netCDF file its only one, "material".
+
+    Parameters
+    ----------
+    path : a file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are
+        ignored.  Or a file that :meth:`Material.to_netcdf` wrote.
+
+    Returns
+    -------
+    dict of str to Material
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read, is not TOML, has neither section, or a misspelt or missing key, a value of
+        the wrong type or out of its range, a temperature without a shift.
+        A netCDF file that is missing, damaged, or no material.
+    """
+    if Path(path).suffix == SUFFIX:
+        return {"material": Material.from_netcdf(path)}
+    materials = parse_materials(path, read_toml(path))
+    if not materials:
+        raise section_error(path, "", "material", _NO_MATERIAL)
+    return materials
+
+
+def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
+    """Return the materials of a file that was read; raises FileError as :func:`read_materials` does.
+
+    path: of the file.
+    content: its sections.
+    """
+    return {name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content}
+
+
+def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
+    """Return the shifts of those materials of a file that have one; raises FileError.
+
+    path: of the file.
+    content: its sections.
+    Returns functions a_T(temperature in degrees Celsius) by section, which are 1 at the temperature of the section.
+    """
+    sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
+    return {
+        name: partial(relative_shift, shift, reference=section.temperature)
+        for name, section in sections.items() if (shift := _shift_of(path, name, section))
+    }  # fmt: skip
+
+
+def material_as_toml(material: Material, section: str = "material") -> str:
+    """Return the ``section`` of a TOML file that reads back as this ``material``, to the bit."""
+    band = material.measured
+    values = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
+    values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
+    values["measured"] = band and (
+        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)} }}"
+    )
+    lines = [f"{name} = {value}" for name, value in values.items() if value is not None]
+    return "\n".join([f"[{section}]", *lines, series_as_toml(material.prony), ""])
+
+
+def series_as_toml(series: Prony) -> str:
+    """Return the key ``prony`` or ``creep`` that reads back as this ``series``, to the bit."""
+    if series.by_creep:
+        return f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = {series.alpha!r} }}"
+    return f"prony = {{ E = {series.E.tolist()}, tau = {series.tau.tolist()} }}"
+
+
+def _quote(text: str) -> str:
+    """Return ``text`` as a TOML string: TOML allows no surrogates, and the character DEL only escaped."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", r"\u007f")
+
+
+def _parse_section(path: Any, name: str, content: Any) -> Any:
+    """Return a section as a FileSection or MaterialSection; raises FileError.
+
+    path, name: of the file and of the section.
+    content: keys and values of the section.
+    """
+    kind = FileSection if isinstance(content, dict) and "file" in content else MaterialSection
+    return as_struct(path, name, content, kind)
+
+
+def _parse_material(path: Any, name: str, content: Any) -> Material:
+    """Return the material of a section at its temperature; raises FileError.
+
+    path, name: of the file and of the section.
+    content: keys and values of the section.
+    """
+    section = _parse_section(path, name, content)
+    try:
+        if section.file is None:
+            material = _make_material(path, name, section)
+        else:
+            material = _read_other_file(path, name, Path(path).parent / section.file)
+            if section.thickness is not None:
+                material = replace(material, thickness=section.thickness)
+        shift, temperature = _shift_of(path, name, section), section.temperature
+        if temperature is None:
+            return material
+        if shift is None:
+            problem = f"temperature = {temperature:g}: needs wlf or arrhenius beside it"
+            raise section_error(path, name, "temperature", problem)
+        return material.at(temperature, shift)
+    except ParameterError as error:
+        raise section_error(path, name, error.name, str(error)) from error
+
+
+def _read_other_file(path: Any, name: str, other: Path) -> Material:
+    """Return the material of a file that a section names; raises FileError.
+
+    path, name: of the file and of the section that names it.
+    other: netCDF file of a material or of its law, or TOML file with a section of this name or [material].
+    """
+    try:
+        if other.suffix == SUFFIX:
+            return _material_of_law(other) if is_law(other) else Material.from_netcdf(other)
+        content = read_toml(other)
+        section = name if name in content else "material"
+        if section not in content:
+            raise section_error(other, "", "material", _NO_MATERIAL)
+        if isinstance(content[section], dict) and "file" in content[section]:
+            raise section_error(other, section, "file", "file: must not name a file again")
+        return _parse_material(other, section, content[section])
+    except FileError as error:
+        raise section_error(path, name, "file", str(error)) from error
+
+
+def _material_of_law(path: Path) -> Material:
+    """Return the material of the law in file ``path``; raises FileError for a pair and for a law without units."""
+    content = tomllib.loads(read_law(path).attributes["material"])
+    if not content.keys() & set(SECTIONS):
+        raise FileError(path, "is the law of a material without units: it must be of one with [material]")
+    if "base" in content:
+        raise FileError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
+    return parse_materials(path, content)["material"]
+
+
+def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
+    """Return the material of a section at its reference temperature; raises FileError and ParameterError.
+
+    path, name: of the file and of the section.
+    section: its content.
+    """
+    more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
+    more["temperature"] = section.reference
+    series = parse_series(path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep}))
+    times = section.T_epsilon, section.T_sigma
+    if times != (None, None):
+        if None in times or section.T_ref is not None or series:
+            problem = "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep"
+            raise section_error(path, name, "", problem)
+        return Material.sls(section.E, section.nu, *times, **more)  # type: ignore[arg-type]
+    T_ref = 1.0 if section.T_ref is None else section.T_ref
+    return Material(section.E, section.nu, series or Prony.elastic(), T_ref, **more)
+
+
+def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
+    """Return the series of a section by its key prony or creep, or None without these; raises FileError.
+
+    path, name: of the file and of the section.
+    given: keys and values; strengths and times may be arrays with one value for each of many materials.
+    """
+    forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
+    if len(forms) > 1:
+        raise section_error(path, name, "creep", "prony and creep: must be one of the two")
+    for key, lists in forms.items():
+        columns = {
+            column: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
+            for column, value in lists.items()
+        }
+        try:
+            return Prony(**columns) if key == "prony" else Prony.creep(**columns)
+        except ParameterError as error:  # E is a key of the material too: name the line of the series
+            raise section_error(path, f"{name}.{key}", error.name, str(error)) from error
+    return None
+
+
+def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | None:
+    """Return the time-temperature shift of a ``section``, or None; raises FileError for two.
+
+    path, name: of the file and of the section, for errors.
+    """
+    if section.wlf is not None and section.arrhenius is not None:
+        raise section_error(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
+    return section.wlf or section.arrhenius
