@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from viscoroll.motion.single import roll
+from viscoroll.motion.roll import roll
 
 from viscoroll.contact_law.stress import stress
 from viscoroll.core.plots.style import LINES, THIN, axis_label, new_figure
