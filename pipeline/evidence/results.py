@@ -161,6 +161,15 @@ def rounded(value: Any) -> Any:
     return float(f"{value:.3g}") if math.isfinite(value) else None
 
 
+def _caches() -> dict[str, str]:
+    """Return the sizes of the caches of one core as Linux states them, {"L2 Unified": "1024K"}; empty elsewhere."""
+    found = {}
+    for index in sorted(Path("/sys/devices/system/cpu/cpu0/cache").glob("index*")):
+        level, kind, size = ((index / name).read_text(encoding="ascii").strip() for name in ("level", "type", "size"))
+        found[f"L{level} {kind}"] = size
+    return found
+
+
 def machine() -> dict[str, Any]:
     """Where and when, and with what, this was measured."""
     import numba
@@ -172,6 +181,7 @@ def machine() -> dict[str, Any]:
         cpu = platform.processor() or platform.machine()
     return {
         "cpu": cpu,
+        "caches": _caches(),
         "cores": available_cores(),
         "system": platform.system(),
         "python": platform.python_version(),

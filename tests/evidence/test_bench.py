@@ -89,7 +89,7 @@ def test_last_release(tmp_path):
 
     def at(commit: str) -> tuple[str | Path, ...]:
         config = tmp_path / "config.toml"
-        text = CONFIG.read_text().replace(section["commit"], commit).replace("200_000", "5000")
+        text = CONFIG.read_text().replace(section["commit"], commit).replace("20_000", "5000")
         config.write_text(text)
         return "--only", "last-release", "--quick", "--config", config, "-o", tmp_path / "bench.json"
 

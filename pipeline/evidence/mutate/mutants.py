@@ -70,7 +70,7 @@ SLICE = [
 ]  # fmt: skip
 ROWS = [
     ("rows/alpha_axis.py", "        marks[VERSION] += 1\n", "", _LAW),
-    ("rows/alpha_axis.py", "rows[at - j + j % 2]", "rows[at - j]", _LAW),
+    ("rows/alpha_axis.py", "fma4(total, fourth,", "fma4(total, square,", _LAW),
     ("rows/record.py", "    marks[VERSION] += 1\n", "", _LAW),
     ("rows/z_grid.py", "NODES_PER_OCTAVE = 10\n", "NODES_PER_OCTAVE = 6\n", _LAW),
     ("rows/z_grid.py", "numbers[FIRST_EXPONENT + 1]\n", "numbers[FIRST_EXPONENT + 1] - 12\n", _LAW),

@@ -200,11 +200,11 @@ def coast_to_end(state, regime, step_state, work):
     if rest_speed > 0.0:
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
     force_work, torque_work = force / rate, torque / rate
-    energies = 0.0, 0.0, force_work, torque_work, 0.0, 0.0, 1.0 + scene.j + force_work + torque_work
+    energies = 0.0, 0.0, 0.0, 1.0 + scene.j + force_work + torque_work, force_work, torque_work, 0.0
     if is_cover(by_value(scene.law).cover_rows):
         rolling = (half_space + cylinder * omega_over_V) / rate
         slipping = delta_0 * torque_difference / (inertia * rate)
-        energies = 0.0, 0.0, force_work, torque_work * omega_over_V, 0.0, slipping, rolling
+        energies = 0.0, 0.0, slipping, rolling, force_work, torque_work * omega_over_V, 0.0
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
         expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))

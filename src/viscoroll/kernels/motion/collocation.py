@@ -92,26 +92,38 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
 
 
 @kernel(inline=True)
-def invert_matrix(matrix):
-    """Invert a matrix in place, without pivoting: where that loses digits, Newton's iteration does not converge.
+def _eliminate(i, matrix):
+    """Do step i of the inversion of a matrix in place, by Gauss and Jordan with the pivot on the diagonal.
 
     Only whole vectors are stored: a vector load behind the store of a single number into it would wait for that store.
     """
+    column = ROW_LENGTH * i
+    pivot = broadcast(1.0 / matrix[column + i])
+    off_low, off_high = load(_OFF_DIAGONAL, column), load(_OFF_DIAGONAL, column + LANES)
+    low = fma4(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
+    high = fma4(load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot)
+    for k in range(1, ROW_LENGTH):
+        if k != i:
+            factor = broadcast(-matrix[ROW_LENGTH * k + i])
+            store(matrix, ROW_LENGTH * k, fma4(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
+            store(matrix, ROW_LENGTH * k + LANES, fma4(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high))
+    store(matrix, column, low)
+    store(matrix, column + LANES, high)
+
+
+@kernel(inline=True)
+def invert_matrix(matrix):
+    """Invert a matrix in place, without pivoting: where that loses digits, Newton's iteration does not converge."""
     for i in range(1, ROW_LENGTH):
-        column = ROW_LENGTH * i
-        pivot = broadcast(1.0 / matrix[column + i])
-        off_low, off_high = load(_OFF_DIAGONAL, column), load(_OFF_DIAGONAL, column + LANES)
-        low = fma4(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
-        high = fma4(load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot)
-        for k in range(1, ROW_LENGTH):
-            if k != i:
-                factor = broadcast(-matrix[ROW_LENGTH * k + i])
-                store(matrix, ROW_LENGTH * k, fma4(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
-                store(
-                    matrix, ROW_LENGTH * k + LANES, fma4(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high)
-                )
-        store(matrix, column, low)
-        store(matrix, column + LANES, high)
+        _eliminate(i, matrix)
+
+
+@kernel(inline=True)
+def invert_two_matrices(first, second):
+    """Invert two matrices in place, step by step in turn: the processor works on one while the other waits."""
+    for i in range(1, ROW_LENGTH):
+        _eliminate(i, first)
+        _eliminate(i, second)
 
 
 @kernel(inline=True)

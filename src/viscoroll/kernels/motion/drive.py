@@ -146,6 +146,8 @@ def current_load(regime, step_state, work):
 def store_drive(step, work):
     """Store the functions of the drive at all nodes of a step; work: Workspace."""
     nodes = work.nodes
+    if step.undriven and step.segment == 0:  # the rows are 0 from the start of the motion
+        return
     values = evaluate_drive(step.tau, step.segment, work.drive)
     changes = not is_constant(step.segment, work.drive)
     for i in range(N + 1):

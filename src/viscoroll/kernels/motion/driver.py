@@ -24,7 +24,6 @@ from .workspace import (
     COMPLETED,
     DELTA_ZERO,
     DIRECTION_REVERSED,
-    N_QUADRATURES,
     N_SWITCHES,
     NO_EVENT,
     NOT_UNIQUE,
@@ -32,6 +31,7 @@ from .workspace import (
     QUADRATURE_TOTALS,
     REGIME_AT_REST,
     REST_TIME,
+    ROLLING_LOSS,
     STEP_FAILED,
     STEP_LIMIT,
     STEP_TOO_SMALL,
@@ -162,7 +162,7 @@ def _come_to_rest(code, state, regime, step_state, work):
     if code >= 0 and code != AT_REST:
         record_switch(AT_REST, step_state, work)
     nodes[REST_TIME] = step_state.tau / work.scene.gamma
-    nodes[QUADRATURE_TOTALS + N_QUADRATURES - 1] += 0.5 * (state.V * state.V + work.scene.j * omega * omega)
+    nodes[QUADRATURE_TOTALS + ROLLING_LOSS] += 0.5 * (state.V * state.V + work.scene.j * omega * omega)
     return write_outputs_at_rest(last_output_tau(work), True, AT_REST, step_state, work)
 
 

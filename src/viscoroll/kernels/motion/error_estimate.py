@@ -175,7 +175,8 @@ def estimate_error(step, regime, work):
     # the defect may be small by chance where the last Chebyshev coefficient is not
     error = max(error, _LAST_COEFFICIENT_FACTOR * abs(work.nodes[ROW_DENSE_V + N - 1]))
     # shorter steps do not reduce the change of V by the rounding of the drive
-    error = max(error - step.h * drive_rounding(step.segment, work.drive), 0.0) / scale_V
+    rounding = 0.0 if step.undriven else drive_rounding(step.segment, work.drive)
+    error = max(error - step.h * rounding, 0.0) / scale_V
     if nodes[ROW_SPEED] == 0.0:
         error /= _relative_speed_at_first_output(step, work)
     elif not step.undriven:  # speeds that grow are accurate relative to those at the left end

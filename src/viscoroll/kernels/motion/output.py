@@ -6,13 +6,17 @@ losses in the brake 10, in slip 11, in rolling 12.
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..compile.by_reference import by_value
 from ..compile.jit import kernel
 from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
-from .drive import evaluate_load, required_forces
+from .drive import evaluate_load, load_at_node, required_forces
 from .regimes import regime_code
-from .rhs import evaluate_rhs, omega_and_delta, rhs_and_forces_at_node
+from .rhs import evaluate_rhs, evaluate_rhs_inline, omega_and_delta
 from .workspace import (
     DIRECTION_REVERSED,
+    N_FREE_QUADRATURES,
     N_QUADRATURES,
     N_RECORDED,
     N_SWITCHES,
@@ -20,6 +24,7 @@ from .workspace import (
     REGIME_AT_REST,
     ROW_DENSE_QUADRATURES,
     ROW_INTEGRANDS,
+    ROW_OMEGA_OR_D,
     ROW_V,
     StepState,
     dense_position,
@@ -35,6 +40,8 @@ OUT_X = 2
 OUT_FORCE = 6
 #: output row of the first energy; four others follow
 OUT_WORK = 8
+#: output row of each quadrature
+_OUT_QUADRATURES = np.array([OUT_X, OUT_X + 1, OUT_WORK + 3, OUT_WORK + 4, OUT_WORK, OUT_WORK + 1, OUT_WORK + 2])
 
 
 @kernel
@@ -58,7 +65,7 @@ def write_column(column, speeds, code, forces, work):
 @kernel
 def write_quadrature(column, n, increase, work):
     """Write quadrature ``n``, its total so far plus ``increase``, to one output column."""
-    work.outputs[OUT_X + n if n < 2 else OUT_WORK + n - 2, column] = work.nodes[QUADRATURE_TOTALS + n] + increase
+    work.outputs[_OUT_QUADRATURES[n], column] = work.nodes[QUADRATURE_TOTALS + n] + increase
 
 
 @kernel
@@ -143,13 +150,18 @@ def _evaluate_integrands(regime, work):
     regime: Regime; work: Workspace with the unknowns at the nodes.
     Distance and angle are integrals over t, the energies over tau.
     """
-    nodes, direction_over_gamma = work.nodes, regime.direction / work.scene.gamma
+    nodes, values = work.nodes, by_value(work)
+    direction_over_gamma = regime.direction / values.scene.gamma
     for i in range(N + 1):
-        rates, (force, torque, brake) = rhs_and_forces_at_node(i, regime, work)
-        V, omega = nodes[ROW_V + i], rates.omega
+        load, V = load_at_node(i, regime, values), nodes[ROW_V + i]
+        # inlined: the compiler leaves out the derivatives, half of the work of a right-hand side
+        rates = evaluate_rhs_inline(V, nodes[ROW_OMEGA_OR_D + i], load, regime, values.scene)
+        omega = rates.omega
+        force, torque, brake = required_forces(V, omega, rates, load, regime, values.scene.j)
         integrands = (
-            direction_over_gamma * V, direction_over_gamma * omega, force * V, torque * omega, -brake * omega,
+            direction_over_gamma * V, direction_over_gamma * omega,
             (omega - V) * rates.Q, V * rates.M_half_space + omega * rates.M_cylinder,
+            force * V, torque * omega, -brake * omega,
         )  # fmt: skip
         for n in range(N_QUADRATURES):
             nodes[ROW_INTEGRANDS + ROW_LENGTH * n + i] = integrands[n]
@@ -176,7 +188,8 @@ def accept_step(end, v, step, regime, step_state, work):
     tau, column = work.output_tau, step_state.next_output
     is_last = end == last_output_tau(work)
     due = column < tau.size and (tau[column] < end or is_last)
-    n_quadratures = N_QUADRATURES if work.with_quadratures else 0
+    n_quadratures = N_FREE_QUADRATURES if step.undriven else N_QUADRATURES
+    n_quadratures = n_quadratures if work.with_quadratures else 0
     if n_quadratures > 0:
         _evaluate_integrands(regime, work)
     if due or v < 2.0:
@@ -185,8 +198,9 @@ def accept_step(end, v, step, regime, step_state, work):
     while column < tau.size and (tau[column] < end or is_last):
         v_output = min(dense_position(tau[column], step), 2.0)
         _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
-        for n in range(n_quadratures):
-            write_quadrature(column, n, _quadrature_at(n, v_output, step, work.nodes), work)
+        for n in range(N_QUADRATURES if work.with_quadratures else 0):
+            increase = _quadrature_at(n, v_output, step, work.nodes) if n < n_quadratures else 0.0
+            write_quadrature(column, n, increase, work)
         column += 1
     if step_state.n_ended < work.step_ends.size:
         work.step_ends[step_state.n_ended] = end / work.scene.gamma

@@ -26,6 +26,7 @@ from .collocation import (
     assemble_newton_matrix,
     fit_dense_output,
     invert_matrix,
+    invert_two_matrices,
     multiply_matrix,
 )
 from .drive import load_at_node, store_drive
@@ -61,7 +62,7 @@ from .workspace import (
 #: largest number of Newton iterations of a step
 _MAX_ITERATIONS = 12
 #: relative update above which the Newton matrices are evaluated again
-_REFACTOR_UPDATE = 1e-2
+_REFACTOR_UPDATE = 0.1
 #: ratio of successive updates above which the Newton matrices are evaluated again
 _REFACTOR_CONTRACTION = 1e-3
 #: largest assumed contraction of the first iteration
@@ -126,10 +127,12 @@ def _newton_iteration(refactor, coupled, step, regime, work):
         _evaluate_residuals(True, step, regime, work)
         assemble_newton_matrix(ROW_ONES, ROW_P_DIAGONAL, nodes, p_matrix)
         assemble_newton_matrix(ROW_WEIGHT, ROW_D_DIAGONAL, nodes, d_matrix)
-        invert_matrix(d_matrix)
         if coupled:
+            invert_matrix(d_matrix)
             _add_feedback_to_matrix(work)
-        invert_matrix(p_matrix)
+            invert_matrix(p_matrix)
+        else:
+            invert_two_matrices(d_matrix, p_matrix)
     else:
         _evaluate_residuals(False, step, regime, work)
     if coupled:

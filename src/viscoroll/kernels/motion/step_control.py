@@ -29,7 +29,7 @@ _FIRST_CHANGE = 0.4
 #: length of the first step in partial slip, in relaxation times of d
 _FIRST_RELAXATION_TIMES = 3.0
 #: change of d in the first step behind the onset of stick, in units of (rtol V d'/(alpha feedback))^(1/3)
-_ONSET_CHANGE = 12.0
+_ONSET_CHANGE = 24.0
 #: octaves from the first row of a law to the rate of the longest time of its material
 _ROWS_BELOW_LONGEST_TIME = 4
 #: V reached in the first step from V = 0 on, in units of rtol^(1/7) times the moderate speed
@@ -124,6 +124,8 @@ def time_to_V_zero(step, state, regime, work):
         return np.inf
     if regime.full_slip:
         return -state.V / V_rate
+    if step.undriven:
+        return np.inf
     load = evaluate_load(step.tau, step.segment, regime, work)
     driving = load.prescribed_V_rate + load.prescribed_omega_rate
     if driving > 0.0 or (driving == 0.0 and load.force + load.torque >= 0.0):

@@ -245,7 +245,11 @@ DRIVE_SPEED = 4
 N_DRIVE_FUNCTIONS = 5
 #: functions that are stored at the nodes of a step: all but the prescribed speed
 N_NODE_FUNCTIONS = 4
-#: number of quadratures: distance, angle, work of force and torque, losses in brake, slip and rolling
+#: quadrature: loss in rolling
+ROLLING_LOSS = 3
+#: number of quadratures that a free motion has: distance, angle, losses in slip and in rolling
+N_FREE_QUADRATURES = 4
+#: number of quadratures: those, then work of force and of torque and the loss in the brake, 0 unless something drives
 N_QUADRATURES = 7
 
 #: row: V

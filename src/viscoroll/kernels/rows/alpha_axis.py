@@ -1,8 +1,9 @@
-"""Rows for one alpha after another, by the axis of alpha: sums of Chebyshev polynomials, without root finding.
+"""Rows for one alpha after another, by the axis of alpha: polynomials in ln alpha, without root finding.
 
-For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum over T_j(s), s = 2 log2(alpha/2^N) - 1, with T_epsilon
-as unit of time, and with M/V and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no
-special case.  Sums stay in registers, 24 numbers side by side.
+For alpha in [2^N, 2^(N+1)) every coefficient of a row is a polynomial in s = 2 log2(alpha/2^N) - 1, with T_epsilon as
+unit of time, and with M/V and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no
+special case.  The higher a power of t, the fewer powers of s change a digit.  So a block of twelve coefficients has one
+or two groups of four powers of s in most rows, and only the first block has four.
 """
 
 import math
@@ -11,9 +12,8 @@ import numpy as np
 
 from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, integers_at, record_at, record_type
 from ..compile.jit import inline_kernel, kernel
-from ..numerics.simd4 import LANES, load, pack, store
+from ..numerics.simd4 import LANES, broadcast, fma4, make_load, pack, store
 from .contact_states import element
-from .newton_interpolation import sum_of_rows
 from .record import (
     ALPHA,
     FAST_TOTAL,
@@ -28,27 +28,42 @@ from .record import (
     VERSION,
 )  # fmt: skip
 
-#: Chebyshev polynomials of a sum: the 17th changes no digit of a double.
+#: Largest number of powers of s: the 17th Chebyshev polynomial changes no digit of a double.
 ALPHA_TERMS = 16
-#: Numbers of a part of a row for all alphas of an octave.
-_AXIS_SIZE = PART_SIZE * ALPHA_TERMS
-#: Parts of a row on the axis: (L, M/V) and (lam, epsilon), two each, H/F^2, eta/F; moments of like bodies are halves.
-ALPHA_PARTS = 6
+#: Vectors of a block: with more of them fewer powers of s are negligible, with less the ends of loops count.
+_BLOCK_VECTORS = 3
+#: Numbers of a block, half of a part.
+BLOCK_SIZE = _BLOCK_VECTORS * LANES
+#: Powers of s of a group: their sums do not wait for those of the group before.
+GROUP = 4
+#: Groups of the blocks of (L, M/V), (lam, epsilon), H/F^2 and eta/F in most rows; bodies are alike and not on the axis.
+SHORT = (4, 2, 2, 1), (4, 2, 2, 1), (4, 2), (4, 2)
+#: Functions of a row, or pairs of them, on the axis.
+ALPHA_FUNCTIONS = len(SHORT)
+#: Groups of a block in the other rows.
+FULL = ALPHA_TERMS // GROUP
 #: Exponent of the first row, for all alphas.
 ALPHA_E0 = -4
-#: What these kernels read.  Addresses: rows and marks of the law; alpha; for each octave of alpha the address of its
-#: axis and its number of rows.  state_count: length of alpha, 1 or one for each state.
+#: What these kernels read.  Addresses: rows and marks of the law; alpha; for each octave of alpha the addresses of its
+#: axis and of where functions begin in it, and its number of rows.  state_count: length of alpha, 1 or one for each
+#: state.
 SOURCE = record_type("rows marks alpha state_count octaves")
-#: Index in the head of the rows where the values T_j(s) begin.
-_CHEBYSHEV = MAKER_NUMBERS
-#: Mark that is the address of the axis of the selected octave.
+#: Integers of an octave in SOURCE.
+OCTAVE_SIZE = 3
+#: Index in the head of the rows of s.
+_S = MAKER_NUMBERS
+#: Mark that is the address of the axis of the selected octave; behind it that of where functions begin, in groups.
 _AXIS = MAKER_MARKS
+#: Binary logarithm of the parts of a row.
+_PARTS_EXPONENT = PARTS_PER_ROW.bit_length() - 1
 #: Bias of the exponent of a double.
 _BIAS = 1023
 #: Mask of the mantissa of a double.
 _MANTISSA = (1 << 52) - 1
 #: C divided by W of the fast limit, where the one creep time is the unit.
 _FAST_RATIO = math.log(2.0) - float(np.euler_gamma)
+#: (array, start) -> the numbers of a block.
+_load_block = make_load(_BLOCK_VECTORS)
 
 
 @kernel(allocates=True)
@@ -61,54 +76,83 @@ def select_alpha(n, source):
         bits = float_to_bits(alpha)
         octave = (bits >> 52) - _BIAS
         marks = integers_at(source.marks, PARTS_PER_ROW)
-        octaves = integers_at(source.octaves, 2 * octave + 2)
-        s = 2.0 * np.log2(bits_to_float((bits & _MANTISSA) | (_BIAS << 52))) - 1.0
-        rows[_CHEBYSHEV] = 1.0
-        rows[_CHEBYSHEV + 1] = s
-        for j in range(2, ALPHA_TERMS):
-            at = _CHEBYSHEV + j
-            rows[at] = 2.0 * rows[at - j // 2] * rows[at - j + j // 2] - rows[at - j + j % 2]
+        first = OCTAVE_SIZE * octave
+        octaves = integers_at(source.octaves, first + OCTAVE_SIZE)
+        rows[_S] = 2.0 * np.log2(bits_to_float((bits & _MANTISSA) | (_BIAS << 52))) - 1.0
         c = (alpha - 1.0) / alpha
         rows[ALPHA] = alpha
         rows[LAM_FAST] = 1.0 / np.sqrt(alpha)
         rows[FAST_TOTAL] = c
         rows[FAST_TOTAL + 1] = c * _FAST_RATIO
         marks[VERSION] += 1
-        marks[_AXIS] = octaves[2 * octave]
-        marks[ROW_COUNT] = octaves[2 * octave + 1] if alpha > 1.0 else 1
+        marks[_AXIS] = octaves[first]
+        marks[_AXIS + 1] = octaves[first + 1]
+        marks[ROW_COUNT] = octaves[first + 2] if alpha > 1.0 else 1
 
 
 @kernel(allocates=True)
-def make_part(start, source):
+def make_part(number, source):
     """Make a part of a row of the selected alpha, except the moments of the bodies, which are alike.
 
-    start : position in the rows.  source : pointer to a SOURCE record.
+    number : of the part, its place among the marks.  source : pointer to a SOURCE record.
     At alpha = 1, where a sum would round, the closed form is written.
     """
     source = record_at(source)
+    start = PART_SIZE * number
     rows = floats_at(source.rows, start + 2 * PART_SIZE)
-    marks = integers_at(source.marks, start // PART_SIZE + 1)
-    part = start % ROW_SIZE
+    marks = integers_at(source.marks, number + 1)
+    # by shifts: a division would delay the loads by as long as the sums take
+    part = number & (PARTS_PER_ROW - 1)
+    row = (number >> _PARTS_EXPONENT) - 1
     c = rows[FAST_TOTAL]
-    axis_part = part // PART_SIZE - (2 if part >= H_OVER_F2 else 0)
-    address = marks[_AXIS] + ((start // ROW_SIZE - 1) * ALPHA_PARTS + axis_part) * _AXIS_SIZE * 8
-    axis = floats_at(address, 2 * _AXIS_SIZE)
-    terms = ALPHA_TERMS if c > 0.0 else 0
-    _sum_axis(axis, 0, terms, c if part < H_OVER_F2 else 1.0, rows, start)
-    if part < H_OVER_F2:
-        _sum_axis(axis, _AXIS_SIZE, terms, c, rows, start + PART_SIZE)
+    pair = part < H_OVER_F2 // PART_SIZE
+    function = row * ALPHA_FUNCTIONS + (part >> 1 if pair else part - ALPHA_FUNCTIONS)
+    begins = integers_at(marks[_AXIS + 1], function + 2)
+    first = begins[function]
+    groups = begins[function + 1] - first
+    size = BLOCK_SIZE * GROUP
+    axis = floats_at(marks[_AXIS] + 8 * size * first, size * groups)
+    s = rows[_S]
     if c == 0.0:
+        for k in range(start, start + (2 * PART_SIZE if pair else PART_SIZE)):
+            rows[k] = 0.0
         rows[start] = 1.0
-    marks[start // PART_SIZE] = marks[VERSION]
+    elif pair:
+        factor = pack(1.0, 1.0, c, c)
+        if groups < 4 * FULL:
+            _sum_block(axis, 0, 4, s, factor, rows, start)
+            _sum_block(axis, 4 * size, 2, s, factor, rows, start + BLOCK_SIZE)
+            _sum_block(axis, 6 * size, 2, s, factor, rows, start + 2 * BLOCK_SIZE)
+            _sum_block(axis, 8 * size, 1, s, factor, rows, start + 3 * BLOCK_SIZE)
+        else:
+            for n in range(4):
+                _sum_block(axis, n * FULL * size, FULL, s, factor, rows, start + n * BLOCK_SIZE)
+    else:
+        factor = broadcast(1.0)
+        _sum_block(axis, 0, 4, s, factor, rows, start)
+        if groups < 2 * FULL:
+            _sum_block(axis, 4 * size, 2, s, factor, rows, start + BLOCK_SIZE)
+        else:
+            _sum_block(axis, 4 * size, FULL, s, factor, rows, start + BLOCK_SIZE)
+    marks[number] = marks[VERSION]
 
 
 @inline_kernel
-def _sum_axis(axis, first, terms, c, rows, to):
-    """Write 24 numbers of a row: the sum over T_j(s), in which every third and fourth number is multiplied by ``c``.
+def _sum_block(axis, first, groups, s, factor, rows, to):
+    """Write twelve numbers of a row: polynomials in s by Horner's scheme over groups of four powers.
 
-    axis : numbers of the octave.  first : where those of the part begin.  terms : number of T_j.
-    rows : read and written, from ``to`` on.
+    axis, first : numbers of the octave, and where those of the block begin, the group of the highest powers first.
+    groups : how many, a literal number: loops of a length that varies cost more than they save.
+    factor : vector by which every vector is multiplied.  rows : written, from ``to`` on.
     """
-    sum_of_rows(axis, first, terms, _CHEBYSHEV, to, rows)
-    for k in range(0, PART_SIZE, LANES):
-        store(rows, to + k, pack(1.0, 1.0, c, c) * load(rows, to + k))
+    power = broadcast(s)
+    square = power * power
+    fourth = square * square
+    zero = broadcast(0.0)
+    total = zero, zero, zero
+    for group in range(groups):
+        at = first + BLOCK_SIZE * GROUP * group
+        low = fma4(_load_block(axis, at + BLOCK_SIZE), power, _load_block(axis, at))
+        high = fma4(_load_block(axis, at + 3 * BLOCK_SIZE), power, _load_block(axis, at + 2 * BLOCK_SIZE))
+        total = fma4(total, fourth, fma4(high, square, low))
+    store(rows, to, fma4(total, factor, zero))

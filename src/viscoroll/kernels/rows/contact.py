@@ -24,8 +24,9 @@ from .evaluate import (
 )  # fmt: skip
 from .record import select_material
 
-#: Fraction of L below which D is small: |Q|/mu as a difference would lose three bits and more.
-SMALL_CREEP = 0.125
+#: Fraction of L below which D is small: |Q|/mu as a difference would lose three bits and more.  A larger one would
+#: send states with creep of 0.1 delta_star to the mean slopes, which take half as long again.
+SMALL_CREEP = 0.0625
 
 
 @inline_kernel
@@ -56,7 +57,7 @@ def _cancels(traction, D, L):
     traction : |Q|/mu as that difference.  D : 2 kappa |delta|/mu.  L : 2 kappa delta_star/mu.
     Beyond D = L/2 the two arguments v1 and v2 may be more than one row apart, and the difference stays.
     """
-    return traction < 0.2 and D < 0.5 * L
+    return traction < 0.1 and D < 0.5 * L
 
 
 @inline_kernel

@@ -67,7 +67,8 @@ class Law(NamedTuple):
     marks : head and versions of the parts, (1 + number of rows) * PARTS_PER_ROW integers.
     N_rows : rows of N and of its integral (:func:`...materials.law.pack.pack_unsteady`); empty for steady rolling.
     selector : address of the kernel (n, source) that selects the material of state n; 0 if all rows are complete.
-    maker : address of the kernel (position in ``rows``, source) that makes a part; 0 if all rows are complete.
+    maker : address of the kernel (number of a part, its place among the marks, source) that makes the part; 0 if all
+        rows are complete.
     source : address of the record that these kernels read (:mod:`..compile.intrinsics`).
     cover_rows : numbers that only a cover has (:mod:`cover`); None of half-spaces, whose kernels are compiled without.
     """
@@ -94,10 +95,10 @@ def ensure_part(part, row, law):
 
     part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.  row : number of the row, from 0.  law : a :class:`Law`.
     """
-    start = (row + 1) * ROW_SIZE + part
-    if unlikely(law.marks[np.uint64((row + 1) * PARTS_PER_ROW + part // PART_SIZE)] != law.marks[VERSION]):
-        call_address(law.maker, start, law.source)
-    return start
+    number = (row + 1) * PARTS_PER_ROW + part // PART_SIZE
+    if unlikely(law.marks[np.uint64(number)] != law.marks[VERSION]):
+        call_address(law.maker, number, law.source)
+    return (row + 1) * ROW_SIZE + part
 
 
 @kernel(inline=True, allocates=True)

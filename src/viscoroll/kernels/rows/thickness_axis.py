@@ -68,13 +68,14 @@ def select_cover(n, source):
 
 
 @kernel(allocates=True)
-def make_part(start, source):
+def make_part(number, source):
     """Make a part of a row of the selected cover.
 
-    start : position in the rows.  source : pointer to a SOURCE record.
+    number : of the part, its place among the marks.  source : pointer to a SOURCE record.
     """
     source = record_at(source)
-    marks = integers_at(source.marks, start // PART_SIZE + 1)
+    marks = integers_at(source.marks, number + 1)
+    start = PART_SIZE * number
     count = 2 * PART_SIZE if start % ROW_SIZE < H_OVER_F2 else PART_SIZE  # of a pair of functions, or of one
     _interpolate(source, marks, start, start, floats_at(source.rows, start + count), count)
-    marks[start // PART_SIZE] = marks[VERSION]
+    marks[number] = marks[VERSION]

@@ -184,13 +184,14 @@ def select_series(n, source):
 
 
 @kernel(allocates=True)
-def make_part(start, source):
+def make_part(number, source):
     """Make a part of a row of the selected material.
 
-    start : position in the rows.  source : pointer to a SOURCE record.
+    number : of the part, its place among the marks.  source : pointer to a SOURCE record.
     """
     source = record_at(source)
-    marks = integers_at(source.marks, start // PART_SIZE + 1)
+    marks = integers_at(source.marks, number + 1)
+    start = PART_SIZE * number
     nodes = source.node_count
     modes = marks[_MODES]
     lowest = NODES_PER_OCTAVE * (2 - marks[E0]) + 2 * POINT_COUNT + LANES - nodes
@@ -204,7 +205,7 @@ def make_part(start, source):
         marks[E0], marks[VERSION], lowest - lowest % LANES,
     )  # fmt: skip
     _make_functions(start % ROW_SIZE, start // ROW_SIZE - 1, grid)
-    marks[start // PART_SIZE] = marks[VERSION]
+    marks[number] = marks[VERSION]
 
 
 @kernel

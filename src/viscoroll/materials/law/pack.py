@@ -27,6 +27,9 @@ _AXIS_COLUMNS = [FUNCTIONS.index(name) for name in ("lam", "epsilon", "m_half_sp
 #: functions of a table over alpha that are divided by c = (alpha - 1)/alpha, as their limits for alpha -> 1 are then
 #: finite
 _DIVIDED_BY_C = [AXIS_FUNCTIONS.index(name) for name in ("epsilon", "m", "N")]
+#: coefficient of Chebyshev polynomials of t and s, divided by the least value of its function in the row, below which
+#: it is dropped: the sum of some hundred of them is below the rounding of a double
+_NEGLIGIBLE = 4e-17
 #: column of M/V of the half-space in a table over alpha
 _AXIS_M = AXIS_FUNCTIONS.index("m")
 
@@ -226,21 +229,77 @@ def _pack_cover(cover: CoverRows) -> Floats:
     return np.append(front, np.concatenate([creep, interleave_pairs(creep, creep)], axis=1))
 
 
-def pack_axis(records: list[Any], c: Floats) -> Floats:
+class AxisRows(NamedTuple):
+    """The rows of an octave of alpha as polynomials in s (:mod:`...kernels.rows.alpha_axis`).
+
+    numbers : blocks of twelve numbers; of each block its groups of powers of s, the group of the highest powers first.
+    starts : index of the first group of each function or pair of functions, (rows * functions + 1,).
+    rows : number of rows.
+    """
+
+    numbers: Floats
+    starts: Integers
+    rows: int
+
+
+def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     """Return the rows of several alphas as the alpha axis of the kernels has them (:mod:`...kernels.rows.alpha_axis`).
 
-    records: records of the laws of standard linear solids, with equal numbers of rows.
-    c: (alpha - 1)/alpha of each.
-    Returns (records, rows, parts, 24 powers): without the parts of M of either body, M/V and epsilon divided by c.
+    records: records of the laws of standard linear solids at the nodes of an octave, with equal numbers of rows.
+    c: (alpha - 1)/alpha of each, by which M/V and epsilon are divided.
     """
-    from ...kernels.rows.alpha_axis import ALPHA_PARTS
-    from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, ROW_SIZE
+    from ...kernels.numerics.interpolation import powers_of_chebyshev
+    from ...kernels.rows.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
+    from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
 
     values = np.array([record.rows[ROW_SIZE:].reshape(-1, ROW_SIZE) for record in records])
-    pairs = values[..., :BODY_MOMENTS].reshape(*values.shape[:2], -1, 2, 2)
-    pairs[..., 1, :] /= c[:, None, None, None]
-    values = np.concatenate([values[..., :BODY_MOMENTS], values[..., H_OVER_F2:]], axis=-1)
-    return values.reshape(*values.shape[:2], ALPHA_PARTS, -1)
+    nodes, rows = values.shape[:2]
+    # a pair stores two powers of one function, then of the other: its functions are taken apart
+    pairs = values[..., :BODY_MOMENTS].reshape(nodes, rows, 2, PART_SIZE // 2, 2, 2).swapaxes(3, 4)
+    pairs = pairs.reshape(nodes, rows, 4, PART_SIZE)
+    pairs[:, :, 1::2] /= c[:, None, None, None]
+    singles = values[..., H_OVER_F2:].reshape(nodes, rows, 2, PART_SIZE)
+    terms = _significant_terms(np.concatenate([pairs, singles], axis=2))
+    powers = np.einsum("jk,j...->k...", powers_of_chebyshev(ALPHA_TERMS, 0.0, 1.0), terms)
+    pairs = powers[:, :, :4].reshape(ALPHA_TERMS, rows, 2, 2, PART_SIZE // 2, 2).swapaxes(3, 4)
+    powers = np.concatenate([pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), powers[:, :, 4:]], axis=2)
+    groups = np.moveaxis(powers.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE), 0, 2)
+    groups = np.moveaxis(groups, (1, 3, 2), (0, 1, 2))[:, :, ::-1]  # (rows, blocks, groups, powers, numbers)
+    numbers, counts = [], []
+    for row in groups:
+        first = 0
+        for short in SHORT:
+            blocks = row[first : first + len(short)]
+            first += len(short)
+            needs_all = any(block[: FULL - length].any() for block, length in zip(blocks, short))
+            lengths = (FULL,) * len(short) if needs_all else short
+            numbers += [block[FULL - length :].ravel() for block, length in zip(blocks, lengths)]
+            counts.append(sum(lengths))
+    return AxisRows(lock_array(np.concatenate(numbers)), lock_array(np.append(0, np.cumsum(counts))), rows)
+
+
+def _significant_terms(values: Floats) -> Floats:
+    """Return the terms in Chebyshev polynomials of s of functions of s and t, without terms below their rounding.
+
+    values: powers of t at the nodes of s, (nodes, rows, functions, powers).
+    Returns (terms of s, rows, functions, powers of t).  A coefficient of the Chebyshev polynomials of both that is
+    negligible is zero, except in the first row, which holds the limits at rest.
+    """
+    from numpy.polynomial.chebyshev import poly2cheb
+
+    from ...kernels.numerics.interpolation import powers_of_chebyshev, to_chebyshev
+
+    nodes, count = len(values), values.shape[-1]
+    ends = values @ np.array([[(-1.0) ** k, k == 0, 1.0] for k in range(count)])  # values at t = -1, 0 and 1
+    least = np.abs(ends).min(axis=(0, 3))
+    terms = np.einsum("jk,k...->j...", to_chebyshev(nodes), values)
+    units = [[0.0] * k + [1.0] for k in range(count)]
+    # from powers to Chebyshev polynomials exactly: an inverse matrix would lose eight digits
+    to_terms = np.array([np.pad(poly2cheb(power), (0, count - 1 - k)) for k, power in enumerate(units)])
+    of_both = terms[:, 1:] @ to_terms
+    of_both[np.abs(of_both) < _NEGLIGIBLE * least[1:, :, None]] = 0.0
+    terms[:, 1:] = of_both @ powers_of_chebyshev(count, 0.0, 1.0)
+    return terms
 
 
 def pack_materials(block: Block) -> Floats:

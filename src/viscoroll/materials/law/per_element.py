@@ -13,17 +13,18 @@ from ...core.array_types import Floats, Integers
 from ..bodies import Bodies
 from ..cover import Cover
 from ..prony import Prony, lock_array
-from .alpha_axis import OCTAVES, alpha_terms, tables_of_octave
+from .alpha_axis import OCTAVES, tables_of_octave
 from .cover_rows import cover_rows
 from .evaluate import refuse_distant_times
-from .pack import allocate_rows, pack_axis, pack_materials
+from .pack import AxisRows, allocate_rows, pack_axis, pack_materials
 from .table import make_table
 
 _lock = threading.Lock()
-#: rows of every octave of alpha that this process has used, (rows, parts, terms, powers); they are kept until it ends
-_octaves: dict[int, Floats] = {}
-#: address and number of rows of each of them, which kernels read; 0 rows: not used yet
-_octave_table = np.zeros((OCTAVES, 2), np.int64)
+#: rows of every octave of alpha that this process has used; they are kept until it ends
+_octaves: dict[int, AxisRows] = {}
+#: addresses of the two arrays and number of rows of each of them, which kernels read (OCTAVE_SIZE of
+#: ``kernels/rows/alpha_axis.py``, which loads numba); 0 rows: not used yet
+_octave_table = np.zeros((OCTAVES, 3), np.int64)
 
 
 def record_of_alphas(alpha: Floats) -> Any:
@@ -39,12 +40,12 @@ def record_of_alphas(alpha: Floats) -> Any:
     alpha = np.ascontiguousarray(alpha, dtype=np.float64)
     octaves = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
     with _lock:
-        for octave in octaves[_octave_table[octaves, 1] == 0].tolist():
+        for octave in octaves[_octave_table[octaves, -1] == 0].tolist():
             tables = tables_of_octave(octave)
-            rows = pack_axis([table.record for table in tables], np.array([table.T_mean for table in tables]))
-            terms = lock_array(np.moveaxis(alpha_terms(rows), 0, 2))
-            _octaves[octave], _octave_table[octave] = terms, (terms.ctypes.data, len(terms))
-    numbers, marks = allocate_rows(int(_octave_table[octaves, 1].max()))
+            axis = pack_axis([table.record for table in tables], np.array([table.T_mean for table in tables]))
+            _octaves[octave] = axis
+            _octave_table[octave] = axis.numbers.ctypes.data, axis.starts.ctypes.data, axis.rows
+    numbers, marks = allocate_rows(int(_octave_table[octaves, -1].max()))
     marks[E0] = alpha_axis.ALPHA_E0
     return _lazy_record(
         alpha_axis, alpha_axis.select_alpha, rows=numbers, marks=marks, alpha=alpha, state_count=alpha.size,
