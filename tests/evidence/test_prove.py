@@ -3,8 +3,8 @@
 import csv
 
 from places import DATA
-from processes import made
 
+from data.reference import check_motions, check_values
 from pipeline.evidence.prove.table import TABLE
 
 CHECK_VALUES = DATA / "reference/check_values.csv"
@@ -12,8 +12,10 @@ CHECK_VALUES = DATA / "reference/check_values.csv"
 
 def test_check_values_are_made_again(tmp_path):
     """The first states and motions, to the last digit, from the inputs that they hold; driven: ``test_precise.py``."""
-    for what, count, name, lines in (("values", 40, "check_values.csv", 40), ("motions", 1, "check_motions.csv", 7)):
-        made("evidence.truth.reference", what, "--count", count, "-o", tmp_path)
+    for make, count, name, lines in (
+        (check_values.make, 40, "check_values.csv", 40), (check_motions.free, 1, "check_motions.csv", 7),
+    ):  # fmt: skip
+        make(tmp_path, count)
         again, kept = (
             [row | {"difference": ""} for row in csv.DictReader((folder / name).read_text().splitlines())]
             for folder in (tmp_path, CHECK_VALUES.parent)
