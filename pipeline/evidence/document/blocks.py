@@ -114,7 +114,7 @@ def mutants(results: Results) -> str:
     noticed = "all of them" if killed == len(outcomes) else f"{killed}"
     return (
         "Coverage by lines cannot be measured in compiled kernels.  Instead "
-        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.py) were planted in them, one at a time: "
+        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.toml) were planted in them, one at a time: "
         f"the tests noticed {noticed} ([results](data/results/mutants.json)).\n"
     )
 
