@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -50,3 +51,8 @@ def driven_motion(row: dict[str, Any]) -> Case:
         for name, value in row["drive"].items()
     }
     return Case(vr.Scene(**given), row["V0"], row["omega0"], np.array(row["t"]), drive)
+
+
+def read_elements(name: str) -> list[dict[str, Any]]:
+    """Return the states of check_elements.json of one kind: "bodies", "covers" or "free_creep"."""
+    return json.loads((FOLDER / "check_elements.json").read_text(encoding="utf-8"))[name]
