@@ -15,6 +15,7 @@ from ..core.labels import strip_labels
 from ..core.results import Values
 from ..materials.bodies import total_series
 from ..materials.law.cover_pressure import pressure
+from ..materials.law.cover_solve import modes_of_cover
 from ..materials.law.evaluate import series_record
 from .contact_table import evaluate_contact
 from .parameters import Parameters, Roller, resolve_model
@@ -136,11 +137,12 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     scene: with the cover.  index: which of its covers, if there are many.  points: as the kernels take them.
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
+    modes = modes_of_cover(cover)
     x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
     states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
     found = np.empty(x.size)
     for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
         place = which.ravel() == n
         y = 2.0 * x[place] / lam - epsilon
-        found[place] = pressure(cover.modes, zeta, 0.5 * lam / cover.thickness, y) / (8.0 * np.pi * kappa * lam)
+        found[place] = pressure(modes, zeta, 0.5 * lam / cover.thickness, y) / (8.0 * np.pi * kappa * lam)
     return found

@@ -12,6 +12,13 @@ from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array
 from ..core.drive import Feedback, slope_tan_cos
 from ..core.errors import ParameterError, exactly_one_error
+from ..kernels.motion.records import (
+    COL_COEFFICIENTS,
+    N_DRIVE_FUNCTIONS,
+    NOT_PRESCRIBED,
+    PRESCRIBED_OMEGA,
+    PRESCRIBED_V,
+)
 from .checks import start_speeds
 from .drive import Drive
 from .drive_fit import TERMS
@@ -40,6 +47,9 @@ _BESIDE = (
 )  # fmt: skip
 #: Names of the gains in the order of the kernel's.
 _GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
+
+#: Code in the kernels of the prescribed speed, by its name; "" for none.
+_PRESCRIBED_CODES = {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}
 
 #: (pieces (1 or m, k, columns); gains (4, 1 or m); code of the prescribed speed), as the kernels take a drive.
 KernelDrive = tuple[Floats, Floats, int]
@@ -128,7 +138,7 @@ class DriveFunctions:
         """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
         pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
-        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _code_of(self.prescribed)
+        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
     def _take(self, index: Any) -> DriveFunctions:
         """Return the functions of some motions; ``index`` of numpy."""
@@ -146,19 +156,9 @@ class DriveFunctions:
 
 
 @cache
-def _code_of(speed: str) -> int:
-    """Return the kernel's code of a prescribed ``speed``, "omega", "V" or "" for none."""
-    from ..kernels.motion.workspace import NOT_PRESCRIBED, PRESCRIBED_OMEGA, PRESCRIBED_V
-
-    return {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}[speed]
-
-
-@cache
 def undriven() -> KernelDrive:
     """Return the kernel's drive of free motions."""
-    from ..kernels.motion.workspace import COL_COEFFICIENTS, N_DRIVE_FUNCTIONS
-
-    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), _code_of("")
+    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
 
 
 class DrivenStart(NamedTuple):

@@ -186,5 +186,5 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     variables["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     dataset = _dataset(result, "Ensemble of motions", ("motion", "t"), variables, about)
-    labels = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
+    labels = result.labels.axis_coords("motion") if result.labels and result.labels.shape == (len(result),) else {}
     return dataset.assign_coords({name: values for name, values in labels.items() if name not in dataset})

@@ -9,7 +9,7 @@ import numpy as np
 from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.states import states
-from ..kernels.motion.workspace import PARTIAL_SLIP
+from ..kernels.motion.records import PARTIAL_SLIP
 from .flow_rows import octaves
 from .problem import integrate_motions
 

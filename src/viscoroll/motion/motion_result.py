@@ -251,12 +251,12 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     codes = rows.pop("regime")
     if scale.si:
         rows = {name: row * scale[name] for name, row in rows.items()}
-    regime = np.where(np.isnan(codes), -1, codes).astype(np.int8)
+    codes[np.isnan(codes)] = -1.0
     noted = noted[~np.isnan(noted[:, 1])]
     switches = tuple(Switch(float(when) * T, REGIMES[int(code)]) for when, code in noted if code >= 0.0)
     return Motion(
-        problem.roller, problem.drive, times, **rows, regime=regime, switches=switches, onset_time=onset_time * T,
-        rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
+        problem.roller, problem.drive, times, **rows, regime=codes.astype(np.int8), switches=switches,
+        onset_time=onset_time * T, rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
         reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.drive_error, _problem=problem,
     )  # fmt: skip
 

@@ -14,6 +14,7 @@ from ..core.array_types import Floats
 from ..core.checks import check_array
 from ..core.drive import Feedback, Schedule, require_time_argument
 from ..core.errors import ParameterError
+from ..kernels.motion.records import COL_COEFFICIENTS, COL_SCALE, COL_START
 from .drive_fit import fit_callable
 
 #: First value of a piece divided by the size of its terms, dimensionless, that counts as rounding: some 50 roundings.
@@ -176,8 +177,6 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     Returns (m, k, 2 + terms of all functions).  Where motions have times of their own, pieces between equal times have
     no length; the kernels skip them.
     """
-    from ..kernels.motion.workspace import COL_COEFFICIENTS, COL_SCALE, COL_START
-
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)

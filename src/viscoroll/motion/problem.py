@@ -195,9 +195,9 @@ def integrate(
     notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
     Returns (rows (rows, count, times); status, steps, switches, onset and rest time of each motion (count, 5)).
     """
-    from ..kernels.motion.batch import INFO_COLUMNS, motion_loop
+    from ..kernels.motion.batch import N_INFO_COLUMNS, motion_loop
 
-    out, info = np.empty((rows.size, count, times.size)), np.empty((count, len(INFO_COLUMNS)))
+    out, info = np.empty((rows.size, count, times.size)), np.empty((count, N_INFO_COLUMNS))
     motion_loop(batch, drive, times, limits, rows, out, info, notes)
     return out, info
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
-from ..motion.workspace import AT_REST, CAME_TO_REST, COMPLETED, FULL_SLIP, PARTIAL_SLIP
+from ..motion.records import AT_REST, CAME_TO_REST, COMPLETED, FULL_SLIP, PARTIAL_SLIP
 from ..rows.contact_states import element
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .lookup import (

@@ -297,8 +297,11 @@ def _significant_terms(values: Floats) -> Floats:
     # from powers to Chebyshev polynomials exactly: an inverse matrix would lose eight digits
     to_terms = np.array([np.pad(poly2cheb(power), (0, count - 1 - k)) for k, power in enumerate(units)])
     of_both = terms[:, 1:] @ to_terms
-    of_both[np.abs(of_both) < _NEGLIGIBLE * least[1:, :, None]] = 0.0
-    terms[:, 1:] = of_both @ powers_of_chebyshev(count, 0.0, 1.0)
+    dropped = np.where(np.abs(of_both) < _NEGLIGIBLE * least[1:, :, None], of_both, 0.0)
+    # dropped terms are subtracted: converting the others to Chebyshev polynomials and back would add rounding errors
+    terms[:, 1:] -= dropped @ powers_of_chebyshev(count, 0.0, 1.0)
+    kept = np.where(of_both != dropped, np.arange(1, count + 1), 0).max(axis=-1, keepdims=True)
+    terms[:, 1:][np.arange(count) >= kept] = 0.0
     return terms
 
 
