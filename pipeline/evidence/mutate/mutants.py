@@ -1,9 +1,11 @@
-"""The defects that pipeline/evidence/mutate/ plants, each in one place of the kernels, and the tests that should notice."""
+"""The defects of mutants.toml, and the tests that should notice each."""
 
-# ruff: noqa: E501
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
+
+from ...stage import read_toml
 
 
 class Mutant(NamedTuple):
@@ -18,11 +20,14 @@ class Mutant(NamedTuple):
     tests: str
 
 
-def claims(*proofs: str) -> str:
-    """Claims of these proofs."""
-    return " ".join(f"tests/test_claims.py::test_claims[{proof}]" for proof in proofs)
+def read_mutants() -> list[Mutant]:
+    """Return all mutants of the file, its names of tests replaced by their paths."""
+    content = read_toml(Path(__file__).with_suffix(".toml"))
+    rows = (row for group in content["mutants"].values() for row in group)
+    return [Mutant(file, old, new, content["tests"].get(tests, tests)) for file, old, new, tests in rows]
 
 
+<<<<<<< HEAD
 _LAW, _RATIOS = "tests/test_contact.py", "tests/kernels/bessel/test_ratios.py"
 _STATES, _SLOPES, _MOTION, _DRIVEN = (
     claims("contact", "states"),
@@ -131,3 +136,6 @@ COEFFICIENTS = [
 MUTANTS = [
     Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *ROWS, *MOTION, *SERIES, *DRIVE, *COEFFICIENTS)
 ]  # fmt: skip
+=======
+MUTANTS = read_mutants()
+>>>>>>> h-evidence
