@@ -41,7 +41,15 @@ _BITS = 52
 
 
 class Sample(dict[str, Floats]):
-    """Draws of each quantity by name, (n,), with the seed and the design that give them again."""
+    """Draws of each quantity by name, (n,), with the seed and the design that give them again.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> draws = vr.sampling.sample(4, seed=1, mu=0.3)
+    >>> draws.seed, draws.design, draws["mu"].tolist()
+    (1, 'random', [0.3, 0.3, 0.3, 0.3])
+    """
 
     seed: int
     design: str
@@ -117,8 +125,8 @@ def _is_distribution(name: str, value: Any) -> bool:
 def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int) -> Floats:
     """Return a block of points inside (0, 1), (dimensions, stop - start).
 
-    design: "random", "latin" or "sobol".  seed: of all points.  n: number of all points.  dimensions: coordinates of a
-    point.  start, stop: indices of the block.  block: its number.
+    design: "random", "latin" or "sobol".  seed: seed of all points.  n: number of all points.  dimensions:
+    coordinates of a point.  start, stop: indices of the block.  block: its number.
     """
     if dimensions == 0:
         return np.empty((0, stop - start))
@@ -187,7 +195,8 @@ def _sequence(seed: int, dimensions: int) -> Any:
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
     """Return points of the Sobol sequence, (dimensions, stop - start).
 
-    seed: of the sequence.  dimensions: of a point.  start, stop: indices of the points.
+    seed: seed of the sequence.  dimensions: coordinates of a point.  start, stop: first index, and the one behind
+    the last.
 
     ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block
     (and refuses more than 32 bits).  Its state is set instead; a test compares with a sequence from its start.

@@ -162,7 +162,14 @@ class Prony(OneOrMany):
 
     @classmethod
     def elastic(cls) -> Prony:
-        """Make a material without modes: alpha = 1."""
+        """Make a material without modes: alpha = 1.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony.elastic().alpha
+        1.0
+        """
         return cls([], [])
 
     @classmethod
@@ -270,6 +277,12 @@ class Prony(OneOrMany):
         """Return the material with all times multiplied by ``factor``, a number or one for each, as of a colder rubber.
 
         Raises ParameterError for a factor that is not positive.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony([2.0], [1.0]).slower(10.0).tau
+        array([10.])
         """
         times = self._times * check_array("factor", factor, above=0.0)[..., np.newaxis]
         if self.by_creep:

@@ -45,6 +45,13 @@ class WLF:
     -----
     ModelWarning
         A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+    >>> shift(20.0), shift(0.0) > 1.0
+    (1.0, True)
     """
 
     T0: float
@@ -83,6 +90,13 @@ class Arrhenius:
     -----
     ModelWarning
         A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+    >>> shift(20.0), shift(60.0) < 1.0
+    (1.0, True)
     """
 
     energy: float

@@ -21,7 +21,10 @@ _V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
-    """Return the scene and the speeds of a contact as arguments; kind: type of a speed."""
+    """Return the arguments of a command on a contact: (scene, V, delta, omega).
+
+    kind: type of a speed, a function of the argument's text.
+    """
     return (
         SCENE,
         option("--V", type=kind, required=True, help=_V_HELP),
@@ -32,13 +35,11 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 
 @command("contact", *_speeds(numbers), TABLE)
 def contact(arguments: Namespace) -> None:
-    """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
+    """Print or write the state of the contact for all pairs of speed and creepage.
 
-    The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT,
-    LOW:HIGH:COUNT:log, or several of these, separated by commas.
-
-    example:
-      viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5
+    arguments: scene, a file or a preset; V, and delta or omega, each a number or a vector; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 
@@ -49,12 +50,11 @@ def contact(arguments: Namespace) -> None:
 
 @command("stress", *_speeds(float), TABLE)
 def stress(arguments: Namespace) -> None:
-    """Compute pressure and shear stress along the contact.
+    """Print or write pressure and shear stress at positions from one end of the contact to the other.
 
-    The stresses are given at 101 points of the contact, for one V and one delta (or omega).
-
-    example:
-      viscoroll stress paper-section-5 --V 0.5 --delta -0.01
+    arguments: scene, a file or a preset; V, and delta or omega, numbers; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 
@@ -77,13 +77,11 @@ def stress(arguments: Namespace) -> None:
     TABLE,
 )  # fmt: skip
 def roll(arguments: Namespace) -> None:
-    """Integrate one free motion from given initial speeds.
+    """Integrate a motion without a drive, and print or write it.
 
-    The motion obeys Eq. (22), and may change between full slip and partial slip.
-    For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
-
-    example:
-      viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7
+    arguments: scene, a file or a preset; V0 and omega0, start speeds; t, output times; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
@@ -104,13 +102,11 @@ def roll(arguments: Namespace) -> None:
     TABLE,
 )  # fmt: skip
 def steady(arguments: Namespace) -> None:
-    """Find the steady speeds under force, torque or slope.
+    """Print or write the equilibria of rolling under each load, and why a load has none.
 
-    Each equilibrium of each load is a row.  If a load has no equilibrium, the reason is printed.
-    Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
-
-    example:
-      viscoroll steady paper-section-5-rounded --slope 0:0.1:6
+    arguments: scene, a file or a preset; force, torque, slope and V, numbers, vectors or None; output and format, as
+    of :func:`.output.deliver`. Raises ParameterError and FileError.  A load without an equilibrium is a warning
+    where the output is no text.
     """
     import numpy as np
 
@@ -132,11 +128,9 @@ def steady(arguments: Namespace) -> None:
     option("--omega", type=float, help="angular velocity; without it the assumption on creepage is not checked"),
 )  # fmt: skip
 def validity(arguments: Namespace) -> None:
-    """Check the assumptions of the model at one speed.
+    """Print which assumptions of the model hold.
 
-    Each line has the name of an assumption, whether it holds (yes, no, or ? if data are missing), and the reason.
-
-    example:
-      viscoroll validity rubber-roller --V 5 --omega 4.9
+    arguments: scene, a file or a preset; V, speed of the axis; omega, angular velocity or None.
+    Raises ParameterError and FileError.
     """
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

@@ -14,13 +14,9 @@ from .arguments import command
 
 @command("warmup")
 def warm_up(arguments: Namespace) -> None:
-    """Compile all kernels in advance, so that the first calls do not wait.
+    """Compile all kernels into the cache by small calls, with a progress bar.
 
-    The compiled kernels go into the cache, once for each machine and version of the package.  If they are there
-    already, the command takes a second.
-
-    example:
-      viscoroll warmup
+    arguments: none.
     """
     from tqdm import tqdm
 

@@ -137,7 +137,7 @@ class KramersKronig(NamedTuple):
 
     omega : angular frequency, rad/s, shape (n,).
     ratio : E''/((pi/2) dE'/d ln omega); infinite where E' does not rise, NaN where there is no slope, shape (n,).
-    median : of the ratios; near 1 where the spectrum is broad and the data are sound.
+    median : median of the ratios; near 1 where the spectrum is broad and the data are sound.
     """
 
     omega: Floats

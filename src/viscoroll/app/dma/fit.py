@@ -83,7 +83,7 @@ def fit_prony(
     on : "both", or "storage" to find the shifts from the overlap of the storage modulus alone, where the loss modulus
         is noisy or does not shift alike.
     mode : "tension" (default) or "shear", where the moduli are G' and G''; :meth:`Fit.material` makes E of them.
-    source : of the data, in words; it stays with the material.
+    source : source of the data, in words; it stays with the material.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def fit_relaxation(
     modes, source : as of :func:`fit_prony`.
     misfit : root mean square of the relative errors that E(t) may have.  Rolling resistance is made of E'', which
         follows from the slope of E(t): of the usual slopes 1 % of E(t) leaves 10 to 30 % of E'' open, 0.3 % some 5 %.
-    temperature : of the test, degrees Celsius; it stays with the material.
+    temperature : temperature of the test, degrees Celsius; it stays with the material.
     mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
 
     Returns

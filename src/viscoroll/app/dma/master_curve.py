@@ -38,7 +38,7 @@ LARGEST_FREEDOM = 1.0
 class Shifts(NamedTuple):
     """Shift factors of the curves.
 
-    temperature : of each curve, ascending, degrees Celsius; the median of those of its points.
+    temperature : temperature of each curve, ascending, degrees Celsius; the median of those of its points.
     a_T : ratio of times at this temperature to those at the reference.
     reference : degrees Celsius; a_T is 1 there.
     mismatch : between each curve and its warmer neighbour, rms of the difference of ln E' and ln E''; NaN where
@@ -126,7 +126,7 @@ def master_curve(
 def undetermined_shifts(shifts: Shifts) -> list[str]:
     """Return the pairs of neighbours whose shift the overlap leaves open: both temperatures and the range, in words.
 
-    shifts : of the curves.
+    shifts : shift factors of the curves.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
     return [
@@ -139,8 +139,8 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 
-    curves : from the coldest on.
-    temperatures : of the curves, degrees Celsius.
+    curves : one for each temperature, the coldest first.
+    temperatures : temperatures of the curves, degrees Celsius.
     Returns (ln a_T over the coldest, the mismatch of neighbours,
     their decades of freedom); raises ParameterError for neighbours that do not overlap.
     """
@@ -182,7 +182,7 @@ class _LogCurve:
 class _Alignment(NamedTuple):
     """The shift that lays the warm curve on the cold one.
 
-    step : of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
+    step : shift of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
     """
 
     step: float

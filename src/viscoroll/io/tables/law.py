@@ -97,7 +97,7 @@ def measured_errors(
     ----------
     table : a law, or that of every alpha, of which random alphas are tested.
     count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave.
-    seed : of the points.
+    seed : seed of the points.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):

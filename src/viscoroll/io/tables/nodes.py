@@ -30,7 +30,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     Parameters
     ----------
     low, high : ends.
-    count : of numbers, with the ends.
+    count : number of values, both ends among them.
     spacing : "linear" or "log".
 
     Returns
@@ -65,7 +65,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     ----------
     what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`.
     V : speeds of the grid, > 0; of a Cylinder in m/s.
-    count : of nodes, odd, at least 5.
+    count : number of nodes, odd, at least 5.
     alpha : those of the grid, in place of that of a scene without a material.
 
     Returns
@@ -102,8 +102,8 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     """Return the nodes of an axis as a new vector.
 
-    name: of the axis.  nodes: what a caller gave.  bounds: as of :func:`.checks.check_array`.  Raises ParameterError
-    for nodes that are out of range or do not increase strictly.
+    name: name of the axis.  nodes: what a caller gave.  bounds: as of :func:`.checks.check_array`.  Raises
+    ParameterError for nodes that are out of range or do not increase strictly.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
