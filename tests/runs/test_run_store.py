@@ -1,11 +1,14 @@
 """Results stores: the same files by any engine and after any end; damage is found, and put right."""
 
 import errno
+import itertools
 import os
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -113,21 +116,28 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
         assert content(store) == content(whole), name
 
 
+@contextmanager
+def disk_for(writes: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A disk with space for so many writes of files; the block must end with an error that says so."""
+    sync, calls = files._sync, itertools.count()
+
+    def limited(path: Path) -> None:
+        if next(calls) >= writes:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        sync(path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(files, "_sync", limited)
+        with pytest.raises(vr.FileError, match="No space left"):
+            yield
+
+
 def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
     """At any of the writes: one line, and the same command goes on."""
-    store, sync, calls = tmp_path / "store.zarr", files._sync, iter(range(10**6))
-    for room in (1, 30, 170, 300):
-        first = next(calls)
-
-        def limited(path, last=first + room):
-            if next(calls) > last:
-                raise OSError(errno.ENOSPC, "No space left on device")
-            sync(path)
-
-        monkeypatch.setattr(files, "_sync", limited)
-        with pytest.raises(vr.FileError, match="No space left"):
+    store = tmp_path / "store.zarr"
+    for writes in (1, 30, 170, 300):
+        with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), store, threads=2)
-    monkeypatch.undo()
     run_ensemble(read_run(run_file), store)
     assert content(store) == content(whole)
 
@@ -192,21 +202,11 @@ def test_a_run_grows(run_file, smaller, whole):
 
 def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkeypatch):
     """Until then it is the smaller store or one that is not finished, never one of fewer motions than it says."""
-    sync = files._sync
-    for room in (0, 3, 20, 40, 100):
-        calls = iter(range(10**6))
-
-        def limited(path, calls=calls, room=room):
-            if next(calls) >= room:
-                raise OSError(errno.ENOSPC, "No space left on device")
-            sync(path)
-
-        monkeypatch.setattr(files, "_sync", limited)
-        with pytest.raises(vr.FileError, match="No space left"):
+    for writes in (0, 3, 20, 40, 100):
+        with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), smaller, threads=1)
         assert not verify(smaller).ok
         refused(lambda: open_run(smaller), "puts it right", error=vr.FileError)
-    monkeypatch.undo()
     run_ensemble(read_run(run_file), smaller)
     assert content(smaller) == content(whole)
 
@@ -297,8 +297,9 @@ def test_an_interrupt_answers_at_once(tmp_path, whole):
         preexec_fn=_heeding,  # noqa: PLW1509 (nothing else runs in this process)
     )  # fmt: skip
     while not (tmp_path / "long.zarr/records/start").exists():
+        assert process.poll() is None, process.communicate()
         time.sleep(0.05)
-    time.sleep(1.0)
+    time.sleep(0.3)
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130

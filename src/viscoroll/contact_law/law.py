@@ -33,6 +33,16 @@ class Law:
     Attributes
     ----------
     roller, scene : the scene or cylinder, and its dimensionless parameters.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> law = vr.law(vr.presets.RUBBER_CYLINDER)
+    >>> loads = law(1.0, 10.2)  # m/s, rad/s
+    >>> loads.Q > 0.0 and loads.M == loads.M_half_space + loads.M_cylinder
+    True
+    >>> law(1.0, 10.2, slopes=True).dQ_domega >= 0.0
+    True
     """
 
     def __init__(self, roller: Roller) -> None:

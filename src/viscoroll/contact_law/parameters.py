@@ -11,7 +11,7 @@ import numpy as np
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array, check_array_extent, read_only
 from ..core.drive import slope_tan_cos
-from ..core.errors import ParameterError, exactly_one_error
+from ..core.errors import ParameterError, check_one_given
 from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
 from ..materials.bodies import Bodies
@@ -112,8 +112,7 @@ class Parameters(Roller):
         """Check and freeze the parameters; raises ParameterError as :class:`viscoroll.Scene` says."""
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
-        if (material is None) == (values["alpha"] is None):
-            raise exactly_one_error("alpha", "material", both=material is not None)
+        check_one_given(alpha=values["alpha"], material=material)
         if isinstance(material, LawTable):
             object.__setattr__(self, "_law", material)
             material = material.material
@@ -127,7 +126,7 @@ class Parameters(Roller):
         extents = {}
         for name, value in values.items():
             if name != "gamma" or value is not None:
-                arrays[name], extents[name] = check_array_extent(name, value, low=0.0, strict=True)
+                arrays[name], extents[name] = check_array_extent(name, value, above=0.0)
         object.__setattr__(self, "shape", broadcast_shape(**arrays))
         object.__setattr__(self, "material", material)
         if arrays["mu"].size and arrays["kappa"].size:

@@ -60,6 +60,7 @@ class Pair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
+        """Check the bodies, and what a layer of finite thickness allows; raises ParameterError."""
         for name in ("cylinder", "base"):
             body = getattr(self, name)
             if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
@@ -72,8 +73,7 @@ class Pair:
 
     def _refuse_covers(self) -> None:
         """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
-        thick = [body for body in (self.cylinder, self.half_space) if getattr(body, "thickness", None) is not None]
-        if len(thick) > 1:
+        if self.cylinder.thickness is not None and self.half_space.thickness is not None:
             allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
             raise ParameterError("thickness", "of both bodies", allowed)
         if self.plane != "strain":
@@ -82,9 +82,9 @@ class Pair:
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
         """Name of the body that is a layer of finite thickness, or None."""
-        if getattr(self.cylinder, "thickness", None) is not None:
+        if self.cylinder.thickness is not None:
             return "cylinder"
-        return "base" if getattr(self.half_space, "thickness", None) is not None else None
+        return "base" if self.half_space.thickness is not None else None
 
     @property
     def half_space(self) -> Any:
@@ -148,7 +148,8 @@ class Pair:
     def cover(self, l0: Any) -> Cover:
         """Return the layer of finite thickness and its counterpart as a dimensionless :class:`Cover`.
 
-        Parameters ----------
+        Parameters
+        ----------
         l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array for many
         covers.
 

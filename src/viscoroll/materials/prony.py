@@ -156,7 +156,14 @@ class Prony(OneOrMany):
 
     @classmethod
     def elastic(cls) -> Prony:
-        """Make a material without modes: alpha = 1."""
+        """Make a material without modes: alpha = 1.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony.elastic().alpha
+        1.0
+        """
         return cls([], [])
 
     @classmethod
@@ -264,8 +271,14 @@ class Prony(OneOrMany):
         """Return the material with all times multiplied by ``factor``, a number or one for each, as of a colder rubber.
 
         Raises ParameterError for a factor that is not positive.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony([2.0], [1.0]).slower(10.0).tau
+        array([10.])
         """
-        times = self._times * check_array("factor", factor, low=0.0, strict=True)[..., np.newaxis]
+        times = self._times * check_array("factor", factor, above=0.0)[..., np.newaxis]
         if self.by_creep:
             return Prony.creep(self._strengths, times, alpha=self.alpha)
         return Prony(self._strengths, times)
@@ -285,6 +298,7 @@ class Prony(OneOrMany):
         return self.by_creep, self._strengths.shape, self._strengths.tobytes(), self._times.tobytes(), alpha
 
     def __repr__(self) -> str:
+        """Return the call that makes the series or, of many materials, their number and form."""
         if self.shape:
             form = "creep" if self.by_creep else "relaxation"
             return f"<{len(self)} series of {self._strengths.shape[-1]} modes, by {form}>"
@@ -301,7 +315,7 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
     strengths, times: (modes,) or (n, modes); dimensionless, in units of T_ref.
     Returns strengths and times by descending time, modes without strength dropped or, for many, set behind the others.
     """
-    values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, low=0.0, strict=True)
+    values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, above=0.0)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
         allowed = f"one time for each {names[0]}, of shape {values.shape}"
         raise ParameterError(names[1], f"of shape {each.shape}", allowed)

@@ -23,10 +23,11 @@ MOST_STEPS = 10_000_000
 
 
 def output_times(t: ArrayLike, units: Units = "1") -> Floats:
-    """Return output times as a vector of its own.
+    """Check output times.
 
     t: one time or a vector, in ``units``.
     units: unit of time, or those of a roller.
+    Returns a new vector (n,) in ``units``.
     Raises ParameterError unless they are finite, >= 0, ascending, and at least one.
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
@@ -50,8 +51,11 @@ def refuse_end(end: float, T: float) -> None:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
 
 
-def refuse_many(**arguments: Any) -> None:
-    """Raise ParameterError for an array where ``roll`` takes one number; arguments by name."""
+def require_single(**arguments: Any) -> None:
+    """Raise ParameterError for an array where ``roll`` takes one number.
+
+    arguments: argument of ``roll`` by name.
+    """
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
@@ -77,7 +81,7 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = 0.0 if rest is None else check_number("rest", rest, low=0.0, strict=True)
+    threshold = 0.0 if rest is None else check_number("rest", rest, above=0.0)
     return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
@@ -111,7 +115,7 @@ def in_words(error: ParameterError, scale: Scale) -> ParameterError:
     """Return the refusal of a dimensionless value with the units that it was divided by.
 
     error: the refusal.
-    scale: of the roller; for a scene the error itself is returned.
+    scale: scale of the roller; for a scene the error itself is returned.
     """
     if not scale.si:
         return error

@@ -94,7 +94,7 @@ class _Sampled:
     ) -> None:
         """Sample a callable.
 
-        name: of the argument, for refusals.
+        name: name of the argument, for refusals.
         function: takes t in T_ref, returns a number.
         end: last time, in T_ref.
         rtol: relative tolerance of the motion.
@@ -207,7 +207,7 @@ def fit_callable(
     """
     samples = SAMPLES
     if resolve is not None:
-        spacing = check_number("resolve", resolve, low=0.0, strict=True)
+        spacing = check_number("resolve", resolve, above=0.0)
         if spacing * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise ParameterError("resolve", spacing, allowed)
@@ -292,7 +292,7 @@ def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
     return _bisect(low, high, lambda t: is_above(t) != above_at_end)[1]
 
 
-def _product(first: NDArray[Any], second: NDArray[Any]) -> Floats:
+def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
     """Return the product of two matrices; its bits do not depend on numpy's library of linear algebra."""
-    product: Floats = np.einsum("ij,jk->ik", first, second)
+    product: Floats = np.einsum("ij,jk->ik", A, B)
     return product

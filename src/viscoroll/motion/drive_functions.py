@@ -62,9 +62,9 @@ class DriveFunctions:
     Attributes
     ----------
     functions : force, torque, brake and prescribed speed by name, where there are any.
-    tangent : of the slope, which adds to the force, () or (m,).
+    tangent : tangent of the slope, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
-    gains : of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
+    gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
     end : last time, in T_ref.
     """
 
@@ -111,7 +111,7 @@ class DriveFunctions:
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
         """Return (value at t = 0, largest size) of a prescribed speed, of every motion that has its own.
 
-        name: of the speed.
+        name: name of the speed.
         Raises ParameterError where it jumps.
         """
         speed, firsts, sizes = self.functions[name], [], []
@@ -216,25 +216,25 @@ def _refuse_both(drive: Drive) -> None:
             raise ParameterError(name, value, "left out", f"{name} is given beside {speed}=: leave it out, {why}")
 
 
-def _prescribed_start(name: str, given: Any, functions: DriveFunctions, speed: Any) -> Any:
+def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: Any) -> Any:
     """Return the start that is prescribed: a number where it is the same for all, else one for each motion.
 
     name: "V" or "omega".
-    given: the start that the caller gave; None without.
+    stated: the start that the caller gave; None without.
     functions: with the prescribed speed.
     speed: the prescribed speed as the caller gave it.
-    Raises ParameterError where ``given`` is another start, or where the speed jumps.
+    Raises ParameterError where ``stated`` is another start, or where the speed jumps.
     """
     if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
         raise ParameterError(name, "an empty array", "a number, one a motion, or a function of t")
     start, scale = functions.speed_at_start(name)
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
-    if given is not None and not (np.abs(check_array(f"{name}0", given) - start) <= _START * scale).all():
-        raise ParameterError(f"{name}0", given, f"None, or {float(start[0]):.12g} as prescribed")
+    if stated is not None and not (np.abs(check_array(f"{name}0", stated) - start) <= _START * scale).all():
+        raise ParameterError(f"{name}0", stated, f"None, or {float(start[0]):.12g} as prescribed")
     if start.size > 1:
         return start
-    return float(start[0]) if np.ndim(given) == 0 else np.full(np.shape(given), start[0])
+    return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])
 
 
 def _gains(drive: Drive) -> Floats:

@@ -59,8 +59,8 @@ def _dataset(
     """Return the dataset of a result.
 
     result: its rows, drive and roller are put into the dataset.
-    title: of the dataset.
-    dims: of the rows.
+    title: title of the dataset.
+    dims: dimensions of the rows.
     variables, about: further variables and attributes.
     """
     si = result.scale.si
@@ -143,9 +143,9 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
     """Return the strengths and times of the modes of one body, over (motion, mode).
 
-    series: of each motion, or one.
+    series: the series of each motion, or one.
     count: number of motions.
-    prefix, title: of the names and of the long_names.
+    prefix, title: first letters of the names and of the long_names.
     """
     form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
     parts = {

@@ -33,9 +33,10 @@ class NoFlowMap(Exception):
 class FlowProblem(NamedTuple):
     """A scene for which a map is made.
 
-    parameters : (material, kappa, mu, j).  law : record of the law's rows.  slow_rate : rate at which the slow
-    logarithm
-    falls.  threads : of the work.
+    parameters : (material, kappa, mu, j).
+    law : record of the law's rows.
+    slow_rate : rate at which the slow logarithm falls, in units of gamma.
+    threads : number of threads.
     """
 
     parameters: tuple[Any, ...]
@@ -44,11 +45,10 @@ class FlowProblem(NamedTuple):
     threads: int | None
 
     def contact_states(self, V: Floats, delta: Floats) -> Floats:
-        """Return contact states.
+        """Return delta_star, moment, traction and stiffness of the contact at speeds and creepages.
 
         V, delta : speeds and creepages, dimensionless, of one shape.
-
-        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V.
+        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V, shape (4, ...).
         """
         _, kappa, mu, _ = self.parameters
         out = np.empty((4, V.size))
@@ -58,10 +58,10 @@ class FlowProblem(NamedTuple):
     def integrate(self, V: Floats, delta: Floats, gamma: Floats, t: Floats, reason: str) -> tuple[Floats, Floats]:
         """Integrate motions in partial slip.
 
-        V, delta : initial speeds and creepages, (n,).  gamma : time scale of each motion, (n,).  t : common output
-        times.
+        V, delta : start speeds and creepages, (n,).
+        gamma : time scale of each motion, (n,).
+        t : output times, common to all.
         reason : message of :class:`NoFlowMap` if a motion leaves partial slip.
-
         Returns (V, delta), each (n, times).
         """
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):

@@ -19,12 +19,10 @@ from .arguments import FIGURES, command, option, output
     option("file", metavar="FILE", help="TOML with [material], [base] or both, or the netCDF of a material"),
 )
 def show(arguments: Namespace) -> None:
-    """Moduli, relaxation modes and creep modes.
+    """Print the moduli, relaxation modes and creep modes of each material of a file.
 
-    Of each material of the file, at the temperature that the file states.
-
-    example:
-      viscoroll material show docs/examples/rubber.toml
+    arguments: with file, a TOML file with [material] or [base], or the netCDF of a material.
+    Raises FileError.
     """
     import pandas as pd
 
@@ -64,16 +62,13 @@ def show(arguments: Namespace) -> None:
     output(".toml", ".nc", required=False),
 )  # fmt: skip
 def fit(arguments: Namespace) -> int:
-    """Fit of a material to the master curve of a DMA.
+    """Fit a Prony series to a DMA, print the fit, and write its material if that is wanted.
 
-    Fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their heading; prints
-    how well the data determine it; with -o writes it as a section [material] of a TOML file, or as netCDF.
-
-    A fit that misses --misfit, or has an error above 5 %, ends with exit code 1 and writes no file.  With --force the
-    file is written, and the source of the data in it states the misfit.
-
-    example:
-      viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
+    arguments: data, units, column, decimal, encoding and mode, as of :func:`viscoroll.read_dma`; temperature,
+    reference, on, modes and misfit, as of :func:`viscoroll.fit_prony`; wlf, three numbers with commas between; nu
+    and name of the material; output, a .toml or .nc path or None; force, whether to write a fit that misses the
+    misfit. Returns 1 if the fit misses the misfit, or has an error above 5 %, and force is not given; else 0. Raises
+    ParameterError and FileError.
     """
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
@@ -107,7 +102,10 @@ def fit(arguments: Namespace) -> int:
 
 
 def _columns(texts: list[str] | None) -> dict[str, str]:
-    """Return quantity -> heading of the options --column; raise ParameterError."""
+    """Return quantity -> heading of the options --column; raise ParameterError.
+
+    texts: the options, each "NAME=HEADING"; None without.
+    """
     pairs = [text.partition("=") for text in texts or ()]
     for name, sign, heading in pairs:
         if not (sign and heading):
@@ -116,7 +114,10 @@ def _columns(texts: list[str] | None) -> dict[str, str]:
 
 
 def _wlf(text: str) -> vr.WLF:
-    """Return the shift of --wlf C1,C2,T0; raise ParameterError."""
+    """Return the shift of --wlf C1,C2,T0; raise ParameterError.
+
+    text: the option.
+    """
     try:
         C1, C2, T0 = (float(part) for part in text.split(","))
     except ValueError:
@@ -134,17 +135,10 @@ def _wlf(text: str) -> vr.WLF:
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),
 )  # fmt: skip
 def identify(arguments: Namespace) -> None:
-    """Friction, modulus, times, strengths and bearing from measurements.
+    """Fit the unknowns of a cylinder to measurements, print the report, and write report and figure if wanted.
 
-    Fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states which of
-    them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
-      [unknown]  NAME = [LOW, HIGH], with the start of the cylinder between
-      [prior]    NAME = [VALUE, SD]
-      [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
-                 Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m
-
-    example:
-      viscoroll identify docs/examples/measured.toml --plot fit.png
+    arguments: file, a TOML file of measurements; robust, starts and seed, as of :func:`viscoroll.identify`; output,
+    a .txt, .json or .nc path or None; plot, path of a figure or None. Raises ParameterError and FileError.
     """
     from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json

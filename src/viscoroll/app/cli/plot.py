@@ -22,10 +22,10 @@ _SPEEDS = 301
     "plot", option("what", metavar="WHAT", help="FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"), output(*FIGURES)
 )
 def plot(arguments: Namespace) -> None:
-    """Figure of a result, a scene, a material, or the results of a run.
+    """Draw a file and write the figure.
 
-    The result in a netCDF file of this program; the contact law over speed of a scene file; moduli and relaxation of
-    the [material] of a file without a scene; or the summaries of a store.
+    arguments: what, path of the file, a .nc, .toml or .zarr; output, path of the figure.
+    Raises ParameterError for another suffix, FileError for a file that cannot be read or written.
     """
     from ...core.plots.style import save
 
@@ -38,7 +38,10 @@ def plot(arguments: Namespace) -> None:
 
 
 def _figure_of_netcdf(path: str) -> Any:
-    """Return the figure of a result or a material; raise FileError for any other file."""
+    """Return the figure of a result or a material; raise FileError for any other file.
+
+    path: path of a netCDF file.
+    """
     import xarray as xr
 
     from ...core.plots import draw
@@ -54,7 +57,10 @@ def _figure_of_netcdf(path: str) -> Any:
 
 
 def _figure_of_toml(path: str) -> Any:
-    """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material."""
+    """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material.
+
+    path: path of a TOML file.  Raises FileError.
+    """
     import numpy as np
 
     from ...core.sections import read_toml

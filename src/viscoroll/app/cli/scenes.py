@@ -21,7 +21,10 @@ _V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
-    """Return the scene and the speeds of a contact as arguments; kind: type of a speed."""
+    """Return the arguments of a command on a contact: (scene, V, delta, omega).
+
+    kind: type of a speed, a function of the argument's text.
+    """
     return (
         SCENE,
         option("--V", type=kind, required=True, help=_V_HELP),
@@ -32,13 +35,11 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 
 @command("contact", *_speeds(numbers), TABLE)
 def contact(arguments: Namespace) -> None:
-    """State of the contact: lam, epsilon, delta_star, beta, Q, M.
+    """Print or write the state of the contact for all pairs of speed and creepage.
 
-    For every pair of V and delta (or omega), each a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of
-    these with commas between.
-
-    example:
-      viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5
+    arguments: scene, a file or a preset; V, and delta or omega, each a number or a vector; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 
@@ -49,12 +50,11 @@ def contact(arguments: Namespace) -> None:
 
 @command("stress", *_speeds(float), TABLE)
 def stress(arguments: Namespace) -> None:
-    """Pressure and shear stress along the contact.
+    """Print or write pressure and shear stress at positions from one end of the contact to the other.
 
-    At 101 positions along the contact, at one V and delta (or omega).
-
-    example:
-      viscoroll stress paper-section-5 --V 0.5 --delta -0.01
+    arguments: scene, a file or a preset; V, and delta or omega, numbers; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 
@@ -77,13 +77,11 @@ def stress(arguments: Namespace) -> None:
     TABLE,
 )  # fmt: skip
 def roll(arguments: Namespace) -> None:
-    """One motion from given start speeds.
+    """Integrate a motion without a drive, and print or write it.
 
-    Free motion of the cylinder from (V0, omega0), Eq. (22), through all regimes of slip.
-    For driven, braked and unsteady motions take vr.roll in Python, or a run file (viscoroll ensemble).
-
-    example:
-      viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7
+    arguments: scene, a file or a preset; V0 and omega0, start speeds; t, output times; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
@@ -102,13 +100,11 @@ def roll(arguments: Namespace) -> None:
     TABLE,
 )  # fmt: skip
 def steady(arguments: Namespace) -> None:
-    """Steady rolling under force, torque or slope.
+    """Print or write the equilibria of rolling under each load, and why a load has none.
 
-    Prints a row for every equilibrium of rolling under each load; if there is none, the reason.
-    Options are numbers, as of `viscoroll contact`, all of one length or single.
-
-    example:
-      viscoroll steady paper-section-5-rounded --slope 0:0.1:6
+    arguments: scene, a file or a preset; force, torque, slope and V, numbers, vectors or None; output and format, as
+    of :func:`.output.deliver`. Raises ParameterError and FileError.  A load without an equilibrium is a warning
+    where the output is no text.
     """
     import numpy as np
 
@@ -130,11 +126,9 @@ def steady(arguments: Namespace) -> None:
     option("--omega", type=float, help="angular velocity; without it the creepage is not known"),
 )  # fmt: skip
 def validity(arguments: Namespace) -> None:
-    """Validity of the model's assumptions at a speed.
+    """Print which assumptions of the model hold.
 
-    A line for each assumption of the model: whether it holds (yes, no, ?: not known) and why.
-
-    example:
-      viscoroll validity rubber-roller --V 5 --omega 4.9
+    arguments: scene, a file or a preset; V, speed of the axis; omega, angular velocity or None.
+    Raises ParameterError and FileError.
     """
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

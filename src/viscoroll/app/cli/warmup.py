@@ -14,13 +14,9 @@ from .arguments import command
 
 @command("warmup")
 def warm_up(arguments: Namespace) -> None:
-    """Compilation of all functions that first calls would otherwise compile.
+    """Compile all kernels into the cache by small calls, with a progress bar.
 
-    Compiles the kernels of every public function into the cache, once for a machine and a version of the package; quick
-    if they are there.
-
-    example:
-      viscoroll warmup
+    arguments: none.
     """
     from tqdm import tqdm
 

@@ -139,7 +139,7 @@ class KramersKronig(NamedTuple):
 
     omega : angular frequency, rad/s, shape (n,).
     ratio : E''/((pi/2) dE'/d ln omega); infinite where E' does not rise, NaN where there is no slope, shape (n,).
-    median : of the ratios; near 1 where the spectrum is broad and the data are sound.
+    median : median of the ratios; near 1 where the spectrum is broad and the data are sound.
     """
 
     omega: Floats
@@ -160,7 +160,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    values = [check_array(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
+    values = [check_array(name, given, unit=UNITS[name], above=0.0) for name, given in columns.items()]
     first = next(iter(columns))
     for name, column in zip(columns, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:

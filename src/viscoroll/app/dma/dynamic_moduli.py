@@ -32,7 +32,7 @@ class DynamicModuli(Result):
     ----------
     omega : angular frequencies, rad/s, shape (n,), in the order of the file.
     storage, loss : storage and loss modulus, Pa, shape (n,).
-    temperature : of each point, degrees Celsius, shape (n,); None where the file has none.
+    temperature : temperature of each point, degrees Celsius, shape (n,); None where the file has none.
     mode : "tension" (E', E'') or "shear" (G', G'').
     source : name of the file.
     columns : meaning -> heading of the column that was taken for it.
@@ -81,7 +81,14 @@ class DynamicModuli(Result):
         return super().__getitem__(name)
 
     def to_xarray(self) -> xr.Dataset:
-        """All columns over ``point``, with their units; mode, source and notes as attributes."""
+        """All columns over ``point``, with their units; mode, source and notes as attributes.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.read_dma(vr.datasets.path("dma.csv")).to_xarray().sizes["point"]
+        25
+        """
         import xarray as xr
 
         units = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "temperature": "degC"}

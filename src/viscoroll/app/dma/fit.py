@@ -83,7 +83,7 @@ def fit_prony(
     on : "both", or "storage" to find the shifts from the overlap of the storage modulus alone, where the loss modulus
         is noisy or does not shift alike.
     mode : "tension" (default) or "shear", where the moduli are G' and G''; :meth:`Fit.material` makes E of them.
-    source : of the data, in words; it stays with the material.
+    source : source of the data, in words; it stays with the material.
 
     Returns
     -------
@@ -162,7 +162,7 @@ def fit_relaxation(
     modes, source : as of :func:`fit_prony`.
     misfit : root mean square of the relative errors that E(t) may have.  Rolling resistance is made of E'', which
         follows from the slope of E(t): of the usual slopes 1 % of E(t) leaves 10 to 30 % of E'' open, 0.3 % some 5 %.
-    temperature : of the test, degrees Celsius; it stays with the material.
+    temperature : temperature of the test, degrees Celsius; it stays with the material.
     mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
 
     Returns
@@ -210,7 +210,7 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
     Returns (the data that were fitted, the fields of a fit that are of its data and its series, the root mean square
     of the relative errors of each modulus).
     """
-    target = check_number("misfit", misfit, low=0.0, strict=True)
+    target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
     (low, high), data = curve.band, thinned(curve)
     if high > MOST_SPREAD * low:

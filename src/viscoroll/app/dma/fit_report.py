@@ -27,7 +27,10 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 
 
 def _rows(fit: Any) -> Iterator[SummaryRow]:
-    """Yield the lines of a ``fit``, a :class:`viscoroll.app.dma.fit_results.SeriesFit`."""
+    """Yield the lines of the report below its title.
+
+    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """
     prony, symbol = fit.prony, symbol_of(fit)
     floor = "" if fit.plateau else "; the least that is allowed: the data do not determine it"
     yield SummaryRow(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
@@ -101,7 +104,7 @@ def _target(fit: Any) -> str:
 def _kramers_kronig(median: float, symbol: str) -> str:
     """Return a sentence on whether storage and loss modulus go together.
 
-    median : of the Kramers-Kronig ratio.
+    median : median of the Kramers-Kronig ratio.
     symbol : E or G.
     """
     if np.isnan(median):
@@ -112,7 +115,10 @@ def _kramers_kronig(median: float, symbol: str) -> str:
 
 
 def _outside(fit: Any) -> str:
-    """Return a sentence on the modes of a ``fit`` whose times lie outside the data."""
+    """Return a sentence on the modes whose times lie outside the data.
+
+    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """
     range_of = "the data's range of times" if fit.data._fields[0] == "t" else "the data's range of 1/omega"
     if not (count := int(fit.outside.sum())):
         return f"no mode lies outside {range_of}"

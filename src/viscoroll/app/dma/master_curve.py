@@ -38,7 +38,7 @@ LARGEST_FREEDOM = 1.0
 class Shifts(NamedTuple):
     """Shift factors of the curves.
 
-    temperature : of each curve, ascending, degrees Celsius; the median of those of its points.
+    temperature : temperature of each curve, ascending, degrees Celsius; the median of those of its points.
     a_T : ratio of times at this temperature to those at the reference.
     reference : degrees Celsius; a_T is 1 there.
     mismatch : between each curve and its warmer neighbour, rms of the difference of ln E' and ln E''; NaN where
@@ -89,9 +89,7 @@ def master_curve(
         Curves so flat that their overlap does not fix the shift; temperatures that look like kelvin.
     """
     point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
-    whole = [
-        check_array(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)
-    ]
+    whole = [check_array(name, column, above=0.0) for name, column in zip(Curve._fields, columns, strict=True)]
     sets = sets_of(point_temperatures, first)
     temperatures = sets.temperature
     check_celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
@@ -123,7 +121,7 @@ def master_curve(
 def undetermined_shifts(shifts: Shifts) -> list[str]:
     """Return the pairs of neighbours whose shift the overlap leaves open: both temperatures and the range, in words.
 
-    shifts : of the curves.
+    shifts : shift factors of the curves.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
     return [
@@ -136,8 +134,8 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 
-    curves : from the coldest on.
-    temperatures : of the curves, degrees Celsius.
+    curves : one for each temperature, the coldest first.
+    temperatures : temperatures of the curves, degrees Celsius.
     Returns (ln a_T over the coldest, the mismatch of neighbours,
     their decades of freedom); raises ParameterError for neighbours that do not overlap.
     """
@@ -179,7 +177,7 @@ class _LogCurve:
 class _Alignment(NamedTuple):
     """The shift that lays the warm curve on the cold one.
 
-    step : of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
+    step : shift of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
     """
 
     step: float

@@ -30,7 +30,7 @@ _ROUNDED = 0.05
 def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Numbers]) -> tuple[Floats, Floats]:
     """Return storage and loss from a pair of quantities; all others must agree with them.
 
-    table : of which the columns are.
+    table : the table that has the columns.
     pair : a key of :data:`PAIRS`.
     columns : quantity (storage, loss, tan delta, modulus) -> numbers, those that the file has.
     Returns (storage, loss), both of shape (n,); raises FileError where a third column contradicts, or the digits of the

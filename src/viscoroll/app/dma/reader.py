@@ -45,11 +45,12 @@ def read_dma(
         are frequency, angular frequency, storage, loss, tan delta, phase angle, modulus (the magnitude), storage
         compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
         file without headings are called "column 0", "column 1" ...; three of them are frequency, storage and loss.
-    units : of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning -> unit,
+    units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
+    -> unit,
         in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in Pa, with a
         warning.
     decimal : "." or ","; default: the one that the numbers have.
-    encoding : of the file; default: by its first bytes.
+    encoding : encoding of the file; default: by its first bytes.
 
     Returns
     -------
@@ -77,15 +78,15 @@ def read_dma(
     """
     named = dict(columns or {})
     check_names("columns", named, UNITS, "a quantity")
-    given, default = _units(units)
+    overruling, defaults = _units(units)
     table = read_table(path, lambda cells: _is_heading_line(cells, named), decimal=decimal, encoding=encoding)
-    if table.bare and not named:
+    if table.without_headings and not named:
         if len(table.headings) != 3:
             count = len(table.headings)
             problem = f"has {count} columns, and no heading that names frequency, storage and loss modulus"
             raise FileError(path, f"{problem}: give columns=")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
-    found, others = columns_of(table, named, given, default)
+    found, others = columns_of(table, named, overruling, defaults)
     notes = [f"{table.parts} tables"] * (table.parts > 1)
     # as rheometers write; instruments of tension name E
     beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
@@ -160,7 +161,7 @@ def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
 def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
     """Return whether cells are headings: two of them name quantities, or one was named by the user.
 
-    cells : of a line.
+    cells : cells of a line.
     named : quantity -> heading, of columns that the user named.
     """
     quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
@@ -170,7 +171,7 @@ def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
 def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
     """Choose the columns that are read.
 
-    table : of the columns, for the message.
+    table : the table that has the columns; the message lists its headings.
     found : columns of known quantities.
     others : headings of the other columns, and why they are left out; those of another mode or kind than the pair, and
         measured frequencies beside reduced ones, are added.
@@ -203,8 +204,8 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
 def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
     """Return the numbers of the first of several columns of one quantity; the others must agree with it.
 
-    table : of the columns.
-    quantity : of which they are.
+    table : the table that has the columns.
+    quantity : name of their quantity.
     alike : the columns.
     others : headings of columns that are left out, and why; all but the first are added.
     Raises FileError with the line where they contradict each other.
@@ -224,7 +225,7 @@ def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str
 def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
     """Warn of columns whose unit neither the file nor the user gives.
 
-    table : of the columns.
+    table : the table that has the columns.
     taken : the columns.
     Raises FileError for a modulus or frequency without a unit beside one that has it.
     """
@@ -243,7 +244,7 @@ def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     """Raise FileError for rows of one frequency, and for several sweeps without the temperature of each.
 
-    table : of which the record is.
+    table : the table from which the record was read.
     record : the moduli in the order of the rows.
     """
     omega, n = record.omega, record.omega.size

@@ -22,7 +22,7 @@ _ONE = 1e-9
 class Sets(NamedTuple):
     """Sweeps, each at one temperature.
 
-    temperature : of each set, ascending, degrees Celsius: the median of its points, shape (sets,).
+    temperature : temperature of each set, ascending, degrees Celsius: the median of its points, shape (sets,).
     of_point : index of the set of each point, shape (n,).
     of_curve : index of the set of each curve in the order of the caller, shape (curves,).
     """
@@ -35,7 +35,7 @@ class Sets(NamedTuple):
 def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
     """Return a temperature for each point, and the columns.
 
-    temperature : of all points, of each point, or of each curve; degrees Celsius.
+    temperature : temperature of all points, of each point, or of each curve; degrees Celsius.
     columns : omega, storage and loss, each a column or a list of curves.
     Returns (temperatures, columns, index of the first point of each curve; None where the columns are no lists).
     Raises ParameterError for shapes that do not go together.
@@ -62,7 +62,7 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
 def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     """Divide points into sets; temperatures within :data:`LEAST_DISTANCE` of a neighbour are one set.
 
-    temperature : of each point, degrees Celsius, shape (n,).
+    temperature : temperature of each point, degrees Celsius, shape (n,).
     first : index of the first point of each curve; None: sets are taken in the order in which they come.
     Returns the sets.
 
@@ -92,7 +92,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
 def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
     """Return the reference temperature where none is given.
 
-    temperatures : of the sets, ascending.
+    temperatures : temperatures of the sets, ascending.
     unshifted : temperatures at which the shift is 1; the first within the sets is the reference, else the middle set
     is.
     """
@@ -104,8 +104,8 @@ def nearest(base: float, temperatures: Floats, name: str) -> int:
     """Return the index of the set nearest to a temperature.
 
     base : the temperature, degrees Celsius.
-    temperatures : of the sets, ascending.
-    name : of the argument in the message of the ParameterError outside of all sets.
+    temperatures : temperatures of the sets, ascending.
+    name : name of the argument in the message of the ParameterError outside of all sets.
     """
     low, high = temperatures[0], temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
@@ -117,7 +117,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     """Return factors of the sets, 1 at the reference, and the reference.
 
     shift : factors in the order of the curves.
-    sets : of the points.
+    sets : the sets of the points.
     base : reference, degrees Celsius; None: where a factor is 1, else the middle set.
     Raises ParameterError for factors that do not fit the curves, and for a reference where no factor is given.
     """

@@ -116,6 +116,13 @@ class Steady(Values):
     force, torque : loads, with slope and feedback; the one to be found where V was given.
     loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
     count : number of equilibria of each load.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.steady(vr.presets.RUBBER_CYLINDER, slope=[0.005, 0.01])
+    >>> bool(found.V[0, 0] > 0.0), [bool(reason) for reason in found.reason]  # the second slope is too steep
+    (True, [False, True])
     """
 
     def __init__(self, values: dict[str, Any], reasons: Diagnosis, scale: Scale, labels: Labels | None) -> None:
@@ -180,7 +187,14 @@ class Steady(Values):
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
+        """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).to_xarray()["V"].attrs["units"]
+        'm s-1'
+        """
         import xarray as xr
 
         shape = np.shape(self.count)

@@ -30,7 +30,7 @@ _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 class Line(NamedTuple):
     """A line that is not blank.
 
-    number : of the line in the file, from 1; text : without the mark of a comment; cells : of the line.
+    number : number of the line in the file, from 1; text : the line without the mark of a comment; cells : its cells.
     comment : whether it has such a mark; numeric : whether it is a row of numbers.
     """
 
@@ -44,7 +44,7 @@ class Line(NamedTuple):
 def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     """Return the lines of a text file.
 
-    path : of the file.
+    path : path of the file.
     encoding : as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and Latin-1 that fits.
     Raises FileError for workbooks and other binary files, ParameterError for an encoding that Python does not know.
     """

@@ -57,7 +57,7 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 
     They may be where both marks occur, or where three digits stand behind each, as in "1,234".
 
-    cells : of a table or a column.
+    cells : cells of a table or a column.
     doubtful : marks of which the second rule is true: the comma where commas separate cells, both beside "567".
     """
     marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]

@@ -30,12 +30,12 @@ _QUOTED = 60
 class Table:
     """A table of a text file.
 
-    path : of the file.
+    path : path of the file.
     headings : one a column; "column 0" and so on where the file has none.
     units : the cell of a row of units below each heading, "" without.
     rows : the lines of numbers, of which all cells beyond the headings are empty.
     parts : number of tables of the file that these rows are from.
-    bare : whether the file has no headings.
+    without_headings : whether the file has no headings.
     decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
     """
 
@@ -44,7 +44,7 @@ class Table:
     units: list[str]
     rows: list[Line]
     parts: int
-    bare: bool
+    without_headings: bool
     decimal: str
 
     def has_numbers(self, column: int) -> bool:
@@ -52,8 +52,9 @@ class Table:
         return any(is_number(row.cells[column]) for row in self.rows)
 
     def numbers(self, column: int) -> Numbers:
-        """Return the numbers of the column with an index.
+        """Return the numbers of a column.
 
+        column : index of the column.
         Raises FileError, with its line, for a gap, a text, a separator of thousands, or the other decimal mark.
         """
         cells = [row.cells[column] for row in self.rows]
@@ -122,9 +123,9 @@ def read_table(
 class _Layout:
     """Where the tables of a file are.
 
-    path : of the file.
+    path : path of the file.
     lines : its lines with their cells.
-    separator : of the cells.
+    separator : separator of the cells.
     is_heading_line : as of :func:`read_table`.
     """
 
@@ -146,7 +147,10 @@ class _Layout:
         return FileError(self.path, f"line {line.number} {problem}: {line.text[:_QUOTED]!r}")
 
     def is_row(self, line: Line) -> bool:
-        """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone."""
+        """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone.
+
+        line : the line.
+        """
         return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
 
     def heads(self) -> list[int]:

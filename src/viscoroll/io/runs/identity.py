@@ -62,7 +62,7 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
     """Raise FileError if a store is neither of a run nor of the same run with fewer motions.
 
     root: folder of the store.  run: the run.
-    record: of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
+    record: a record of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
     """
     of_a_block = record.summary is not None
     if record.run == identity(run) and (of_a_block or record.motions == run.settings.n):

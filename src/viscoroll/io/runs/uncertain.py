@@ -34,7 +34,7 @@ _KEYS_OF_INPUT = {"distribution", "file", "column"}
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
     """Return the inputs of a run file, without correlations; raise FileError.
 
-    path: of the run file.  content: its sections as read.
+    path: path of the run file.  content: its sections as read.
     """
     reader = _Reader(path, "cylinder" in content)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
@@ -45,7 +45,7 @@ def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
 class _Reader:
     """Collects the uncertain numbers of a run file, and replaces each by an :class:`Input`.
 
-    path, si: of the run file, and whether it is in SI units.
+    path, si: path of the run file, and whether it is in SI units.
     random, joint: as of :class:`Inputs`.
     files: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows.
     """
@@ -59,7 +59,7 @@ class _Reader:
     def section(self, name: str, section: Any) -> Any:
         """Return a section with inputs in place of its uncertain numbers.
 
-        name: of the section.  section: its content, or what stands in its place, which is refused elsewhere.
+        name: name of the section.  section: its content, or what stands in its place, which is refused elsewhere.
         """
         if not isinstance(section, dict):
             return section
@@ -91,12 +91,18 @@ class _Reader:
         return number
 
     def fault(self, number: Input, problem: str) -> FileError:
-        """Return the error of an uncertain number, with its line.  problem: what is wrong."""
+        """Return the error of an uncertain number, with its line.
+
+        number: the uncertain number.  problem: words on what is wrong.
+        """
         return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
 
     @np.errstate(all="ignore")  # scipy may overflow for parameters that are refused here
     def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
-        """Return the distribution of an uncertain number, truncated if its ``table`` states ``truncate``."""
+        """Return the distribution of an uncertain number, truncated if the file says so; raise FileError.
+
+        number: the uncertain number.  table: its table of TOML, with distribution, parameters and perhaps truncate.
+        """
         law = self.frozen_law(number, table)
         low, high = (float(end) for end in law.support())
         cut = table.get("truncate", [-math.inf, math.inf])
@@ -108,7 +114,10 @@ class _Reader:
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
-        """Return the frozen distribution of scipy.stats that a ``table`` names, with its parameters."""
+        """Return the frozen distribution of scipy.stats that a table names, with its parameters; raise FileError.
+
+        number: the uncertain number, for errors.  table: its table of TOML.
+        """
         from scipy import stats
 
         name = table["distribution"]
@@ -133,7 +142,11 @@ class _Reader:
         return frozen
 
     def add_column(self, number: Input, table: dict[str, Any]) -> None:
-        """Read the column of a CSV, netCDF or Parquet file that the ``table`` of an uncertain number names."""
+        """Read the column of a CSV, netCDF or Parquet file that is the sample of an uncertain number; raise
+        FileError.
+
+        number: the uncertain number.  table: its table of TOML, with file and column.
+        """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
@@ -184,7 +197,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 def correlated(path: Path, inputs: Inputs) -> Inputs:
     """Return the inputs with the Gaussian copula of the section [correlation]; raise FileError.
 
-    path: of the run file.  inputs: without correlations.
+    path: path of the run file.  inputs: its inputs without correlations.
     """
     section, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(section, dict):

@@ -34,6 +34,7 @@ class Verdict:
         return self.finished and not self.missing and not self.damaged
 
     def __str__(self) -> str:
+        """Return the verdict in words: one line if all is well, else a line for each damaged part, and the remedy."""
         if self.ok:
             blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
             return f"complete: {blocks} and the summaries have the SHA-256 that they were written with"
@@ -60,14 +61,16 @@ def verify(path: str | PathLike[str]) -> Verdict:
     FileError
         If the folder is no results store, or the record of its start is damaged.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import verify
-    >>> print(verify("results.zarr"))  # doctest: +SKIP
-
     Notes
     -----
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+    >>> print(vr.runs.verify("results.zarr"))
+    complete: 1 block and the summaries have the SHA-256 that they were written with
     """
     root, start = Path(path), start_of(path)
     motions, size, blocks = (int(start.about[name]) for name in ("motions", "motions_a_block", "blocks"))
@@ -81,7 +84,10 @@ def verify(path: str | PathLike[str]) -> Verdict:
 
 
 def start_of(path: str | PathLike[str]) -> Record:
-    """Return the record "start" of a store; raise FileError if the folder has none, or a damaged one."""
+    """Return the record "start" of a store; raise FileError if the folder has none, or a damaged one.
+
+    path: folder of the store.
+    """
     if not Path(path).is_dir():
         raise FileError(path, "is no results store: there is no such folder")
     refuse_unreadable(Path(path))

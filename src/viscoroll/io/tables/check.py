@@ -33,8 +33,8 @@ ROUNDING = 2e-15
 class Check(NamedTuple):
     """A largest difference and its bound.
 
-    name : of the check.  measured : largest difference.  allowed : its bound.  meaning : words: of which quantity, in
-    which unit, at which points.
+    name : name of the check.  measured : largest difference.  allowed : its bound.  meaning : words: of which
+    quantity, in which unit, at which points.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Report:
         return all(check.passed for check in self.checks)
 
     def __str__(self) -> str:
+        """Return a line for each check with the measured and the allowed difference, and the verdict."""
         width = max(len(check.name) for check in self.checks)
         lines = [
             f"{c.name:<{width}} {c.measured:9.2e} {c.allowed:9.2e}  {'ok' if c.passed else 'EXCEEDED':<8}  {c.meaning}"
@@ -82,10 +83,11 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
 
     Parameters
     ----------
-    table : of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one relaxation
+    table : dataset of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one
+    relaxation
         time, or of :func:`viscoroll.io.tables.load`.
     count : number of random points, >= 1.
-    seed : of the random points, >= 0.
+    seed : seed of the random points, >= 0.
 
     Returns
     -------

@@ -33,7 +33,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
     Parameters
     ----------
-    table : of :func:`law`, :func:`build` or :func:`load`.
+    table : dataset of :func:`law`, :func:`build` or :func:`load`.
     path : its suffix is that of the format: of either .nc, or .cdf for readers without HDF5; of a law .h (C99 and C++:
         table and evaluator in one header) or .json; of a grid .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or
         .mat (MATLAB, Simulink).

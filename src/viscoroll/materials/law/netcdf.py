@@ -108,6 +108,14 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
         A file that is missing, cut or damaged in any byte, no law, or of another schema; an alpha beyond the file's.
     ParameterError
         An alpha beside the file of one material, or none for that of every alpha.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER), "rubber.nc")
+    >>> roller = vr.presets.RUBBER_CYLINDER.replace(material=vr.load_law("rubber.nc"))
+    >>> bool(roller.contact(1.0, delta=0.0).M == vr.presets.RUBBER_CYLINDER.contact(1.0, delta=0.0).M)
+    True
     """
     try:
         content = read_law(path)
