@@ -147,7 +147,7 @@ class Cylinder(Methods):
         if law.pair is None:
             raise ParameterError("material", "a law without units", "the law of a Material, in SI units")
         if self.base is not None:
-            raise ParameterError("base", "given", "left out: the law contains both bodies")
+            raise ParameterError("base", "given", "left out: the law already contains both bodies")
         if self.plane != law.pair.plane and not law.pair.like:
             raise ParameterError("plane", repr(self.plane), f"{law.pair.plane!r}, as of the law")
         return Pair(law.pair.cylinder, law.pair.base, self.plane)
@@ -263,8 +263,10 @@ class Cylinder(Methods):
         cover: Any = law.material
         own = self.pair.cover(self.l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"the law of a layer of {cover.thickness:.6g} l0"
-            raise ParameterError("material", found, f"that of {format_value(own.thickness)} l0, which load and R give")
+            found = f"the law of a layer whose thickness is {cover.thickness:.6g} l0"
+            raise ParameterError(
+                "material", found, f"that of {format_value(own.thickness)} l0, which follows from load and R"
+            )
 
     @cached_property
     def body_data(self) -> BodyData:

@@ -105,7 +105,7 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys):
     assert not session["fit"].misfit
     shown = capsys.readouterr().out
     assert "Identification of 7 unknowns from 240 points" in shown
-    assert "planned: what to expect if the cylinder is the truth" in shown
+    assert "planned: expected standard deviations, if the cylinder has the true values" in shown
 
 
 def test_howto_scene_files_are_read(tmp_path):

@@ -86,7 +86,7 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
     data = bytearray((store / "motions/V/7.0").read_bytes())
     data[-1] ^= 1
     (store / "motions/V/7.0").write_bytes(data)
-    with pytest.raises(vr.FileError, match=r"1 of 12 blocks .*puts it right"):
+    with pytest.raises(vr.FileError, match=r"1 of 12 blocks .*repairs it"):
         export_netcdf(store, tmp_path / "all.nc")
     assert not (tmp_path / "all.nc").exists()
     (store / "V_mean/0").write_bytes(b"")
@@ -162,7 +162,7 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
     (thesis / "chapter.tex").write_text("dear")
     for call, words in (
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
-        (partial(run_ensemble, run, thesis), "no results store, it holds chapter.tex"),
+        (partial(run_ensemble, run, thesis), "not a results store, it contains chapter.tex"),
         (partial(verify, thesis), "no results store"),
     ):
         refused(call, words, error=vr.FileError)
@@ -206,7 +206,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
         with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), smaller, threads=1)
         assert not verify(smaller).ok
-        refused(lambda: open_run(smaller), "puts it right", error=vr.FileError)
+        refused(lambda: open_run(smaller), "repairs it", error=vr.FileError)
     run_ensemble(read_run(run_file), smaller)
     assert content(smaller) == content(whole)
 
@@ -214,11 +214,11 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
 @pytest.mark.parametrize(
     ("before", "now", "words"),
     [
-        ("", "n = 300", "holds 350 motions of this run file, which may become more, not fewer: set n >= 350"),
-        ('design = "latin"', "n = 1200", "a Latin hypercube, whose strata are of all motions: keep n = 350"),
-        ('design = "sobol"', "n = 1200", "which is even where n is a power of two: set n = 2048"),
+        ("", "n = 300", "holds 350 motions of this run file, and n must not be reduced: set n >= 350"),
+        ('design = "latin"', "n = 1200", "a Latin hypercube, whose strata depend on n: keep n = 350"),
+        ('design = "sobol"', "n = 1200", "which is balanced only for a power of two: set n = 2048"),
         ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
-        ("", "n = 5000", "found by method 'integrate': add method = 'integrate' to [run]"),
+        ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
     ],
 )  # fmt: skip
 def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, words):
@@ -273,7 +273,7 @@ def test_command(run_file, tmp_path, whole, capsys):
     assert "fell below the rest threshold" in shown.out
     assert shown.err == ""  # no bar where nobody looks
     assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
-    assert "12 of 12 blocks were there and whole" in capsys.readouterr().out
+    assert "12 of 12 blocks were complete already" in capsys.readouterr().out
     assert main(["verify", str(store)]) == 0
     assert "complete: 12 blocks" in capsys.readouterr().out
     (store / "motions/x/3.0").write_bytes(b"")
@@ -303,5 +303,5 @@ def test_an_interrupt_answers_at_once(tmp_path, whole):
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
-    kept = "interrupted: 0 of 4 blocks were made and are kept in long.zarr; the same call goes on"
+    kept = "interrupted: 0 of 4 blocks are complete and are kept in long.zarr; the same call resumes the run"
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

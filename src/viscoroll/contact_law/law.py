@@ -52,9 +52,9 @@ class Law:
 
         _, scene, scale = resolve_model(roller, "law")
         if scene.material_array is not None:
-            allowed = "one material, as material[i]: a law is of one scene"
+            allowed = "one material, as material[i]: a law belongs to one scene"
             raise ParameterError("material", repr(scene.material), allowed)
-        refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
+        refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law belongs to one scene")
         table = scene.table
         assert table is not None
         self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])

@@ -253,7 +253,7 @@ def resolve_model(
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
         if isinstance(roller, LawGrid):
             sentence = f"{call} reads the rows of a law, as motions do, not a grid: vr.law(grid) gives its splines to "
-            sentence += "an integrator of your own (docs/howto/law.md)"
+            sentence += "your own integrator (docs/howto/law.md)"
         raise ParameterError("roller", type(roller).__name__, "a Scene or a Cylinder", sentence)
     if slope is not None:
         roller = roller.on_slope(slope)
@@ -261,7 +261,9 @@ def resolve_model(
     if scene.cover is not None and call not in _BEFORE_THE_SPLIT:
         scene.cover.refuse_unknown_split(call)
     if moves and scene.gamma is None:
-        sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
+        sentence = (
+            f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale, but gamma is not given"
+        )
         raise ParameterError("gamma", None, "a number > 0", sentence)
     return roller, scene, roller.scale
 
@@ -270,7 +272,7 @@ def refuse_cover(scene: Parameters, why: str) -> None:
     """Raise ParameterError where a body is a layer of finite thickness; ``why``: what is not known of such a layer."""
     if scene.cover is not None:
         sentence = (
-            f"thickness = {format_value(scene.cover.thickness)} (divided by l0): of a layer of finite thickness {why}"
+            f"thickness = {format_value(scene.cover.thickness)} (divided by l0): for a layer of finite thickness {why}"
         )
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
 

@@ -271,12 +271,12 @@ _MESSAGES = (
     "|V| and R |omega| fell below the rest threshold",
     "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed grows without bound,"
     " loosen rtol",
-    "the step size fell to rounding level: the motion changes faster than doubles resolve time there, because a gain,"
+    "the step size fell to rounding level: the motion changes faster than doubles resolve time there, since a gain,"
     " drag, speed or friction is extreme, or rtol too tight",
-    "V and omega were both 0, from where the motion is not unique: with mu > 2 kappa the cylinder can depart in two"
-    " ways",
-    "too slow for the added mass N, which reached 1 + j, or -(1 + j)/2",
-    "too slow to leave the indentation of its rest, which takes seven tenths of the energy",
+    "V and omega were both 0, where the motion is not unique: with mu > 2 kappa the cylinder can start in two"
+    " directions",
+    "too slow for the unsteady correction: the added mass gamma N reached 1 + j, or -(1 + j)/2",
+    "too slow to leave the indentation of the standstill, which would take seven tenths of the kinetic energy",
 )
 
 

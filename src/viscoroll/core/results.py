@@ -210,7 +210,7 @@ class Values(Result):
             return self._values[name]
         except KeyError:
             names = ", ".join(self._values)
-            raise AttributeError(f"{name!r} was not computed; this result holds {names}") from None
+            raise AttributeError(f"{name!r} was not computed; this result contains {names}") from None
 
     def __dir__(self) -> Iterable[str]:
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]

@@ -113,7 +113,7 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
         raise section_error(path, "", "", "one of preset, [scene] and [cylinder] is needed")
     scenes = [name for name in ("preset", "scene") if name in content]
     if "cylinder" in content and scenes:
-        raise section_error(path, "", "cylinder", f"[cylinder] stands alone: without {' and '.join(scenes)}")
+        raise section_error(path, "", "cylinder", f"[cylinder] excludes {' and '.join(scenes)}")
     for name in SECTIONS:
         if name in content and "cylinder" not in content:
             raise section_error(path, "", name, f"[{name}] goes with [cylinder]")

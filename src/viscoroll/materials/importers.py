@@ -177,7 +177,7 @@ class FromPrograms:
         if terms is not None:
             if terms[resting].any():
                 if nu is not None or bulk is not None:
-                    raise exactly_one_error("nu or bulk", "K of beta = 0", both=True)
+                    raise exactly_one_error("nu or bulk", "K with beta = 0", both=True)
                 bulk = math.fsum(terms[resting])
             terms = terms[~resting]
         check_one_given(nu=nu, bulk=bulk)
@@ -281,7 +281,7 @@ def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, 
     if len(given) != 1:
         found = " and ".join(given) or "nothing"
         raise ParameterError("long-time modulus by", found, "one of G_inf, G0 and a pair with beta = 0")
-    (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G of beta = 0"}
+    (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G with beta = 0"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
 
@@ -292,7 +292,11 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:
-        raise ParameterError(name, f"{fractions.tolist()}", "of a sum below 1: no long-time modulus would be left")
+        raise ParameterError(
+            name,
+            f"{fractions.tolist()}",
+            "values whose sum is below 1: otherwise the long-time modulus is not positive",
+        )
     return rest
 
 

@@ -79,9 +79,9 @@ class Material(FromPrograms):
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
-                raise ParameterError("E", self.E, "finite where the material relaxes")
+                raise ParameterError("E", self.E, "finite for a viscoelastic material")
             if self.thickness is not None:
-                raise ParameterError("thickness", self.thickness, "left out of a rigid body")
+                raise ParameterError("thickness", self.thickness, "left out for a rigid body")
         else:
             check_fields(self, E=0.0)
         object.__setattr__(self, "nu", check_poisson(self.nu))
@@ -208,8 +208,8 @@ class Material(FromPrograms):
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
-                f"temperature is an array of shape {given.shape}, and a material is at one temperature: make "
-                "one each, [rubber.at(T, shift) for T in temperatures], or give the temperatures to a run file as a "
+                f"temperature is an array of shape {given.shape}, but a material has one temperature: make "
+                "a list, [rubber.at(T, shift) for T in temperatures], or give the temperatures to a run file as a "
                 "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
             )
             raise ParameterError("temperature", given.shape, "one number", sentence)

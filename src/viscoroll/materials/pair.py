@@ -67,14 +67,14 @@ class Pair:
                 named = "material" if name == "cylinder" else name
                 raise ParameterError(named, f"{body!r:.60}", "a Material")
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
-            raise ParameterError("base", "rigid", "a body that deforms: the cylinder is rigid")
+            raise ParameterError("base", "rigid", "a deformable body, since the cylinder is rigid")
         if self.covered is not None:
             self._refuse_covers()
 
     def _refuse_covers(self) -> None:
         """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
         if self.cylinder.thickness is not None and self.half_space.thickness is not None:
-            allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
+            allowed = "given for one body only: the law of two layers is not available; give base=, rigid or elastic"
             raise ParameterError("thickness", "of both bodies", allowed)
         if self.plane != "strain":
             raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
@@ -163,7 +163,9 @@ class Pair:
         layer, other = (self.cylinder, self.half_space) if on == "cylinder" else (self.half_space, self.cylinder)
         parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
         if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
-            allowed = "one series, nu and part of the compliance where a body has a thickness: only l0 and it may vary"
+            allowed = (
+                "one series, nu and compliance share where a body has a thickness: only the thickness and l0 may vary"
+            )
             raise ParameterError(on, "of many materials", allowed)
         series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
         part = float(np.max(parts))

@@ -111,7 +111,9 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
-            raise ParameterError("E", f"of a sum of {np.max(alpha) - 1.0:g}", f"of a sum up to {HIGHEST_ALPHA:g}")
+            raise ParameterError(
+                "E", f"values with the sum {np.max(alpha) - 1.0:g}", f"values with a sum up to {HIGHEST_ALPHA:g}"
+            )
         self._set(False, strengths, times, alpha)
 
     @classmethod
@@ -140,11 +142,15 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("J", "T"), J, T)
         rest = np.asarray(1.0 - _exact_sums(strengths))
         if not (rest > 0.0).all():
-            found = f"of a sum of {1.0 - rest.min()!s}"
-            raise ParameterError("J", found, "of a sum below 1: the instantaneous modulus would be infinite")
+            found = f"values with the sum {1.0 - rest.min()!s}"
+            raise ParameterError(
+                "J", found, "values whose sum is below 1: otherwise the instantaneous modulus is infinite"
+            )
         given = 1.0 / rest if alpha is None else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
         if given.shape not in ((), rest.shape):
-            raise ParameterError("alpha", f"of shape {given.shape}", f"a number, or one a material, {rest.shape}")
+            raise ParameterError(
+                "alpha", f"of shape {given.shape}", f"a number, or one for each material, {rest.shape}"
+            )
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():

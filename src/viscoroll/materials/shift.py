@@ -66,7 +66,7 @@ class WLF:
         """Return a_T at a ``temperature`` in degrees Celsius."""
         above = check_celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
-            allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF, in degrees Celsius"
+            allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, where the WLF shift is infinite, in degrees Celsius"
             raise ParameterError("temperature", temperature, allowed)
         return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
 
@@ -178,5 +178,9 @@ def _shift(temperature: float, exponent: float) -> float:
     exponent: ln a_T.
     """
     if not abs(exponent) < 700.0:
-        raise ParameterError("temperature", temperature, f"nearer to T0: a_T = exp({exponent:.3g}) is no double")
+        raise ParameterError(
+            "temperature",
+            temperature,
+            f"nearer to T0: a_T = exp({exponent:.3g}) cannot be represented in double precision",
+        )
     return math.exp(exponent)

@@ -75,7 +75,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     scene = batch.problem.scene
     free = not batch.problem.driven and scene.like_bodies
     if method == "flow" and (scene.shape or not free):
-        which = "motions have scenes of their own" if free else "motions are driven or unsteady, or bodies differ"
+        which = "motions have different scenes" if free else "motions are driven or unsteady, or bodies differ"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}

@@ -101,7 +101,7 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0
         if abs(fastest) > high:
-            raise ParameterError(name, fastest, f"at most {high:g} in size")
+            raise ParameterError(name, fastest, f"at most {high:g} in magnitude")
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer((V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16):
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
@@ -122,5 +122,5 @@ def in_words(error: ParameterError, scale: Scale) -> ParameterError:
     about = "dimensionless"
     if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):
         T, V, P = (f"{scale[name]:.6g} {unit}" for name, unit in (("t", "s"), ("V", "m/s"), ("force", "N/m")))
-        about += f": times over {T}, speeds over {V}, forces over {P}"
+        about += f": times divided by {T}, speeds by {V}, forces by {P}"
     return ParameterError(error.name, error.value, error.allowed, f"{error} ({about})")

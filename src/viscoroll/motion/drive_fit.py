@@ -244,9 +244,10 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
         short = stop - start <= _LEAST_SPACINGS * np.spacing(stop)
         if sampled.taken - sampled.times.size > MOST or (cut is None and short):
             found = (
-                f"a callable that no polynomials follow near t = {start:.6g} ({sampled.taken} values of it were taken)"
+                f"a function that piecewise polynomials cannot approximate near t = {start:.6g} "
+                f"({sampled.taken} values of it were taken)"
             )
-            raise ParameterError(sampled.name, found, "smooth but for jumps and corners; give it as a Schedule")
+            raise ParameterError(sampled.name, found, "smooth except for jumps and corners; give it as a Schedule")
         left, right = cut or (0.5 * (start + stop),) * 2
         open_intervals += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
     return pieces

@@ -42,7 +42,8 @@ _BLOCK_BYTES = 1 << 18
 _START = 1e-9
 #: (argument, prescribed speed beside which it must not be given, reason).
 _BESIDE = (
-    ("torque", "omega", "it is what the prescribed omega needs"), ("force", "V", "it is what the prescribed V needs"),
+    ("torque", "omega", "the torque follows from the prescribed omega"), ("force", "V", "the force follows "
+        "from the prescribed V"),
     ("brake", "omega", "omega is prescribed"), ("drag", "omega", "omega is prescribed"),
 )  # fmt: skip
 #: Names of the gains in the order of the kernel's.
@@ -182,7 +183,7 @@ def prepare_drive(
     from them given as well; a start that is not the prescribed one; ``resolve`` without a callable.
     """
     if resolve is not None and not drive.has_callable:
-        sentence = f"resolve = {resolve!s:.60} is given, but nothing that drives is a function of t: leave it out"
+        sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
         raise ParameterError("resolve", resolve, "left out", sentence)
     if not drive.acts:
         return DrivenStart(None, *start_speeds(V0, omega0))
@@ -213,7 +214,9 @@ def _refuse_both(drive: Drive) -> None:
         raise exactly_one_error("V", "omega", both=True)
     for name, speed, why in _BESIDE:
         if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
-            raise ParameterError(name, value, "left out", f"{name} is given beside {speed}=: leave it out, {why}")
+            raise ParameterError(
+                name, value, "left out", f"{name} is given together with {speed}=: leave it out, {why}"
+            )
 
 
 def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: Any) -> Any:
@@ -226,7 +229,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     Raises ParameterError where ``stated`` is another start, or where the speed jumps.
     """
     if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
-        raise ParameterError(name, "an empty array", "a number, one a motion, or a function of t")
+        raise ParameterError(name, "an empty array", "a number, an array with one for each motion, or a function of t")
     start, scale = functions.speed_at_start(name)
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
@@ -253,6 +256,6 @@ def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
     functions: that drive.
     """
     if rest > 0.0 and functions is not None and functions.acts_at_end:
-        sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
-        sentence += " (what a brake stops and holds is at rest in finite time: switches say when)"
+        sentence = f"rest = {rest:g} is given, but the motion is driven to its end: leave it out"
+        sentence += " (a brake stops the motion in finite time: see switches)"
         raise ParameterError("rest", rest, "None", sentence)

@@ -132,7 +132,7 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 
     if isinstance(materials, Cover):
         layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
-        return along("cover_thickness", materials.thickness, "thickness of the cover over l0", **layer)
+        return along("cover_thickness", materials.thickness, "thickness of the cover divided by l0", **layer)
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")
@@ -149,8 +149,11 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
     """
     form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
     parts = {
-        "strengths": (series.J if series.by_creep else series.E, f"strengths of {form} over the long-time {total}"),
-        "times": (series.T if series.by_creep else series.tau, f"times of {form} over T_ref"),
+        "strengths": (
+            series.J if series.by_creep else series.E,
+            f"strengths of {form} divided by the long-time {total}",
+        ),
+        "times": (series.T if series.by_creep else series.tau, f"times of {form} divided by T_ref"),
     }
     return {
         f"{prefix}{form}_{name}": (

@@ -14,13 +14,13 @@ from .flow_rows import octaves
 from .problem import integrate_motions
 
 #: Reason: the rolling resistance exceeds the friction.
-STOPS = "rolling resistance can hold the sliding cylinder at a speed"
+STOPS = "the sliding cylinder can reach a steady speed"
 #: Reason: a motion of the slow manifold leaves partial slip.
 FULL_SLIP_RETURNS = "full slip returns"
 #: Reason: a motion of a boundary layer leaves partial slip.
-STICK_ENDS = "the stick zone does not always last"
+STICK_ENDS = "the cylinder can return from partial slip to full slip"
 #: Reason: numbers that are not finite.
-OUT_OF_RANGE = "its speeds or times leave the range of doubles"
+OUT_OF_RANGE = "its speeds or times exceed the range of double precision"
 
 #: Octaves of the tables over kappa V.
 SPEEDS = octaves(layout.LOW, layout.HIGH)

@@ -110,7 +110,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     try:
         found = _read(content, parameters)
     except Exception as error:
-        warnings.warn(f"{path}: flow map is damaged ({error}); it is built anew", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"{path}: flow map is damaged ({error}) and is built again", RuntimeWarning, stacklevel=2)
         return None
     with suppress(OSError):  # a folder that is read-only
         path.touch()
@@ -127,7 +127,7 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
         if not np.array_equal(data["parameters"], _numbers(parameters)):
             raise ValueError("its parameters are others")
         if data["table"].shape != (SIZE,):
-            raise ValueError("its table is of another size")
+            raise ValueError("its table has another size")
         errors = tuple(data["errors"].tolist())
         return FlowMap(parameters, int(data["first"]), data["table"], errors, str(data["problem"]))
 

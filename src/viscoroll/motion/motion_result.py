@@ -94,7 +94,7 @@ class Motion(RollResult):
             return text
         last = self._last_reached
         t, V, omega = (f"{x} = {float(last[x][0]):.6g} {self._unit(x)}".rstrip() for x in ("t", "V", "omega"))
-        return f"{text}; it stood at {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
+        return f"{text}; the last state was {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
 
     @cached_property
     def _step_ends(self) -> Floats:

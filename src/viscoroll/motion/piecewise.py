@@ -77,7 +77,7 @@ def check_function(
         return function
     values = check_array(name, 0.0 if function is None else function, low=low)
     if values.ndim > 1:
-        allowed = "a number, one a motion, or a Schedule(times, values)"
+        allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
         raise ParameterError(name, f"array of shape {values.shape}", allowed)
     return values
 

@@ -135,9 +135,9 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refuse_cover(scene, "N is not known: leave unsteady=True out")
+    refuse_cover(scene, "N is not available: leave unsteady=True out")
     if not scene.like_bodies:
-        sentence = "unsteady = True: the bodies differ, and the added mass of either is not known then"
+        sentence = "unsteady = True: the added mass N is not available for bodies of different materials"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     return True
 
@@ -168,13 +168,13 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
     """
     if rested == 0.0:
         return start.V0, start.omega0, False
-    refuse_cover(scene, "the cost of leaving the indentation of a standstill is not known: leave rested out")
+    refuse_cover(scene, "the energy loss of a start after a standstill is not available: leave rested out")
     V = np.asarray(start.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     prescribed = start.functions is not None and start.functions.prescribed
     if prescribed or np.any(np.abs(start.omega0 - V) > limit):
         why = "a speed is prescribed" if prescribed else "it starts in full slip"
-        sentence = f"rested is given, but {why}: the cost of leaving the indentation is not known then"
+        sentence = f"rested is given, but {why}: the energy loss of the start is then not available"
         raise ParameterError("rested", rested, "left out", sentence)
     lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
     return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS

@@ -179,7 +179,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
         data |= _variables(name, histograms, levels, si)
     codes = np.array([int(code) for code in MotionStatus], np.int8)
     ended = column_attributes("status") | {
-        "long_name": "motions by how they ended", "units": "1",
+        "long_name": "number of motions with each status", "units": "1",
         "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
     }  # fmt: skip
     data["ended"] = "status", np.array([total.statuses.get(code, 0) for code in codes.tolist()]), ended
@@ -222,6 +222,6 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
         attributes = {"long_name": f"{title} of: {about['long_name']}", "units": units}
         data[f"{name}_{part}"] = dims, values.reshape(values.shape[: len(dims)]), attributes
     exact = any(one.values is not None for one in histograms)
-    accuracy = "exact" if exact else "known to the bin that they lie in, at most 0.4 % wide"
+    accuracy = "exact" if exact else "accurate to the width of a bin, at most 0.4 %"
     data[f"{name}_quantiles"][2]["comment"] = accuracy
     return data

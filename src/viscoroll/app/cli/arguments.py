@@ -95,7 +95,7 @@ def _numbers_of_member(text: str) -> Any:
     except vr.ParameterError as error:
         raise ArgumentTypeError(f"{text!r}: {error}") from None
     except (ValueError, TypeError):
-        allowed = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these with commas between"
+        allowed = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, separated by commas"
         raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
 
 
@@ -110,7 +110,7 @@ def roller_of_argument(text: str) -> Any:
     if text.lower().endswith(".toml"):
         return read_roller(text)
     if os.path.exists(text):
-        raise vr.FileError(text, "is no scene file: its name must end in .toml")
+        raise vr.FileError(text, "is not a scene file: its name must end in .toml")
     return preset(text)
 
 
@@ -140,9 +140,13 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
 #: A file to read.
 FILE = option("file", metavar="FILE")
 #: A scene or cylinder.
-SCENE = option("scene", metavar="SCENE", help="FILE.toml with [scene], [cylinder] (SI units) or preset; or a preset")
+SCENE = option(
+    "scene", metavar="SCENE", help="TOML file with [scene], [cylinder] (SI units) or preset, or the name of a preset"
+)
 #: Output of a table of numbers: to a file, or to standard output in a format.
 TABLE = [
     output(".txt", ".csv", ".nc", required=False, more="; default: standard output"),
-    option("--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"),
+    option(
+        "--format", choices=("text", "csv", "json"), default="text", help="format of standard output (default: text)"
+    ),
 ]

@@ -48,12 +48,19 @@ def _lines() -> Iterator[tuple[str, str]]:
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
     for extra, name in _EXTRAS.items():
         version = _version(name)
-        yield f"[{extra}]", f"{name} {version}" if version else f"no {name}: pip install 'viscoroll[{extra}]'"
+        yield (
+            f"[{extra}]",
+            f"{name} {version}" if version else f"{name} is not installed: pip install 'viscoroll[{extra}]'",
+        )
     source = "VISCOROLL_THREADS" if os.environ.get("VISCOROLL_THREADS") else "the cores available"
     yield "threads", f"{thread_count(None)} ({source})"
     folder = cache_root() / f"kernels-{sources_digest()}"
     sizes = [path.stat().st_size for path in folder.glob("*") if path.is_file()]
-    state = f"{len(sizes)} compiled functions, {sum(sizes) / 1e6:.1f} MB" if sizes else "nothing yet: viscoroll warmup"
+    state = (
+        f"{len(sizes)} compiled functions, {sum(sizes) / 1e6:.1f} MB"
+        if sizes
+        else "no compiled functions; `viscoroll warmup` compiles them"
+    )
     yield "cache", f"{folder}: {state}{_fault_of_cache(folder)}"
     yield "check", _check()
 

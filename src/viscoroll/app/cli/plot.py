@@ -32,7 +32,7 @@ def plot(arguments: Namespace) -> None:
     kinds = {".zarr": lambda path: vr.runs.open_run(path).plot(), ".nc": _figure_of_netcdf, ".toml": _figure_of_toml}
     path = arguments.what
     if (draw := kinds.get(Path(path).suffix.lower())) is None:
-        sentence = f"{path!r} is no file to plot: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
+        sentence = f"{path!r} is not a file that can be plotted: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
         raise vr.ParameterError("plot", path, "a file to plot", sentence)
     save(draw(path), arguments.output)
 
@@ -51,8 +51,10 @@ def _figure_of_netcdf(path: str) -> Any:
             return vr.Material.from_netcdf(path).plot() if "schema" in data.attrs else draw(data)
     except OSError as error:
         if not Path(path).is_file():
-            raise vr.FileError(path, "there is no such file") from error
-        problem = "is damaged, or no netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+            raise vr.FileError(path, "the file does not exist") from error
+        problem = (
+            "is damaged or is not a netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+        )
         raise vr.FileError(path, problem) from error
 
 

@@ -26,8 +26,8 @@ _INTERRUPTED = 130
 _BROKEN_PIPE = 141
 #: First word of several commands -> its help.
 _GROUPS = {
-    "material": "show and fit a material of several relaxation times",
-    "tables": "the law of a material as a file, grids for other programs",
+    "material": "show a material, or fit one to measurements",
+    "tables": "write the contact law to a file, or to a grid for other programs",
 }
 
 

@@ -18,7 +18,8 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
 @command(
     "ensemble", _RUN,
     output(".zarr", required=False, more=": the results store; without it: estimate of time and memory, by a trial"),
-    option("--cluster", metavar="WHERE", help="local (processes), or tcp://host:port of a dask scheduler"),
+    option("--cluster", metavar="WHERE", help="local (processes of this machine), or the address "
+        "tcp://host:port of a dask scheduler"),
     option("--threads", type=int, help="number of threads, or of local processes (default: number of cores)"),
 )  # fmt: skip
 def ensemble(arguments: Namespace) -> None:
@@ -31,7 +32,9 @@ def ensemble(arguments: Namespace) -> None:
     run = vr.runs.read_run(arguments.run_file)
     if arguments.output is None:
         if arguments.cluster is not None:
-            raise vr.ParameterError("--cluster", arguments.cluster, "left out without -o: the trial is of this machine")
+            raise vr.ParameterError(
+                "--cluster", arguments.cluster, "left out without -o: the trial runs on this machine"
+            )
         print(vr.runs.estimate(run, arguments.threads))
         return
     evaluated = vr.runs.run_ensemble(
@@ -39,7 +42,7 @@ def ensemble(arguments: Namespace) -> None:
         progress=sys.stderr.isatty() or (False if os.environ.get("VISCOROLL_QUIET") == "1" else "lines"),
     )  # fmt: skip
     if evaluated < run.blocks:
-        print(f"{run.blocks - evaluated} of {run.blocks} blocks were there and whole")
+        print(f"{run.blocks - evaluated} of {run.blocks} blocks were complete already")
     results = vr.runs.open_run(arguments.output)
     print(as_text(results.to_pandas().reset_index(), str(results)), end="")
 
@@ -77,7 +80,7 @@ def sensitivity(arguments: Namespace) -> None:
     heading = "\n".join((
         f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed {about['seed']}",
         *(f"{about[key]} motions {key.removeprefix('ended: ')}" for key in about if key.startswith("ended: ")),
-        *(f"no indices of {reason}" for reason in about["refused"].splitlines()),
+        *(f"no indices for {reason}" for reason in about["refused"].splitlines()),
     ))  # fmt: skip
     deliver(arguments, indices, frame, heading)
     if arguments.output is not None:

@@ -29,7 +29,7 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
         SCENE,
         option("--V", type=kind, required=True, help=_V_HELP),
         option("--delta", type=kind, help="creepage (omega R - V)/V"),
-        option("--omega", type=kind, help="angular velocity, in place of delta"),
+        option("--omega", type=kind, help="angular velocity; give it or --delta"),
     )
 
 
@@ -73,7 +73,7 @@ def stress(arguments: Namespace) -> None:
     "roll", SCENE,
     option("--V0", type=float, required=True, help="velocity of the axis at the start"),
     option("--omega0", type=float, required=True, help="angular velocity at the start"),
-    option("--t", type=numbers, required=True, help="output times: numbers, as of `viscoroll contact`"),
+    option("--t", type=numbers, required=True, help="output times, written as the numbers of `viscoroll contact`"),
     TABLE,
 )  # fmt: skip
 def roll(arguments: Namespace) -> None:
@@ -93,10 +93,12 @@ def roll(arguments: Namespace) -> None:
 
 @command(
     "steady", SCENE,
-    option("--force", type=numbers, help="along V (default: 0)"),
-    option("--torque", type=numbers, help="along omega (default: 0)"),
-    option("--slope", type=numbers, help="rad, positive downhill along +V; the load is P cos(slope)"),
-    option("--V", type=numbers, help="speed, in place of --force or --torque, which is then computed"),
+    option("--force", type=numbers, help="force on the axis along V (default: 0)"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
+    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill; the normal load "
+        "is P cos(slope)"),
+    option("--V", type=numbers, help="prescribed speed; it takes the place of --force or --torque, which is "
+        "then computed"),
     TABLE,
 )  # fmt: skip
 def steady(arguments: Namespace) -> None:
@@ -113,7 +115,7 @@ def steady(arguments: Namespace) -> None:
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
-        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have none"]
+        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have no steady speed"]
     if arguments.output is not None or arguments.format != "text":  # a table for programs has no heading
         for line in lines:
             warnings.warn(line, vr.ModelWarning, stacklevel=2)
@@ -123,7 +125,7 @@ def steady(arguments: Namespace) -> None:
 @command(
     "validity", SCENE,
     option("--V", type=float, required=True, help=_V_HELP),
-    option("--omega", type=float, help="angular velocity; without it the creepage is not known"),
+    option("--omega", type=float, help="angular velocity; without it the assumption on creepage is not checked"),
 )  # fmt: skip
 def validity(arguments: Namespace) -> None:
     """Print which assumptions of the model hold.

@@ -24,7 +24,7 @@ def _low_high(text: str) -> tuple[float, ...]:
     try:
         return tuple(map(float, text.split(":")))
     except ValueError:
-        raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, as 1:4096") from None
+        raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, for example 1:4096") from None
 
 
 def _print_size(path: Path) -> None:
@@ -38,8 +38,9 @@ def _print_size(path: Path) -> None:
 @command(
     "tables law",
     option("file", metavar="MATERIAL", nargs="?",
-           help="TOML with [material], perhaps [base], or with [scene] or [cylinder]; or the netCDF of a material"),
-    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="in place of MATERIAL: range of alpha, as 1:4096"),
+           help="TOML file with [material] (and [base]), [scene] or [cylinder], or netCDF file of a material"),
+    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; it takes "
+        "the place of MATERIAL"),
     output(*_LAW),
 )  # fmt: skip
 def law(arguments: Namespace) -> None:
@@ -57,10 +58,11 @@ def law(arguments: Namespace) -> None:
 
 @command(
     "tables build", SCENE,
-    option("--V", type=numbers, required=True, help="speeds of the axis, > 0"),
-    option("--delta", type=numbers, required=True, help="creepages"),
-    option("--alpha", type=numbers, help="a third axis, of a scene"),
-    option("--method", default="table", help="table (default), or direct: root solves of the printed equations"),
+    option("--V", type=numbers, required=True, help="velocities of the axis, > 0"),
+    option("--delta", type=numbers, required=True, help="values of the creepage"),
+    option("--alpha", type=numbers, help="values of a third axis, only for a scene"),
+    option("--method", default="table", help="table (default): the law of the scene; direct: numerical roots "
+        "of the equations of the paper"),
     output(*_GRID),
 )  # fmt: skip
 def build(arguments: Namespace) -> None:
@@ -83,7 +85,9 @@ def info(arguments: Namespace) -> None:
     print(vr.tables.info(arguments.file))
 
 
-@command("tables validate", FILE, option("-n", type=int, default=10_000, help="random speeds (default: 10000)"))
+@command(
+    "tables validate", FILE, option("-n", type=int, default=10_000, help="number of random speeds (default: 10000)")
+)
 def validate(arguments: Namespace) -> int:
     """Check a table file at random points and print the differences.
 

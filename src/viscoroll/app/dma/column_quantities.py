@@ -99,13 +99,13 @@ def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
     name, _, unit, _ = meaning
     if name in overruling or unit in NO_UNIT:
         return ""
-    problem = f"unit {unit!r} is none of {name}"
+    problem = f"unit {unit!r} is not a unit of {name}"
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
         return problem
     if "angular" in name and unit.lower().endswith("hz"):
-        return f"an angular frequency in {unit}: rename it, or give units="
+        return f"with an angular frequency in {unit}: rename it, or give units="
     angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
     return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
 
@@ -122,7 +122,10 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     # a phase angle of rubber in degrees goes above pi/2
     open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
     if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
-        problem = f"column {column.heading!r} has no unit, and goes to {values.max():g}: give units={{{name!r}: ...}}"
+        problem = (
+            f"column {column.heading!r} has no unit, and its largest value is {values.max():g}: give "
+            f"units={{{name!r}: ...}}"
+        )
         raise FileError(table.path, problem)
     if column.log:
         values = 10.0**values

@@ -86,9 +86,7 @@ class Curve(NamedTuple):
     def fluid(self) -> ParameterError:
         """The error where no long-time modulus is left."""
         lowest = f"from {self.storage[0]:g} at omega = {self.omega[0]:g} on"
-        return ParameterError(
-            "storage", lowest, "a curve that levels off at low frequencies: here it is that of a fluid"
-        )
+        return ParameterError("storage", lowest, "data with a plateau at low frequencies: these have none, as a fluid")
 
 
 class Relaxation(NamedTuple):
@@ -128,7 +126,7 @@ class Relaxation(NamedTuple):
     @property
     def fluid(self) -> ParameterError:
         last = f"down to {self.relaxation[-1]:g} at t = {self.t[-1]:g}"
-        return ParameterError("relaxation", last, "a curve that levels off at long times: here it is that of a fluid")
+        return ParameterError("relaxation", last, "data with a plateau at long times: these have none, as a fluid")
 
 
 _Data = TypeVar("_Data", Curve, Relaxation)

@@ -66,7 +66,10 @@ class DynamicModuli(Result):
         """omega, storage, loss; with a warning where temperatures or shear would be lost by that."""
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
-            text = f"{self.source}: three columns lose {' and '.join(lost)}: give the record whole, fit_prony(record)"
+            text = (
+                f"{self.source}: three columns do not state {' and '.join(lost)}: give the record itself, "
+                f"fit_prony(record)"
+            )
             warnings.warn(text, ModelWarning, stacklevel=caller_level())
         return iter((self.omega, self.storage, self.loss))
 
@@ -117,6 +120,6 @@ class DynamicModuli(Result):
         given = (f"{name} {self.columns[name]!r} in {self.units.get(name, '1')}" for name in self.columns)
         rows = [
             SummaryRow("columns", "; ".join(given)),
-            SummaryRow("notes", "; ".join(self.notes) or "no column left aside"),
+            SummaryRow("notes", "; ".join(self.notes) or "no unused column"),
         ]
         return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows

@@ -117,13 +117,15 @@ def fit_prony(
         record = omega
         for name, given in (("storage", storage), ("loss", loss)):
             if given is not None:
-                raise ParameterError(name, "given", "left out: the record has it (modes=, if that is meant)")
+                raise ParameterError(
+                    name, "given", "left out: the record states it (for the number of modes give modes=)"
+                )
         if mode not in (None, record.mode):
             raise ParameterError("mode", repr(mode), f"{record.mode!r}, as of {record.source or 'the record'}")
         omega, storage, loss, mode = record.omega, record.storage, record.loss, _mode(record.mode)
         temperature, source = record.temperature if temperature is None else temperature, source or record.source
     elif storage is None or loss is None:
-        raise ParameterError("storage and loss", None, "given, as columns beside omega, or a record of read_dma alone")
+        raise ParameterError("storage and loss", None, "given: columns beside omega, or only a record of read_dma")
     check_choice("on", on, "both", "storage")
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:
@@ -189,8 +191,10 @@ def fit_relaxation(
     curve = data_of(Relaxation, {"t": t, "relaxation": relaxation})
     first, *_, last = curve.relaxation.tolist()
     if last > _RISES * first:
-        found = f"from {first:g} to {last:g} as time goes on"
-        raise ParameterError("relaxation", found, "a modulus, which falls (a creep compliance rises)")
+        found = f"from {first:g} to {last:g} as the time increases"
+        raise ParameterError(
+            "relaxation", found, "a relaxation modulus, which decreases with time (a creep compliance increases)"
+        )
     _, fields, errors = _fit_series(curve, modes, misfit)
     temperature = None if temperature is None else check_celsius("temperature", temperature)
     return RelaxationFit(**fields, misfit=errors[0], mode=_mode(mode), source=source, temperature=temperature)

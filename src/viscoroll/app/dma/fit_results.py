@@ -161,8 +161,8 @@ class SeriesFit(Result):
 
         Parameters
         ----------
-        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any
-        temperature.
+        cylinder : one cylinder, or a series of cylinders, whose material or base is ``material()`` of this fit, at any
+            temperature.
         V : speed of the axis, m/s, any sign.
 
         Returns
@@ -186,7 +186,7 @@ class SeriesFit(Result):
         bodies = cylinder.pair.cylinder, cylinder.pair.half_space
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
-            raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
+            raise ParameterError("cylinder", "another", "one whose material or base is material() of this fit")
         speed = check_array("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
         seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
@@ -209,7 +209,7 @@ class SeriesFit(Result):
         x, *names = self.data._fields
         of_data = zip((*names, *(f"{name}_fit" for name in names)), (*self.data[1:], *self._moduli(self.data[0])))
         data: dict[str, Any] = {name: (x, values, {"units": "unit of the data"}) for name, values in of_data}
-        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
+        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths divided by the long-time modulus"})}
         data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
         about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series", "modulus": self.mode}
         misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]
@@ -227,7 +227,10 @@ class SeriesFit(Result):
 class Fit(SeriesFit):
     """A Prony series fitted to a master curve, with its misfit and the consistency of the data.
 
-    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`; of shear E, storage and loss are G, G' and G''.
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of :class:`viscoroll.app.dma.fit_results.SeriesFit`; in shear E, storage and loss are G, G' and G''.
     misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
     kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
         ``.ratio``, ``.median``.
@@ -279,7 +282,10 @@ class Fit(SeriesFit):
 class RelaxationFit(SeriesFit):
     """A Prony series fitted to a relaxation modulus: the result of :func:`fit_relaxation`.
 
-    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`.
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     misfit : root mean square of the relative errors.
     t : times of the data, ascending, s.
     relaxation : relaxation modulus of the data, in the unit given.

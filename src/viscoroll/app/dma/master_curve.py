@@ -109,11 +109,16 @@ def master_curve(
         factor = np.exp(logs - np.interp(base, temperatures, logs))
     if shift is not None and factor[-1] > factor[0]:
         ends = f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at {temperatures[-1]:g} C"
-        allowed = "a_T, times over those at the reference, which fall as it gets warmer, in the order of the curves"
+        allowed = (
+            "shift factors a_T (time divided by time at the reference), which decrease with "
+            "temperature, in the order of the curves"
+        )
         raise ParameterError("shift", ends, allowed)
     shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(point_temperatures).size)
     if open_shifts := undetermined_shifts(shifts):
-        text = f"overlap does not fix the shift {'; '.join(open_shifts)}: curves on a plateau; give shift="
+        text = (
+            f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the curves are flat: give shift="
+        )
         warnings.warn(text + (', or try on="storage"' if on == "both" else ""), ModelWarning, stacklevel=caller_level())
     return curve_of(whole[0] * factor[sets.of_point], whole[1], whole[2]), shifts
 
@@ -142,7 +147,7 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
     found = [_align(*pair) for pair in pairwise(curves)]
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
         if not alignment.mismatch <= _LARGEST_MISMATCH:
-            allowed = "those of neighbouring curves that overlap when shifted"
+            allowed = "moduli of neighbouring curves that overlap after the shift"
             raise ParameterError("temperature", "{:g} and {:g}".format(*pair), allowed)
     steps, mismatch, freedom = np.reshape(found, (-1, 3)).T
     return np.append(0.0, np.cumsum(steps)), mismatch, freedom

@@ -43,7 +43,7 @@ def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Num
     if pair[1] == "modulus":  # a difference of squares
         other = exact["loss" if pair[0] == "storage" else "storage"]
         rounding = rounding * (exact["modulus"] / other) ** 2
-        table.require(rounding <= _ROUNDED, f"{both} leave the other modulus open: give tan delta too")
+        table.require(rounding <= _ROUNDED, f"{both} do not determine the other modulus: give tan delta too")
     for name in columns.keys() - set(pair):
         values, half = columns[name]
         agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half

@@ -83,7 +83,7 @@ def read_dma(
     if table.without_headings and not named:
         if len(table.headings) != 3:
             count = len(table.headings)
-            problem = f"has {count} columns, and no heading that names frequency, storage and loss modulus"
+            problem = f"has {count} columns, and no headings for frequency, storage and loss modulus"
             raise FileError(path, f"{problem}: give columns=")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
     found, others = columns_of(table, named, overruling, defaults)
@@ -99,9 +99,9 @@ def read_dma(
     temperature = numbers.get("temperature")
     if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
         temperature = None
-        others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
+        others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies belong to one temperature"
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
-    table.require(omega > 0.0, "the frequency is not > 0: leave out its row")
+    table.require(omega > 0.0, "the frequency is not > 0: remove the row")
     moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
     storage, loss = storage_and_loss(table, pair, moduli)
     taken = [alike[0] for alike in columns_of_quantity.values()]
@@ -114,7 +114,7 @@ def read_dma(
     notes += [f"{name} agrees with them" for name in moduli if name not in pair]
     notes += [f"{column.heading!r} is log10" for column in taken if column.log]
     listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
-    notes += [f"left aside: {listed}"] * bool(others)
+    notes += [f"unused: {listed}"] * bool(others)
     _warn_of_assumed_units(table, taken)
     record = DynamicModuli(
         omega, storage, loss, temperature and temperature.values, mode, Path(path).name,
@@ -154,7 +154,7 @@ def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
         try:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
-            raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is none of {name}") from error
+            raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is not a unit of {name}") from error
     return (pairs, {}) if by_name else ({}, pairs)
 
 
@@ -179,7 +179,7 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
     quantities = {column.quantity for column in found}
-    missing = "frequency" + ": a sweep of temperature is none of frequency" * ("temperature" in quantities)
+    missing = "frequency" + ": this is a sweep of temperature, not of frequency" * ("temperature" in quantities)
     if quantities & {"frequency", "reduced frequency"}:
         missing = "two of storage, loss, tan delta and modulus"
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
@@ -198,7 +198,7 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
                     return _Choice(mode, pair, columns)
     problems = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
     headings = ", ".join(map(repr, filter(None, table.headings)))
-    raise FileError(table.path, f"no column is named {missing}{problems}; headings: {headings}; give columns=")
+    raise FileError(table.path, f"no column was found for {missing}{problems}; headings: {headings}; give columns=")
 
 
 def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
@@ -249,15 +249,17 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     """
     omega, n = record.omega, record.omega.size
     if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():
-        problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is no frequency sweep"
+        problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a frequency sweep"
         raise FileError(table.path, problem)
     if record.temperature is None and table.parts > 1:
-        raise FileError(table.path, f"has {table.parts} tables, and no column has their temperature: keep one of them")
+        raise FileError(
+            table.path, f"has {table.parts} tables, and no column states their temperature: keep one of them"
+        )
     if record.isothermal:
         order = np.argsort(omega, kind="stable")
         same = np.diff(omega[order]) <= _ONE_FREQUENCY * omega[order][1:]
         repeats = np.abs(np.diff(np.log(np.abs(record.storage[order])))) <= np.log(_REPEATED)
         holds = np.ones(n, bool)
         holds[order[1:]] = repeats | ~same
-        problem = "the same frequency has another modulus in a row before"
-        table.require(holds, f"{problem}: rows of several temperatures or strains need a column of temperature")
+        problem = "an earlier row has the same frequency and another modulus"
+        table.require(holds, f"{problem}: rows at several temperatures or strains need a column of temperature")

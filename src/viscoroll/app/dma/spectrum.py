@@ -43,7 +43,7 @@ class Spectrum(NamedTuple):
 def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
     """Return the spectrum of a series.
 
-    prony : strengths over the long-time modulus, times over T_ref.
+    prony : strengths divided by the long-time modulus, times over T_ref.
     E : long-time modulus.
     T_ref : time that those of the series are counted in, s.
     """

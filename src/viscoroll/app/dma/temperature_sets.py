@@ -45,17 +45,19 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         sizes, *others = ([np.size(curve) for curve in column] for column in columns)
         if others != [sizes, sizes] or given.shape != (len(sizes),):
-            raise ParameterError("temperature", f"of shape {given.shape}", f"one a curve, here {len(sizes)} curves")
+            raise ParameterError(
+                "temperature", f"of shape {given.shape}", f"one for each curve, here {len(sizes)} curves"
+            )
         first = np.cumsum([0, *sizes[:-1]])
         return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
     flat = [np.asarray(column) for column in columns]
     if given.ndim == 0:
         given = np.full(flat[0].shape, float(given))
     if given.ndim != 1:
-        raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one a curve")
+        raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one for each curve")
     for name, column in zip(Curve._fields, flat, strict=True):
         if column.shape != given.shape:
-            raise ParameterError(name, f"of shape {column.shape}", f"one a temperature, of shape {given.shape}")
+            raise ParameterError(name, f"of shape {column.shape}", f"one for each temperature, of shape {given.shape}")
     return given, flat, None
 
 
@@ -125,12 +127,12 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     if not (factors > 0.0).all():
         raise ParameterError("shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms")
     if factors.shape != sets.of_curve.shape:
-        allowed = f"a factor each of {sets.of_curve.size} temperatures, in the order of the curves"
+        allowed = f"one factor for each of {sets.of_curve.size} temperatures, in the order of the curves"
         raise ParameterError("shift", f"of shape {factors.shape}", allowed)
     found = np.empty(temperatures.size)
     found[sets.of_curve] = factors
     if (found[sets.of_curve] != factors).any():
-        raise ParameterError("shift", "several factors at one temperature", "one factor a temperature")
+        raise ParameterError("shift", "several factors for one temperature", "one factor a temperature")
     if base is None:
         base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
     index = nearest(base, temperatures, "reference")

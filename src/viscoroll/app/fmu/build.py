@@ -134,7 +134,9 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
         values |= {"mass": given.m, "inertia": given.j}
     for name, value in values.items():
         if np.ndim(value):
-            raise ParameterError(name, f"an array of shape {np.shape(value)}", "one number: an FMU is of one cylinder")
+            raise ParameterError(
+                name, f"an array of shape {np.shape(value)}", "one number: an FMU contains one cylinder"
+            )
     return {v.name: float(values.get(v.name, v.start)) for v in variables if v.start is not None}
 
 

@@ -204,7 +204,9 @@ class Identification(Result):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
         for name, (_, span) in record.initial_values(self.cylinder.R).items():
             if span is not None:
-                raise ParameterError(name, None, "a number", f"{name} of the record is open: a prediction needs it")
+                raise ParameterError(
+                    name, None, "a number", f"{name} of the record is not given: a prediction needs it"
+                )
         return self._predict(
             record, "", level, check_integer("draws", draws, 0, _DRAWS), check_integer("seed", seed, 0)
         )

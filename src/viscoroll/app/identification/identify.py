@@ -102,7 +102,7 @@ def identify(
     problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
-        allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
+        allowed = f"at most {most} for {problem.points} points: measure more points, give sigma, or reduce the unknowns"
         raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
     planned = not any(record.measured for record in records.values())
     return Identification(
@@ -125,10 +125,12 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
         if name in found:
             raise ParameterError("name", repr(name), "another for each record")
         if not record.sigma:
-            raise ParameterError(f"{name}: sigma", None, "given where there are no values")
+            raise ParameterError(f"{name}: sigma", None, "given for a record without values")
         found[name] = record
     if len({bool(record.measured) for record in found.values()}) != 1:
-        allowed = "some with values, or some without: fit the former first, then plan with its cylinder"
+        allowed = (
+            "all with values or all without: fit the records with values first, then plan with the fitted cylinder"
+        )
         raise ParameterError("data", f"{len(found)} records", allowed)
     return found
 

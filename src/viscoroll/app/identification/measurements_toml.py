@@ -118,7 +118,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
         raise FileError(path, f"{problem}; a plan has no other columns")
     if others:
-        text = f"{path.name}: columns that are left aside: {', '.join(others)}"
+        text = f"{path.name}: unused columns: {', '.join(others)}"
         warnings.warn(text, ModelWarning, stacklevel=caller_level())
     found = {}
     for name in present:

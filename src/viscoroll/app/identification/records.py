@@ -105,7 +105,7 @@ class Record:
         among, given = self.measured or self.QUANTITIES, {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
             if len(self.measured) > 1:
-                allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
+                allowed = f"one for each quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
                 raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
         check_names(self.label("sigma"), given, among, "a quantity of it")
@@ -296,7 +296,7 @@ class Coastdown(Record):
             some = slice(0, max(3, np.size(self.t) // 10))
             data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
         if data is None:
-            raise ParameterError(self.label(name), None, "a number: the data do not show it")
+            raise ParameterError(self.label(name), None, "a number: the data do not determine it")
         first, most = float(data[0]), float(np.max(np.abs(data)))
         return first, (first - most, first + most)
 

@@ -41,7 +41,7 @@ def _heading(fit: Any) -> str:
     problem = fit._problem
     head = f"{len(fit.values)} unknowns, {problem.y.size} points"
     if fit.planned:
-        return f"{head}, planned: what to expect if the cylinder is the truth"
+        return f"{head}, planned: expected standard deviations, if the cylinder has the true values"
     if estimated := [f"{column} {fit.sigma[str(column)][0]:.3g}" for column in problem.columns if column.estimated]:
         return f"{head}; standard deviation estimated: {', '.join(estimated)}"
     chance = "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
@@ -54,22 +54,23 @@ def _noise(fit: Any) -> Iterator[str]:
         rms, lag, allowed, _ = fit.noise[name]
         size = f"{rms:.2f} sigma" + " by their median" * fit._problem.robust
         yield (
-            f"residuals of {name} are no noise (lag-1 correlation {lag:.2f}, noise allows {allowed:.2f}; rms {size}): "
-            "the model misses something, and intervals mean nothing"
+            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most {allowed:.2f} "
+            f"for noise; rms {size}): "
+            "the model is inadequate, and the intervals are meaningless"
         )
 
 
 def _limits(fit: Any) -> Iterator[str]:
     """Yield sentences on what the data of a ``fit`` do not determine."""
-    yield from (f"{name} does not act on these data" for name in fit.does_not_act)
+    yield from (f"the data do not depend on {name}" for name in fit.does_not_act)
     *names, last = fit.undetermined or ("",)
     if names:
-        yield f"{', '.join(names)} and {last} cannot be told apart by these data: {_products(fit.products())}"
+        yield f"{', '.join(names)} and {last} cannot be separated by these data: {_products(fit.products())}"
     elif last:
         yield f"{last} is not determined by these data"
     yield from _interval_limits(fit)
     for chi2, values in fit.minima[1:]:
-        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_values_text(values)}"
+        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} higher: {_values_text(values)}"
     yield from _phases(fit)
     loose, names = {*fit.does_not_act, *fit.undetermined}, list(fit.values)
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
@@ -87,9 +88,9 @@ def _products(found: list[Any]) -> str:
         for by_slopes in (False, True)
     )
     if not found:
-        return "no product of their powers is determined"
+        return "the data determine no product of their powers"
     text = f"only {sure or near} {'are' if ' and ' in (sure or near) else 'is'} determined"
-    more = f"; near these values alone, more sharply, {near}" if sure else ", near these values"
+    more = f"; near these values also {near}, more precisely" if sure else ", near these values"
     return text + more * bool(near)
 
 
@@ -112,17 +113,17 @@ def _interval_limits(fit: Any) -> Iterator[str]:
         name = problem.names[i]
         for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by, strict=True):
             if end is None:
-                yield f"{name} is open on its {side} side: chi2 has not risen enough at the end of its range"
+                yield f"the interval of {name} has no {side} end: chi2 does not rise enough within the range"
             for bound in bounds:
                 limited.setdefault(bound, []).append(f"the {side} end of {name}")
         if found.pieces:
-            yield f"the interval of {name} joins branches of the fit: one value within it may fit worse than its ends"
+            yield f"the interval of {name} contains several branches of the fit: values inside may fit worse than ends"
         if found.best.chi2 < fit.chi2 - _BETTER:
             listed = _values_text(problem.values(found.best.u))
-            yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
+            yield f"a better fit was found, chi2 {found.best.chi2:.1f}, at {listed}: start there, or use more starts"
     for i in problem.at_bounds(fit._likelihood.best.u):
         yield f"the best fit has {problem.names[i]} at the end of its range"
-    yield from (f"the range of {bound}, not the data, makes {', '.join(ends)}" for bound, ends in limited.items())
+    yield from (f"the range of {bound}, not the data, determines {', '.join(ends)}" for bound, ends in limited.items())
 
 
 def _values_text(values: dict[str, float]) -> str:
@@ -135,7 +136,8 @@ def _phases(fit: Any) -> Iterator[str]:
     for record_name, record in fit.records.items() if "mu" in fit.values else ():
         slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, record_name).get("slips", 0)))
         if 0 < slips < _FEW:
-            yield f"{record_name} has {slips} points while it slips: mu rests on these; record that phase more densely"
+            found = f"{record_name} has only {slips} points in full slip, which determine mu"
+            yield f"{found}: record that phase more densely"
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
@@ -148,8 +150,8 @@ def as_dataset(fit: Any) -> xr.Dataset:
     names, ends = np.array(list(fit.values), object), np.array(list(fit.intervals().values()), float)
     data: dict[str, Any] = {
         "value": ("unknown", list(fit.values.values())), "stderr": ("unknown", list(fit.stderr.values())),
-        "low": ("unknown", ends[:, 0], {"long_name": "lower end of the 95 % interval, NaN where open"}),
-        "high": ("unknown", ends[:, 1], {"long_name": "upper end of the 95 % interval, NaN where open"}),
+        "low": ("unknown", ends[:, 0], {"long_name": "lower end of the 95 % interval, NaN if unbounded"}),
+        "high": ("unknown", ends[:, 1], {"long_name": "upper end of the 95 % interval, NaN if unbounded"}),
         "correlation": (("unknown", "other"), fit.correlations),
     }  # fmt: skip
     for record_name, record in fit.records.items():

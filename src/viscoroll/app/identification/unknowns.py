@@ -119,7 +119,9 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     """
     low, high = _pair("unknown", name, span)
     if not low <= start <= high:
-        raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", f"a range that holds the start, {start:.6g}")
+        raise ParameterError(
+            f"unknown {name}", f"({low:g}, {high:g})", f"a range that contains the initial guess, {start:.6g}"
+        )
     linear = name.split(":")[0] in _LINEAR
     unknown = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
     if prior is None:

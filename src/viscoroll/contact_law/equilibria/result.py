@@ -85,15 +85,15 @@ class Diagnosis(NamedTuple):
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 beyond = f"{at} any omega beyond the stick limit is steady"
-                return f"a continuum: Q = {Q:.6g} is all of the friction, and {beyond}"
-            return f"Q = {Q:.6g} is needed {at}, beyond the friction mu = {mu:.6g}"
+                return f"no isolated steady speed: Q = {Q:.6g} equals the friction limit, and {beyond}"
+            return f"Q = {Q:.6g} is needed {at}, which exceeds the friction mu = {mu:.6g}"
         if self.elastic:
             if at_rest == 0.0:
-                return "a continuum: elastic bodies roll without resistance, so that any V is steady"
+                return "no isolated steady speed: elastic bodies roll without resistance, so every V is steady"
             return f"{name} = {total:.6g}{of_load} is not 0, and elastic bodies roll without resistance"
         M, V = (value / kappa for value in self.maximum)
         if np.isnan(M):
-            return f"{name} with its feedback, {total:.6g}{of_load} at rest, meets the rolling moment at no speed"
+            return f"{name} with its feedback, {total:.6g}{of_load} at rest, balances the rolling moment at no speed"
         return (
             f"{name} = {total:.6g}{of_load} exceeds the largest {moment} {M * load:.6g}{of_load}"
             f" (at V = {V * speed:.6g}{of_speed})"

@@ -100,8 +100,8 @@ def steady(
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
     elif loads.gains.omega and law.cover is not None:
-        allowed = "a feedback on V alone: with one on omega equilibria on covers are not searched for"
-        raise ParameterError("omega", "fed back", allowed)
+        allowed = "a feedback on V only: for covers, steady speeds with a feedback on omega are not computed"
+        raise ParameterError("omega", "in the feedback", allowed)
     elif loads.gains.omega:
         rolling = scan_states(law, loads)
     else:
@@ -141,7 +141,7 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():
-        allowed = f"0, or of a size in [{LEAST_LOAD:g}, {MOST_LOAD:g}]"
+        allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()

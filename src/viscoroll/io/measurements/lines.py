@@ -53,7 +53,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error})") from error
     if raw.startswith(_WORKBOOKS):
-        raise FileError(path, "is a workbook or an archive, no text: save its sheet as CSV")
+        raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
     shown = next((name for first, name in _ENCODINGS.items() if re.match(first, raw)), None)
     given = encoding or shown
     for name in (given,) if given else _USUAL:
@@ -65,7 +65,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
             problem = f"cannot be read in {name} ({error})"
             continue
         if "\0" in text:
-            raise FileError(path, "is no text: it has null bytes")
+            raise FileError(path, "is not a text file: it has null bytes")
         first, *others = re.split(r"\r\n|\r|\n", text)
         return ["" if re.fullmatch(r"(?i)sep=.\s*", first) else first, *others]  # Excel's own line on the separator
     raise FileError(path, problem)

@@ -74,14 +74,15 @@ def fault_of(cell: str, decimal: str) -> str:
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     """
     if _GAP.fullmatch(cell):
-        return "is a gap: leave out its row"
+        return "is missing: remove its row"
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
         return ""
     if _THOUSANDS.fullmatch(cell) or not decimal:
         return (
-            "may have a separator of thousands, as both marks occur or all have three digits: write decimal marks only"
+            "may contain a separator of thousands, since both marks occur or all groups have three digits: "
+            "write only decimal marks"
         )
-    return f"is no number with a decimal {'comma' if decimal == ',' else 'point'}"
+    return f"is not a number with a decimal {'comma' if decimal == ',' else 'point'}"
 
 
 def numbers_of(cells: list[str]) -> Numbers:

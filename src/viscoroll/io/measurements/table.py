@@ -113,7 +113,9 @@ def read_table(
     names, units, (first, *_) = parts[0]
     if any(part[:2] != (names, units) for part in parts):
         starts = ", ".join(str(rows[0].number) for *_, rows in parts)
-        raise FileError(path, f"has {len(parts)} tables with unlike headings (from lines {starts}): keep one of them")
+        raise FileError(
+            path, f"has {len(parts)} tables with different headings (from lines {starts}): keep one of them"
+        )
     rows = [row for *_, rows in parts for row in rows]
     mark = decimal or decimal_mark([cell for row in rows for cell in row.cells], "," if separator == "," else "")
     return Table(path, names, units, rows, len(parts), lines[heads[0]].number == first.number, mark)
@@ -166,7 +168,7 @@ class _Layout:
         if heads:
             for line in lines[: heads[0]]:
                 if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
-                    raise self.fault(line, "has numbers above the headings, keep one table of the file")
+                    raise self.fault(line, "has numbers above the headings: keep one table of the file")
             return heads
         first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
         above = [n for n, line in enumerate(lines[:first]) if not (line.comment or line.numeric)]
@@ -174,7 +176,7 @@ class _Layout:
             return above[-1:]
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
-                raise self.fault(line, f"names columns, but is not {self.cut} into {width} as the rows")
+                raise self.fault(line, f"contains column names, but is not {self.cut} into {width} as the rows")
         names = [f"column {n}" for n in range(width)]
         lines[:first] = [Line(lines[first].number, str(names), names, False, False)]
         return [0]
@@ -195,7 +197,7 @@ class _Layout:
             rows.pop()
         for row in rows:
             if not row.numeric:
-                raise self.fault(row, "is no row of numbers, remove it or begin it with #")
+                raise self.fault(row, "is not a row of numbers: remove it or begin it with #")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 problem = f"has {len(row.cells)} columns, but line {line.number} has {len(names)}, {self.cut}"
                 raise self.fault(row, problem)

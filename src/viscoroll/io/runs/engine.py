@@ -108,8 +108,8 @@ def run_ensemble(
                     evaluated += 1
                     advance(motions)
             except KeyboardInterrupt:
-                kept = f"{evaluated} of {run.blocks} blocks were made and are kept in {path}"
-                raise Interrupted(f"interrupted: {kept}; the same call goes on") from None
+                kept = f"{evaluated} of {run.blocks} blocks are complete and are kept in {path}"
+                raise Interrupted(f"interrupted: {kept}; the same call resumes the run") from None
             store.finish()
     return evaluated
 
@@ -181,7 +181,9 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
         raise
     except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
         text = " ".join((str(error) or type(error).__name__).split())
-        raise FileError(cluster, f"the cluster went away ({text:.200}): the same command goes on") from error
+        raise FileError(
+            cluster, f"the connection to the cluster was lost ({text:.200}): the same command resumes the run"
+        ) from error
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:

@@ -82,7 +82,7 @@ class RunResults(Result):
         import xarray as xr
 
         if not self._motions_folder.is_dir():
-            raise FileError(self.path, 'holds no motions, summaries alone: run it with keep = "all"')
+            raise FileError(self.path, 'contains summaries but no motions: run it with keep = "all"')
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
     def to_xarray(self) -> xr.Dataset:
@@ -175,5 +175,5 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     root = Path(path)
     start = start_of(root)
     if faults := problems(root, "end", start.run, start.motions):
-        raise FileError(path, f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
+        raise FileError(path, f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command repairs it")
     return RunResults(root, xr.open_zarr(root, chunks=None))

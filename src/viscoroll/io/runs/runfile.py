@@ -336,7 +336,7 @@ def _begin_motions(run: Run, values: dict[str, Any]) -> None:
     roller = roller_of(run.path, content)
     for name in ("unsteady", "rested"):
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
-            raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
+            raise ParameterError(name, str(getattr(settings, name)).lower(), "left out if T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
     options = SolverOptions(settings.rtol, settings.rest, 1, None, settings.unsteady, settings.rested)
     drive = Drive(**drive_of(content))

@@ -115,7 +115,7 @@ class Store:
             return
         others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
         if others:
-            raise FileError(root, f"is no results store, it holds {', '.join(others[:3])}: {ADVICE}")
+            raise FileError(root, f"is not a results store, it contains {', '.join(others[:3])}: {ADVICE}")
 
     def missing(self) -> Iterator[int]:
         """Yield the blocks that are missing or damaged; the records of all blocks and all their files are read."""
@@ -155,7 +155,7 @@ class Store:
         for block in range(self.run.blocks):
             record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
-                raise FileError(self.root, f"block {block} was damaged meanwhile: the same command goes on")
+                raise FileError(self.root, f"block {block} was damaged during the run: the same command repairs it")
             yield record.summary
 
 

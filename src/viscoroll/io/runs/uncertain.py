@@ -107,10 +107,12 @@ class _Reader:
         low, high = (float(end) for end in law.support())
         cut = table.get("truncate", [-math.inf, math.inf])
         if not (isinstance(cut, list) and len(cut) == 2 and all(_is_number(end) and end == end for end in cut)):
-            raise self.fault(number, f"truncate = {cut!r:.40}: must be [low, high]; inf and -inf leave an end")
+            raise self.fault(
+                number, f"truncate = {cut!r:.40}: must be [low, high]; inf or -inf for an end without limit"
+            )
         low, high = max(low, float(cut[0])), min(high, float(cut[1]))
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
-            raise self.fault(number, f"truncate = {cut!r:.40}: nothing of the distribution is left")
+            raise self.fault(number, f"truncate = {cut!r:.40}: this interval has zero probability")
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
@@ -126,7 +128,7 @@ class _Reader:
             near = suggestion(
                 str(name), [key for key, value in vars(stats).items() if isinstance(value, stats.rv_continuous)]
             )
-            raise self.fault(number, f"distribution {name!r:.40} is no continuous one of scipy.stats{near}")
+            raise self.fault(number, f"distribution {name!r:.40} is not a continuous distribution of scipy.stats{near}")
         shapes = law.shapes.split(", ") if law.shapes else []
         keys = ("distribution", *shapes, "loc", "scale", "truncate")
         check_keys(self.path, f"{number.section}.{number.key}", table, keys)
@@ -160,7 +162,7 @@ class _Reader:
             raise self.fault(number, f"{where} cannot be read ({text:.200})") from error
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
         if columns and next(iter(columns.values())).size != values.size:
-            raise self.fault(number, f"{where}: other columns have another length")
+            raise self.fault(number, f"{where}: its length differs from that of the other columns")
         columns[number.name] = values
 
 
@@ -190,7 +192,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     else:
         raise ValueError("a sample must be .csv, .nc or .parquet")
     if values.ndim != 1 or values.size == 0 or values.dtype.kind not in "iuf" or not np.isfinite(values).all():
-        raise ValueError("it must hold finite numbers, one a row")
+        raise ValueError("it must contain finite numbers, one in each row")
     return np.ascontiguousarray(values, np.float64)
 
 
@@ -228,6 +230,9 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
         mixing: Any = np.linalg.cholesky(matrix) if names else None
     except np.linalg.LinAlgError:
         raise section_error(
-            path, "", "correlation", "[correlation] no joint distribution has these correlations"
+            path,
+            "",
+            "correlation",
+            "[correlation] these correlations contradict each other: their matrix must be positive definite",
         ) from None
     return replace(inputs, correlated=names, mixing=mixing)

@@ -37,11 +37,11 @@ class Verdict:
         """Return the verdict in words: one line if all is well, else a line for each damaged part, and the remedy."""
         if self.ok:
             blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
-            return f"complete: {blocks} and the summaries have the SHA-256 that they were written with"
+            return f"complete: {blocks} and the summaries match their SHA-256"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
-        lines += [f"{len(self.missing)} of {self.blocks} blocks are not there or not whole"] * bool(self.missing)
-        lines += ["the summaries are not there or not whole"] * (not self.finished)
-        return "\n".join([*lines, "the same `viscoroll ensemble` command puts it right"])
+        lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"] * bool(self.missing)
+        lines += ["the summaries are missing or incomplete"] * (not self.finished)
+        return "\n".join([*lines, "the same `viscoroll ensemble` command repairs it"])
 
 
 def verify(path: str | PathLike[str]) -> Verdict:
@@ -89,9 +89,11 @@ def start_of(path: str | PathLike[str]) -> Record:
     path: folder of the store.
     """
     if not Path(path).is_dir():
-        raise FileError(path, "is no results store: there is no such folder")
+        raise FileError(path, "is not a results store: the folder does not exist")
     refuse_unreadable(Path(path))
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
-        raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
+        raise FileError(
+            path, "is not a results store, or its record `start` is damaged: run the command that wrote it again"
+        )
     return start

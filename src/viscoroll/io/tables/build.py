@@ -95,7 +95,7 @@ def build(
     axes = {"V": increasing("V", V, unit=what.scale, above=0.0), "delta": increasing("delta", delta)}
     if alpha is not None:
         if isinstance(what, Cylinder) or what.material is not None:
-            raise ParameterError("alpha", "given", "left out: the material has its own")
+            raise ParameterError("alpha", "given", "left out: a material determines alpha")
         axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
     if math.prod(nodes.size for nodes in axes.values()) > MAX_NODES:
         raise ParameterError(", ".join(axes), "their product", f"at most {MAX_NODES} nodes in all")

@@ -123,7 +123,7 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
-        raise FileError(source, "is no grid of a scene with an alpha, and states its errors by itself")
+        raise FileError(source, "is not a grid of a scene with an alpha: only such grids can be compared with the law")
     scene = Scene(alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"])
     nodes = differences(table, scene)
     splines = errors_at(table, scene, random_points(table, count, seed))

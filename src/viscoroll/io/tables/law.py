@@ -74,7 +74,7 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     table: LawTable | alpha_axis.LawAxis
     if alpha is not None:
         if base is not None or np.shape(alpha) != (2,):
-            raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
+            raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest value, for example (1, 4096)")
         table = alpha_axis.law_axis(*alpha)
     elif isinstance(material, Cylinder):
         pair = material.pair

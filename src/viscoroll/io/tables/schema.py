@@ -106,7 +106,7 @@ def check(table: Any, path: Any) -> None:
     """
     about = getattr(table, "attrs", {})
     if about.get(KIND) not in KINDS:
-        raise FileError(path, f"is no table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
+        raise FileError(path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
     version, major = about.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
         problem = f"is a table of schema {version!s:.20}, and this viscoroll ({__version__}) reads {major}.x"
@@ -114,9 +114,11 @@ def check(table: Any, path: Any) -> None:
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
-            raise FileError(path, f"is no whole table: variable {name!r} is missing")
+            raise FileError(path, f"is an incomplete table: variable {name!r} is missing")
         if tuple(dim for dim in axes if dim in table[name].dims) != table[name].dims:
-            raise FileError(path, f"variable {name!r} has dimensions {table[name].dims}, out of {axes} in this order")
+            raise FileError(
+                path, f"variable {name!r} has the dimensions {table[name].dims}, out of {axes} in this order"
+            )
         values = table[name].values
         if values.dtype != np.float64 or not np.isfinite(values).all():
             raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")

@@ -118,7 +118,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     try:
         return _law_of(_in_si(table))
     except (KeyError, ValueError) as error:  # of a variable that is missing, and of scipy
-        raise FileError(path, f"is no grid of a law: {' '.join(str(error).split()):.120}") from error
+        raise FileError(path, f"is not a grid of a law: {' '.join(str(error).split()):.120}") from error
 
 
 def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:

@@ -82,7 +82,7 @@ def _title(table: LawTable) -> str:
     if table.pair is None:
         return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
     bodies = (table.pair.cylinder, table.pair.base)
-    return " on ".join(body.name or "a material without a name" for body in bodies if body is not None)
+    return " on ".join(body.name or "material without a name" for body in bodies if body is not None)
 
 
 def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
@@ -144,7 +144,9 @@ def parse_law(content: Content, path: Any) -> LawTable:
     numbers, attributes = content
     kind = attributes[KIND]
     if kind == AXIS:
-        raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
+        raise FileError(
+            path, "is the law of every alpha: for one alpha use vr.tables.law(vr.load_law(path, alpha=11.0))"
+        )
     with _refuse_incomplete(path):
         given, pair = _parse_bodies(attributes["material"], path)
         coefficients, e0 = _coefficients(content), int(numbers["e0"])
@@ -184,7 +186,7 @@ def _refuse_incomplete(path: Any) -> Iterator[None]:
         yield
     except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
         text = " ".join(str(error).split())
-        raise FileError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
+        raise FileError(path, f"is an incomplete law file ({text:.200}): {REMEDY}") from error
 
 
 def bodies_as_toml(given: Any) -> str:
