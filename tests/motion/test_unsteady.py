@@ -88,7 +88,7 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
         slower = vr.roll(scene, 0.9 * m.V[-2], 0.9 * m.V[-2], T, unsteady=True)
     assert (slower.status, *slower.regime[:2]) == (vr.MotionStatus.UNSTEADY, 1, -1)
-    assert f"it stood at t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
+    assert f"the last state was t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
 
 
 def test_it_ends_there_at_any_tolerance():

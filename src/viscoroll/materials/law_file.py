@@ -64,7 +64,7 @@ _ROW = (
     "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
     "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. "
 )
-_E0 = (), "row 0 holds [0, 2^e0)"
+_E0 = (), "row 0 covers [0, 2^e0)"
 _LAW = Kind(
     "The contact law of one material or pair as polynomials, one for each octave of speed: ",
     {
@@ -279,7 +279,7 @@ def check_law(content: Content, path: Any) -> None:
         raise FileError(path, "is not a law file of viscoroll: `viscoroll tables law` writes one")
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
-        problem = f"is a law file of schema {schema!s:.20}, and this viscoroll ({__version__}) reads {VERSION}"
+        problem = f"has the law schema {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
         raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
     missing = [name for name in (*KINDS[kind].functions, *KINDS[kind].others) if name not in numbers]
     if missing:

@@ -230,7 +230,7 @@ class Fit(SeriesFit):
     Attributes
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
-        as of :class:`viscoroll.app.dma.fit_results.SeriesFit`; in shear E, storage and loss are G, G' and G''.
+        as of ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
     misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
     kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
         ``.ratio``, ``.median``.
@@ -285,7 +285,7 @@ class RelaxationFit(SeriesFit):
     Attributes
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
-        as of :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+        as of ``SeriesFit``, the base class.
     misfit : root mean square of the relative errors.
     t : times of the data, ascending, s.
     relaxation : relaxation modulus of the data, in the unit given.

@@ -118,4 +118,4 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(path, f"cannot be made a folder ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be created as a folder ({error.strerror or error})") from error

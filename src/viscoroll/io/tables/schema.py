@@ -109,7 +109,7 @@ def check(table: Any, path: Any) -> None:
         raise FileError(path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
     version, major = about.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
-        problem = f"is a table of schema {version!s:.20}, and this viscoroll ({__version__}) reads {major}.x"
+        problem = f"has the table schema {version!s:.20}, but viscoroll {__version__} reads {major}.x"
         raise FileError(path, f"{problem}: build it again, or install the version that wrote it")
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):

@@ -91,7 +91,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     Parameters
     ----------
     path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
-        delta, of ``viscoroll tables build`` or of another program (:func:`viscoroll.materials.law.grid.load_grid`).
+        delta, of ``viscoroll tables build`` or of another program (``viscoroll.materials.law.grid.load_grid``).
     alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
         T_epsilon for the unit of time.
 
