@@ -163,7 +163,7 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
     for call, words in (
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
         (partial(run_ensemble, run, thesis), "not a results store, it contains chapter.tex"),
-        (partial(verify, thesis), "no results store"),
+        (partial(verify, thesis), "is not a results store"),
     ):
         refused(call, words, error=vr.FileError)
     assert [path.name for path in thesis.iterdir()] == ["chapter.tex"]
@@ -214,7 +214,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
 @pytest.mark.parametrize(
     ("before", "now", "words"),
     [
-        ("", "n = 300", "holds 350 motions of this run file, and n must not be reduced: set n >= 350"),
+        ("", "n = 300", "contains 350 motions of this run file, and n must not be reduced: set n >= 350"),
         ('design = "latin"', "n = 1200", "a Latin hypercube, whose strata depend on n: keep n = 350"),
         ('design = "sobol"', "n = 1200", "which is balanced only for a power of two: set n = 2048"),
         ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
