@@ -38,7 +38,7 @@ def test_the_page_states_what_is_kept():
     """And what is kept is what is computed; validity takes the least of the limits, rounded down."""
     rows = json.loads(layer.TARGET.read_text())["rows"]
     assert [row["nu"] for row in rows] == list(layer.RATIOS)
-    page = (DOCS / "validity.md").read_text()
+    page = (DOCS / "validity_covers.md").read_text()
     cells = [re.findall(r"[\d.]+", line) for line in re.findall(r"^\| \d\.\d+ \|(?: \d\.\d\d \|)+$", page, re.M)]
     stated = [list(map(float, line)) for line in cells if len(line) == 2 + len(layer.LENGTHS)]
     assert stated == [[row["nu"], *(round(v, 2) for v in (*row["shorter"].values(), row["limit"]))] for row in rows]
