@@ -338,6 +338,19 @@ def test_equilibria(cover):
     assert close(rest.delta, slow.delta, rel=tol.COVER_REST)
 
 
+@pytest.mark.parametrize("cover", COVERS)
+@pytest.mark.parametrize("force", [vr.Feedback(0.004), vr.Feedback(-0.01, omega=0.4)])
+def test_equilibria_with_a_feedback_on_omega(cover, force):
+    """Forces balance at what is found: where omega follows from V, and where the gains cancel in the sum."""
+    scene, torque = scene_on(cover), vr.Feedback(0.02, omega=-0.4)
+    s = vr.steady(scene, force=force, torque=torque)
+    assert s.V.size
+    c = vr.contact(scene, s.V, omega=s.omega)
+    pushed, turned = (each.value + (each.omega or 0.0) * s.omega for each in (force, torque))
+    assert close(c.Q - c.M_half_space + pushed, 0.0 * s.V, rel=tol.COVER_STEADY, scale=1.0)
+    assert close(turned - c.Q - c.M_cylinder, 0.0 * s.V, rel=tol.COVER_STEADY, scale=1.0)
+
+
 def test_a_thickness_in_SI_units():
     """A Material's thickness over l0 is that of the Cover; steel under it is nearly rigid; validity tells of it."""
     thin, rigid, steel = (
