@@ -73,7 +73,7 @@ def work(settings: Corners, out: Path) -> stage.Outcome:
     claims = {name: (name, allowed) for name, allowed in settings.allowed.items()}
     proof = Proof("corners", "", "", claims, lambda *_: chain(of_states(settings), of_motions(settings)))
     titles = {"quantity": "claim", "corners": "points", "worst": "worst", "allowed": "bound", "where": "where"}
-    rows = [{title: row[name] for title, name in titles.items()} for row in proof.rows(None, None)]
+    rows = [{title: row[name] for title, name in titles.items()} for row in proof.rows(0, None)]
     stage.write_rows(out / "corners.csv", rows)
     headline = {f"{row['quantity']} (allowed {row['allowed']:g}), {row['where']}": row["worst"] for row in rows}
     return stage.Outcome([out / "corners.csv"], headline, any(row["worst"] > row["allowed"] for row in rows))

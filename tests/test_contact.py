@@ -208,7 +208,7 @@ def test_fields_asked_for_and_no_others():
     state = vr.contact(SCENE, 1.0, delta=0.01, fields=("Q", "M"))
     assert list(state.as_dict()) == ["Q", "M"]
     assert {"M", "Q", "plot"} < set(dir(state))
-    with pytest.raises(AttributeError, match="'beta' was not computed; this result holds Q, M"):
+    with pytest.raises(AttributeError, match="'beta' was not computed; this result contains Q, M"):
         _ = state.beta
     whole = vr.contact(SCENE, 1.0, delta=0.01).as_dict()
     assert {name: type(value) for name, value in whole.items()} == dict.fromkeys(FIELDS, float) | {"full_slip": bool}

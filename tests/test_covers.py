@@ -172,19 +172,19 @@ def test_motions_follow_the_contact():
 
 def test_a_thickness_each():
     """States and motions of many thicknesses are those of each: of a scene, and of cylinders by their load."""
-    cover = vr.Cover(THREE, nu=0.5, thickness=[0.3, 0.55, 1.9, 0.3], on="base")
-    scene, V = scene_on(cover), np.array([0.01, -0.5, 3.0, 0.2])
+    cover = vr.Cover(ONE, nu=0.5, thickness=[0.45, 0.55, 0.45])  # on either side of an octave
+    scene, V = scene_on(cover), np.array([0.01, -0.5, 3.0])
     found, motions = vr.contact(scene, V, delta=-2e-3, slopes=True), vr.ensemble(scene, V, 0.1, [1.0, 9.0], rtol=1e-10)
     for n, each in enumerate(cover):
         one = scene.replace(material=each)
         for name, value in vr.contact(one, V[n], delta=-2e-3, slopes=True).as_dict().items():
             assert close(found[name][n], value, rel=tol.COVER_EACH, what=name)
         assert close(motions.V[n], vr.roll(one, V[n], 0.1, [1.0, 9.0], rtol=1e-10).V, rel=tol.COVER_EACH_MOTION)
-    thin, load = dataclasses.replace(RUBBER, thickness=0.01), np.array([1e3, 2e3, 3e3])
+    thin, load = vr.Material(2e6, 0.5, ONE, 0.1, thickness=0.01), np.array([1.2e3, 1.7e3])
     rollers = vr.Cylinder(R=0.1, m=30.0, material=thin, base=vr.Material.rigid(), mu=0.5, load=load)
     M = [rollers.replace(load=each).contact(1.0, delta=0.0).M for each in load]
     assert close(rollers.contact(1.0, delta=0.0).M, M, rel=tol.COVER_EACH)
-    assert rollers.validity(1.0).thick.value.shape == (3,)
+    assert rollers.validity(1.0).thick.value.shape == (2,)
 
 
 def test_a_law_on_disk(tmp_path):

@@ -198,39 +198,61 @@ def test_a_grid_is_as_the_grid_written_out():
 # --- floating-point environment ---
 
 
-@pytest.fixture(scope="module")
-def modes(tmp_path_factory) -> dict[str, dict[str, np.ndarray]]:
-    """``everything`` in each mode, from one process that a host library has set so."""
-    if platform.machine() not in ("x86_64", "AMD64"):
-        pytest.skip("the register is that of x86")
-    compiler = shutil.which("cc")
-    if compiler is None:
-        pytest.skip("no C compiler to reach the register with")
-    folder = tmp_path_factory.mktemp("modes")
-    (folder / "register.c").write_text(REGISTER)
-    subprocess.run([compiler, "-shared", "-fPIC", "-o", folder / "register.so", folder / "register.c"], check=True)
-    code = f"""
-import ctypes, sys
-sys.path.insert(0, {str(Path(__file__).parent)!r})
+#: A program that takes a folder: children of a process that has used threads and kernels compute its bits; then, where
+#: the folder has a library that sets the register, ``everything`` in each mode is written there.
+ELSEWHERE = """
+import ctypes, multiprocessing, sys
+from pathlib import Path
+folder = Path(sys.argv[1])
+sys.path.insert(0, sys.argv[2])
 import numpy as np
 import test_invariance as test
-register = ctypes.CDLL({str(folder / "register.so")!r})
-usual = register.get()
-test.everything()
-for n, bits in enumerate((0, *test.MODES.values())):
+expected = test.everything()
+for way in {"fork", "spawn"} & set(multiprocessing.get_all_start_methods()):
+    with multiprocessing.get_context(way).Pool(1) as pool:
+        for found in pool.map_async(test.work, range(1)).get(timeout=200):
+            test.assert_same(found, expected)
+print("same")
+library = folder / "register.so"
+register = ctypes.CDLL(str(library)) if library.exists() else None
+usual = register.get() if register else 0
+for name, bits in ({"usual": 0} | test.MODES).items() if register else ():
     test.forget()
-    test.flow_store.folder = lambda: test.Path({str(folder)!r}) / f"maps{{n}}"
+    test.flow_store.folder = lambda: folder / name
     register.set(usual | bits)
     try:
         found = test.everything()
         register_after = register.get() & 0xE040
     finally:
         register.set(usual)
-    np.savez({str(folder)!r} + f"/{{n}}.npz", register_after=register_after, **found)
+    np.savez(folder / f"{name}.npz", register_after=register_after, **found)
 """
-    printed(code)
-    names = ("usual", *MODES)
-    return {name: dict(np.load(folder / f"{n}.npz")) for n, name in enumerate(names)}
+
+
+@pytest.fixture(scope="module")
+def elsewhere(tmp_path_factory) -> tuple[str, Path]:
+    """What the program above printed, and its folder."""
+    folder = tmp_path_factory.mktemp("modes")
+    compiler = shutil.which("cc") if platform.machine() in ("x86_64", "AMD64") else None
+    if compiler:
+        (folder / "register.c").write_text(REGISTER)
+        subprocess.run([compiler, "-shared", "-fPIC", "-o", folder / "register.so", folder / "register.c"], check=True)
+    environment = {"VISCOROLL_THREADS": "2", "PYTHONPATH": os.pathsep.join(sys.path)}
+    return printed(ELSEWHERE, folder, Path(__file__).parent, **environment), folder
+
+
+def test_other_processes(elsewhere):
+    """Children of a process that has used threads and kernels compute the same bits, and end."""
+    assert elsewhere[0] == "same\n"
+
+
+@pytest.fixture(scope="module")
+def modes(elsewhere) -> dict[str, dict[str, np.ndarray]]:
+    """``everything`` in each mode, from one process that a host library has set so."""
+    _, folder = elsewhere
+    if not (folder / "register.so").exists():
+        pytest.skip("the register is that of x86, and a C compiler reaches it")
+    return {name: dict(np.load(folder / f"{name}.npz")) for name in ("usual", *MODES)}
 
 
 def test_flushed_subnormals_change_nothing_else(modes):
@@ -284,24 +306,6 @@ def test_called_from_several_threads_at_once(own_maps):
 def work(_) -> dict[str, np.ndarray]:
     forget()
     return everything()
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-def test_other_processes():
-    """Children of a process that has used threads and kernels compute the same bits, and end."""
-    code = f"""
-import multiprocessing, sys
-sys.path.insert(0, {str(Path(__file__).parent)!r})
-import test_invariance as test
-if __name__ == "__main__":
-    expected = test.everything()
-    for way in ("fork", "spawn"):
-        with multiprocessing.get_context(way).Pool(1) as pool:
-            for found in pool.map_async(test.work, range(1)).get(timeout=200):
-                test.assert_same(found, expected)
-    print("same")
-"""
-    assert printed(code, VISCOROLL_THREADS="2", PYTHONPATH=os.pathsep.join(sys.path)) == "same\n"
 
 
 def test_what_is_pickled_is_what_it_was():

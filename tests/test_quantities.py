@@ -152,8 +152,14 @@ def sample(call: str, name: str) -> Any:
     return OWN.get((call, name), SAMPLES.get(name))
 
 
-def arguments_of(call: str, function: Callable[..., Any]) -> Iterator[Argument]:
-    """Its arguments that may carry a unit, each with the others of a call that works and that looks at it."""
+@functools.cache
+def arguments_of(call: str) -> tuple[Argument, ...]:
+    """The arguments of a call of CALLS that may carry a unit, each with others with which the call works and looks
+    at it."""
+    return tuple(search_arguments(call, CALLS[call]()))
+
+
+def search_arguments(call: str, function: Callable[..., Any]) -> Iterator[Argument]:
     given = parameters(function)
     needed = {name: sample(call, name) for name, one in given.items() if one.default is one.empty}
     may = {name: sample(call, name) for name, one in given.items() if may_be_numbers(name, one)}
@@ -224,7 +230,7 @@ CALLS = dict(public())
 
 @pytest.mark.parametrize("call", CALLS)
 def test_every_argument_is_converted_or_refused(call):
-    for argument in arguments_of(call, CALLS[call]()):
+    for argument in arguments_of(call):
         unit, exact = argument.unit, [*numbers_of(argument(argument.value))]
         assert exact, call
         for other in others_of(unit, argument.value):
@@ -266,7 +272,7 @@ GOOD: dict[str, Callable[[float], Any]] = {
 
 @pytest.mark.parametrize("call", CALLS)
 def test_odd_values_are_right_or_refused(call):
-    for argument in arguments_of(call, CALLS[call]()):
+    for argument in arguments_of(call):
         for kind, value in ODD.items():
             try:
                 refused(lambda argument=argument, value=value: argument(value))
@@ -293,7 +299,7 @@ def results() -> Iterator[tuple[str, xr.Dataset]]:
 
 @pytest.mark.parametrize("call", [call for call in CALLS if " of a " in call])
 def test_fields_of_results_go_back(call):
-    for argument in arguments_of(call, CALLS[call]()):
+    for argument in arguments_of(call):
         for kind, data in results():
             given = data.get(argument.name)
             if given is None or not (some := given.values[np.isfinite(given.values)].ravel()).size:

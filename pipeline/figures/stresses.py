@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from viscoroll.motion.single import roll
 
 from viscoroll.contact_law.stress import stress
 from viscoroll.core.plots.style import LINES, THIN, axis_label, new_figure
+from viscoroll.motion.roll import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 
 from .title import describe, number

@@ -67,6 +67,13 @@ class Cylinder(Methods):
     Notes
     -----
     Dimensionless times are over ``T_ref``.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> roller = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+    >>> round(roller.load, 3), round(float(roller.scene().kappa), 4)
+    (348.255, 2.921)
     """
 
     R: Any
@@ -113,7 +120,7 @@ class Cylinder(Methods):
         for name in numbers:
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
             called = "load" if name == "pressed" else name
-            values[name] = read_only(check_array(called, values[name], unit=SI, low=low, strict=True, high=high))
+            values[name] = read_only(check_array(called, values[name], unit=SI, above=low, high=high))
         broadcast_shape(**{name: np.asarray(values[name]) for name in numbers})
         check_choice("plane", plane, "strain", "stress")
         for name, value in values.items():
@@ -140,7 +147,7 @@ class Cylinder(Methods):
         if law.pair is None:
             raise ParameterError("material", "a law without units", "the law of a Material, in SI units")
         if self.base is not None:
-            raise ParameterError("base", "given", "left out: the law contains both bodies")
+            raise ParameterError("base", "given", "left out: the law already contains both bodies")
         if self.plane != law.pair.plane and not law.pair.like:
             raise ParameterError("plane", repr(self.plane), f"{law.pair.plane!r}, as of the law")
         return Pair(law.pair.cylinder, law.pair.base, self.plane)
@@ -156,6 +163,12 @@ class Cylinder(Methods):
         """A copy with some parameters changed; ``material`` takes the place of E to T_sigma, and the reverse.
 
         A load that was given stays; ``load=None`` makes it the weight again.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_CYLINDER.replace(mu=0.4, load=500.0).load
+        500.0
         """
         values = {name: getattr(self, name) for name in (*_NUMBERS, "plane", "material", "base")}
         values["load"] = values.pop("pressed")
@@ -172,7 +185,15 @@ class Cylinder(Methods):
         return {name: value for name, value in values.items() if value is not None}
 
     def on_slope(self, slope: Any) -> Cylinder:
-        """Return the same cylinder under the load P cos(slope); ``slope`` in rad."""
+        """Return the same cylinder under the load P cos(slope); ``slope`` in rad.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> roller = vr.presets.RUBBER_CYLINDER
+        >>> bool(roller.on_slope(0.1).load < roller.load)
+        True
+        """
         return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
@@ -210,7 +231,14 @@ class Cylinder(Methods):
         return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
 
     def scene(self) -> Scene:
-        """The dimensionless scene: alpha or the series of the materials, kappa, gamma of Sect. 3.1 and Eq. (4)."""
+        """The dimensionless scene: alpha or the series of the materials, kappa, gamma of Sect. 3.1 and Eq. (4).
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_CYLINDER.scene().mu
+        0.3
+        """
         return self._scene
 
     @cached_property
@@ -235,8 +263,10 @@ class Cylinder(Methods):
         cover: Any = law.material
         own = self.pair.cover(self.l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"the law of a layer of {cover.thickness:.6g} l0"
-            raise ParameterError("material", found, f"that of {format_value(own.thickness)} l0, which load and R give")
+            found = f"the law of a layer whose thickness is {cover.thickness:.6g} l0"
+            raise ParameterError(
+                "material", found, f"that of {format_value(own.thickness)} l0, which follows from load and R"
+            )
 
     @cached_property
     def body_data(self) -> BodyData:

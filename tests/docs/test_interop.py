@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -98,9 +99,14 @@ for _name, _filled, _compile, _needed in (
     PROGRAMS[_name] = (_C.format(**_filled), f"{_compile} && ./run < states.csv", _needed)
 
 
+@cache
+def succeeds(command: str) -> bool:
+    return not subprocess.run(command, shell=True, capture_output=True, check=False).returncode
+
+
 def need(command: str) -> None:
     """Skip where a command fails: what it asks for is not installed."""
-    if subprocess.run(command, shell=True, capture_output=True, check=False).returncode:
+    if not succeeds(command):
         pytest.skip(f"not installed (make interop): {command}")
 
 
@@ -112,7 +118,7 @@ def folder(request, tmp_path_factory) -> Path:
         shutil.copy(path, place)
     for name in ("law.nc", "law.json", "rubber.h"):
         vr.tables.export(law, place / name)
-    np.savetxt(place / "states.csv", states(request.param), fmt="%.17g", delimiter=",")
+    np.savetxt(place / "moving.csv", states(request.param), fmt="%.17g", delimiter=",")
     vr.tables.save(law, place / "law.nc")
     return place
 
@@ -133,15 +139,44 @@ def states(material) -> np.ndarray:
     return np.column_stack([kappa, mu, V, slip])
 
 
+#: no states, of which every field is NaN: kappa, mu, V, slip
+NO_STATES = np.array(
+    [
+        [np.nan, 0.3, 0.1, 0.01],
+        [10.0, np.nan, 0.1, 0.01],
+        [10.0, 0.3, np.nan, 0.01],
+        [10.0, 0.3, 0.1, np.nan],
+        [10.0, 0.3, np.inf, 0.01],
+        [10.0, 0.3, 0.1, -np.inf],
+        [10.0, 0.3, np.nan, -0.01],
+        [-10.0, 0.3, 0.1, 0.01],
+        [10.0, 0.0, 0.1, 0.01],
+        [10.0, 0.3, -1e300, 0.01],
+    ]
+)
+
+
+#: A language -> how it reads NaN and infinity, where not as "nan" and "inf".
+SPELLED = {"node": ("NaN", "Infinity"), "R": ("NaN", "Inf")}
+
+
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_programs_have_the_contact_of_the_package(folder, name):
+    """And NaN for what is no state.  Also the sign of a NaN is none: Q was +mu for a NaN speed."""
     program, command, needed = PROGRAMS[name]
     need(needed)
     (folder / "program").write_text(program)
+    given = np.loadtxt(folder / "moving.csv", delimiter=",")
+    np.savetxt(folder / "states.csv", np.concatenate([given, NO_STATES]), fmt="%.17g", delimiter=",")
+    nan, infinity = SPELLED.get(name, ("nan", "inf"))
+    text = (folder / "states.csv").read_text().replace("nan", nan).replace("inf", infinity)
+    (folder / "states.csv").write_text(text)
     done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     found = np.array([row for row in csv.reader(io.StringIO(done.stdout)) if row], dtype=float)
-    kappa, mu, V, slip = np.loadtxt(folder / "states.csv", delimiter=",").T
+    assert len(found) == len(given) + len(NO_STATES)
+    assert np.isnan(found[len(given) :]).all()
+    found, (kappa, mu, V, slip) = found[: len(given)], given.T
     scene = vr.Scene(kappa=kappa, mu=mu, material=vr.load_law(folder / "law.nc"))
     still = V == 0.0
     with np.errstate(invalid="ignore"):
@@ -166,41 +201,6 @@ def test_programs_have_the_contact_of_the_package(folder, name):
         for n, field in enumerate(SLOPES, len(FIELDS)):
             scale = np.broadcast_to(np.abs(scales[field]), V.shape)[moving]
             assert close(found[moving, n], wanted[field][moving], rel=tol.INTEROP_SLOPES, scale=scale), (name, field)
-
-
-#: no states, of which every field is NaN: kappa, mu, V, slip
-NO_STATES = np.array(
-    [
-        [np.nan, 0.3, 0.1, 0.01],
-        [10.0, np.nan, 0.1, 0.01],
-        [10.0, 0.3, np.nan, 0.01],
-        [10.0, 0.3, 0.1, np.nan],
-        [10.0, 0.3, np.inf, 0.01],
-        [10.0, 0.3, 0.1, -np.inf],
-        [10.0, 0.3, np.nan, -0.01],
-        [-10.0, 0.3, 0.1, 0.01],
-        [10.0, 0.0, 0.1, 0.01],
-        [10.0, 0.3, -1e300, 0.01],
-    ]
-)
-
-
-@pytest.mark.parametrize("name", PROGRAMS)
-def test_programs_give_nan_for_what_is_no_state(folder, name):
-    """Also the sign of a NaN is none: Q was +mu for a NaN speed."""
-    program, command, needed = PROGRAMS[name]
-    need(needed)
-    words = {"node": "NaN", "R": "NaN"}.get(name, "nan")
-    lines = [",".join(f"{value!r}" for value in row.tolist()) for row in NO_STATES]
-    text = "\n".join(lines).replace("nan", words).replace("inf", "Infinity" if name == "node" else "inf")
-    (folder / "program").write_text(program.replace("states.csv", "none.csv"))
-    (folder / "none.csv").write_text(text.replace("inf", "Inf" if name == "R" else "inf") + "\n")
-    command = command.replace("states.csv", "none.csv")
-    done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    found = [row for row in csv.reader(io.StringIO(done.stdout)) if row]
-    assert len(found) == len(NO_STATES)
-    assert np.isnan(np.array(found, dtype=float)).all()
 
 
 #: motions: V and slip at the start, force and torque; a throw, and drives that pass through rest or start from it
@@ -371,16 +371,24 @@ READERS = {
 }
 
 
-@pytest.mark.parametrize("name", READERS)
-def test_programs_open_a_grid_without_a_warning(tmp_path, name):
-    command, needed = READERS[name]
-    need(needed)
+@pytest.fixture(scope="module")
+def grid(tmp_path_factory) -> Path:
+    """A grid in a file."""
     scene, V = vr.presets.PAPER_SECTION_5, np.geomspace(1e-3, 2.0, 12)
     grid = vr.tables.build(scene, V, delta=np.linspace(-0.01, 0.03, 9), alpha=[1.0, 11.0], method="direct")
-    vr.tables.save(grid, tmp_path / "grid.nc")
-    done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False)
+    path = tmp_path_factory.mktemp("grid") / "grid.nc"
+    vr.tables.save(grid, path)
+    return path
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_programs_open_a_grid_without_a_warning(grid, name):
+    command, needed = READERS[name]
+    need(needed)
+    done = subprocess.run(command, shell=True, cwd=grid.parent, capture_output=True, text=True, check=False)
     told = [
         line for line in done.stderr.splitlines() if "execution_exception" not in line
     ]  # Octave 7 at the end of all
     assert (done.returncode, told) == (0, [])
-    assert close(float(done.stdout), float(grid.Q.sum()), rel=tol.INTEROP, scale=float(np.abs(grid.Q).sum()))
+    Q = vr.tables.load(grid).Q
+    assert close(float(done.stdout), float(Q.sum()), rel=tol.INTEROP, scale=float(np.abs(Q).sum()))

@@ -74,9 +74,9 @@ def test_an_end_that_a_range_makes_is_told():
     assert low < TRUTH["E_1"]
     assert high is None
     said = str(fit)
-    assert "E_1 is open on its upper side" in said
+    assert "the interval of E_1 has no upper end" in said
     assert "the best fit has E_1 at the end of its range" in said
-    assert "the range of E_1, not the data, makes" in said
+    assert "the range of E_1, not the data, determines" in said
 
 
 def test_an_interval_reaches_over_its_branches():
@@ -89,7 +89,7 @@ def test_an_interval_reaches_over_its_branches():
     assert low < TRUTH["E_1"]
     assert high is None
     assert fit.values["E_1"] < 0.1 * TRUTH["E_1"]
-    assert "the interval of E_1 joins branches of the fit" in str(fit)
+    assert "the interval of E_1 contains several branches of the fit" in str(fit)
 
 
 def test_ends_of_an_interval_are_seen_from_what_fits_of_other_unknowns():

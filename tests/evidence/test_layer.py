@@ -1,14 +1,15 @@
 """How thick a layer has to be: its kernel by elasticity, both ends of thickness, and what the page says."""
 
+import json
 import re
 
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from places import DOCS, kept
+from places import DOCS
 
-from pipeline.evidence.prove import layer
+from data.reference import layer
 from viscoroll.contact_law.validity.assumptions import THICK_LIMIT
 
 
@@ -35,9 +36,9 @@ def test_a_thin_layer_is_a_foundation(nu):
 
 def test_the_page_states_what_is_kept():
     """And what is kept is what is computed; validity takes the least of the limits, rounded down."""
-    rows = kept("layer.json")["rows"]
+    rows = json.loads(layer.TARGET.read_text())["rows"]
     assert [row["nu"] for row in rows] == list(layer.RATIOS)
-    page = (DOCS / "validity.md").read_text()
+    page = (DOCS / "validity_covers.md").read_text()
     cells = [re.findall(r"[\d.]+", line) for line in re.findall(r"^\| \d\.\d+ \|(?: \d\.\d\d \|)+$", page, re.M)]
     stated = [list(map(float, line)) for line in cells if len(line) == 2 + len(layer.LENGTHS)]
     assert stated == [[row["nu"], *(round(v, 2) for v in (*row["shorter"].values(), row["limit"]))] for row in rows]

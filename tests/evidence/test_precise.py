@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 import tolerances as tol
 
-from pipeline.evidence.truth import roll_precise
-from pipeline.evidence.truth.motion import PATHS
-from pipeline.evidence.truth.reference import DRIVEN, FREE, driven_motion, free_motion
+from data.reference.check_motions import roll_precise
+from pipeline.evidence.truth.reference import DRIVEN, FREE, PATHS, driven_motion, free_motion
 from pipeline.stage import read_rows
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model

@@ -7,16 +7,16 @@ from closeness import close
 from places import kept
 
 import viscoroll as vr
-from pipeline.evidence.prove import unsteady
-from pipeline.evidence.prove.transient import Contact, grid
+from data.reference.unsteady import MOTIONS, Contact, grid, record, scene_of, solve
+from pipeline.evidence.prove.unsteady import compared
 
 CELLS = grid(0.04)
 
 
-@pytest.mark.parametrize("motion", [unsteady.MOTIONS[0], unsteady.MOTIONS[11], unsteady.MOTIONS[15]])
+@pytest.mark.parametrize("motion", [MOTIONS[0], MOTIONS[11], MOTIONS[15]])
 def test_run_in_it_is_the_steady_contact(motion):
     """Of one, two and four relaxation times."""
-    scene, u = unsteady.scene_of(motion), motion[1]
+    scene, u = scene_of(motion[0], motion[2]), motion[1]
     series, c = scene.material, vr.contact(scene, u, delta=0.0)
     contact = Contact((series.J, series.T, series.alpha), CELLS, 10.0, u, c.lam)
     low, high, *_ = contact.where
@@ -35,7 +35,8 @@ def test_at_rest_it_is_hertz():
 )
 def test_errors_and_ways_are_those_of_finer_cells(which, steady, rest):
     """gamma 10.7 at alpha 11, and the DMA roller at 0.094 m/s, as found with cells of 0.01."""
-    row, _ = unsteady.rolled(unsteady.MOTIONS[which], 0.04)
+    motion = MOTIONS[which]
+    row = compared(record(motion, solve(scene_of(motion[0], motion[2]), motion[1], 0.04)))
     for found, known in ((row["steady"], steady), (row["rest"], rest)):
         assert close(found["error"], known[0], rel=tol.TRANSIENT_ERROR, scale=1.0)
         assert close(found["shift"], known[1], rel=0.03, scale=1.0)

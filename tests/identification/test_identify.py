@@ -99,8 +99,8 @@ def test_slow_rolling_tells_a_product_alone():
     assert product.powers == {"E_1": 1.0, "T_ref": 1.0}
     assert product.low < TRUTH["E_1"] * TRUTH["T_ref"] / product.value < product.high
     text = str(fit)
-    assert "mu does not act on these data" in text
-    assert "E, E_1 and T_ref cannot be told apart by these data: only E_1 T_ref = 0.00" in text
+    assert "the data do not depend on mu" in text
+    assert "E, E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
 
 
 # --- what is not a fit of one minimum of good data ---
@@ -113,7 +113,7 @@ def test_a_wrong_model_is_told_before_any_interval():
     fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), [measured], starts=1)
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
-    assert lines[1].startswith("  ! residuals of M of resistance are no noise (lag-1 correlation 0.8")
+    assert lines[1].startswith("  ! the residuals of M of resistance are autocorrelated (lag-1 correlation 0.8")
     assert "intervals mean nothing" in lines[1]
 
 

@@ -20,18 +20,16 @@ def folder(tmp_path):
 
 
 def test_the_example_is_what_it_says():
+    """The fit of these data is that of docs/identify.md (tests/docs/test_readme.py)."""
     given = read_measurements(EXAMPLE)
+    rubber = vr.Material(2e6, 0.49, vr.Prony([5.0], [1.0]), 2e-3)
+    assert given["cylinder"] == vr.Cylinder(R=0.1, m=35.5, mu=0.4, material=rubber)
     assert given["unknown"].keys() == {"mu", "E", "E_1", "T_ref", "brake", "drag"}
     drum, throw = given["data"]
     assert (drum.name, throw.name) == ("drum", "throw")
     assert drum.M.size == 40
     assert throw.V.size == 200
     assert (throw.V0, throw.omega0) == (None, 0.0)
-    fit = vr.identify(given["cylinder"], given["unknown"], given["data"], starts=1)
-    truth = {"mu": 0.3, "E": 3e6, "E_1": 9.0, "T_ref": 1e-3, "brake": 0.05, "drag": 0.003}
-    for name, value in truth.items():
-        assert abs(fit.values[name] - value) < 3.0 * fit.stderr[name], name
-    assert not fit.misfit
 
 
 def test_the_program_reports(folder, capsys):

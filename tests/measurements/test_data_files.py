@@ -44,7 +44,7 @@ def test_a_drum_is_read(name, tmp_path):
 
 
 def test_columns_that_are_left_aside_are_told(tmp_path):
-    with pytest.warns(vr.ModelWarning, match=r"drum.csv: columns that are left aside: 'T \[°C\]'"):
+    with pytest.warns(vr.ModelWarning, match=r"drum.csv: unused columns: 'T \[°C\]'"):
         assert close(drum(tmp_path, "V,M,T [°C]\n" + rows(V, M, 20.0 + 0.0 * V)).M, M, rel=tol.WRITTEN)
 
 

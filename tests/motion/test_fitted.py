@@ -74,7 +74,8 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
         with pytest.raises(
-            vr.ParameterError, match=r"^torque = a callable that no polynomials follow near t = .*Schedule"
+            vr.ParameterError,
+            match=r"^torque = a function that piecewise polynomials cannot approximate near t = .*Schedule",
         ):
             vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
         assert function.calls <= 2 * drive_fit.MOST

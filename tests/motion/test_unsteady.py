@@ -79,16 +79,16 @@ def test_from_rest_and_to_it():
     ("scene", "V0", "level"), [(RUBBER, 1.0, -0.5), (RUBBER.replace(j=4.0), 1.0, -0.2), (ROLLER, 30.0, 1.0)]
 )
 def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
-    with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
+    with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
         m = vr.roll(scene, V0, V0, 100.0, unsteady=True).course
     assert m.status == vr.MotionStatus.UNSTEADY
     reached = m.regime >= 0
     assert reached.tolist() == [True] * (m.t.size - 1) + [False]
     assert close(share(scene, m.V[reached][-1]), level, rel=1e-6)
-    with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
+    with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
         slower = vr.roll(scene, 0.9 * m.V[-2], 0.9 * m.V[-2], T, unsteady=True)
     assert (slower.status, *slower.regime[:2]) == (vr.MotionStatus.UNSTEADY, 1, -1)
-    assert f"it stood at t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
+    assert f"the last state was t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
 
 
 def test_it_ends_there_at_any_tolerance():
@@ -130,7 +130,7 @@ def test_a_short_rest_costs_less(t_w):
 
 def test_caught_in_the_imprint():
     """V = 1.3 is 4.3 cm/s, of which validity says it too."""
-    with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of its rest"):
+    with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of the standstill"):
         m = vr.roll(ROLLER, 1.3, 1.3, T, rested=True, unsteady=True)
     assert m.status == vr.MotionStatus.CAUGHT
     assert np.isnan(m.V).all()

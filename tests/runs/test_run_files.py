@@ -282,7 +282,7 @@ def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
         assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
         refused(lambda run=run: sobol_indices(run, 16), "m, [cylinder] E = rows of sample.csv")
     text = SAMPLED.replace('"mass"', '"name"')
-    refused(lambda: read(text), "line 3", "'a' is no number", error=vr.FileError)
+    refused(lambda: read(text), "line 3", "'a' is not a number", error=vr.FileError)
 
 
 def test_each_motion_has_the_temperature_that_was_drawn(read):

@@ -1,11 +1,14 @@
 """Results stores: the same files by any engine and after any end; damage is found, and put right."""
 
 import errno
+import itertools
 import os
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -83,7 +86,7 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
     data = bytearray((store / "motions/V/7.0").read_bytes())
     data[-1] ^= 1
     (store / "motions/V/7.0").write_bytes(data)
-    with pytest.raises(vr.FileError, match=r"1 of 12 blocks .*puts it right"):
+    with pytest.raises(vr.FileError, match=r"1 of 12 blocks .*repairs it"):
         export_netcdf(store, tmp_path / "all.nc")
     assert not (tmp_path / "all.nc").exists()
     (store / "V_mean/0").write_bytes(b"")
@@ -113,21 +116,28 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
         assert content(store) == content(whole), name
 
 
+@contextmanager
+def disk_for(writes: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A disk with space for so many writes of files; the block must end with an error that says so."""
+    sync, calls = files._sync, itertools.count()
+
+    def limited(path: Path) -> None:
+        if next(calls) >= writes:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        sync(path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(files, "_sync", limited)
+        with pytest.raises(vr.FileError, match="No space left"):
+            yield
+
+
 def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
     """At any of the writes: one line, and the same command goes on."""
-    store, sync, calls = tmp_path / "store.zarr", files._sync, iter(range(10**6))
-    for room in (1, 30, 170, 300):
-        first = next(calls)
-
-        def limited(path, last=first + room):
-            if next(calls) > last:
-                raise OSError(errno.ENOSPC, "No space left on device")
-            sync(path)
-
-        monkeypatch.setattr(files, "_sync", limited)
-        with pytest.raises(vr.FileError, match="No space left"):
+    store = tmp_path / "store.zarr"
+    for writes in (1, 30, 170, 300):
+        with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), store, threads=2)
-    monkeypatch.undo()
     run_ensemble(read_run(run_file), store)
     assert content(store) == content(whole)
 
@@ -152,8 +162,8 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
     (thesis / "chapter.tex").write_text("dear")
     for call, words in (
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
-        (partial(run_ensemble, run, thesis), "no results store, it holds chapter.tex"),
-        (partial(verify, thesis), "no results store"),
+        (partial(run_ensemble, run, thesis), "not a results store, it contains chapter.tex"),
+        (partial(verify, thesis), "is not a results store"),
     ):
         refused(call, words, error=vr.FileError)
     assert [path.name for path in thesis.iterdir()] == ["chapter.tex"]
@@ -192,21 +202,11 @@ def test_a_run_grows(run_file, smaller, whole):
 
 def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkeypatch):
     """Until then it is the smaller store or one that is not finished, never one of fewer motions than it says."""
-    sync = files._sync
-    for room in (0, 3, 20, 40, 100):
-        calls = iter(range(10**6))
-
-        def limited(path, calls=calls, room=room):
-            if next(calls) >= room:
-                raise OSError(errno.ENOSPC, "No space left on device")
-            sync(path)
-
-        monkeypatch.setattr(files, "_sync", limited)
-        with pytest.raises(vr.FileError, match="No space left"):
+    for writes in (0, 3, 20, 40, 100):
+        with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), smaller, threads=1)
         assert not verify(smaller).ok
-        refused(lambda: open_run(smaller), "puts it right", error=vr.FileError)
-    monkeypatch.undo()
+        refused(lambda: open_run(smaller), "repairs it", error=vr.FileError)
     run_ensemble(read_run(run_file), smaller)
     assert content(smaller) == content(whole)
 
@@ -214,11 +214,11 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
 @pytest.mark.parametrize(
     ("before", "now", "words"),
     [
-        ("", "n = 300", "holds 350 motions of this run file, which may become more, not fewer: set n >= 350"),
-        ('design = "latin"', "n = 1200", "a Latin hypercube, whose strata are of all motions: keep n = 350"),
-        ('design = "sobol"', "n = 1200", "which is even where n is a power of two: set n = 2048"),
+        ("", "n = 300", "contains 350 motions of this run file, and n must not be reduced: set n >= 350"),
+        ('design = "latin"', "n = 1200", "a Latin hypercube, whose strata depend on n: keep n = 350"),
+        ('design = "sobol"', "n = 1200", "which is balanced only for a power of two: set n = 2048"),
         ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
-        ("", "n = 5000", "found by method 'integrate': add method = 'integrate' to [run]"),
+        ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
     ],
 )  # fmt: skip
 def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, words):
@@ -273,7 +273,7 @@ def test_command(run_file, tmp_path, whole, capsys):
     assert "fell below the rest threshold" in shown.out
     assert shown.err == ""  # no bar where nobody looks
     assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
-    assert "12 of 12 blocks were there and whole" in capsys.readouterr().out
+    assert "12 of 12 blocks were complete already" in capsys.readouterr().out
     assert main(["verify", str(store)]) == 0
     assert "complete: 12 blocks" in capsys.readouterr().out
     (store / "motions/x/3.0").write_bytes(b"")
@@ -297,10 +297,11 @@ def test_an_interrupt_answers_at_once(tmp_path, whole):
         preexec_fn=_heeding,  # noqa: PLW1509 (nothing else runs in this process)
     )  # fmt: skip
     while not (tmp_path / "long.zarr/records/start").exists():
+        assert process.poll() is None, process.communicate()
         time.sleep(0.05)
-    time.sleep(1.0)
+    time.sleep(0.3)
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
-    kept = "interrupted: 0 of 4 blocks were made and are kept in long.zarr; the same call goes on"
+    kept = "interrupted: 0 of 4 blocks are complete and are kept in long.zarr; the same call resumes the run"
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

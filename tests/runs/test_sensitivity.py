@@ -214,7 +214,7 @@ def test_command(here, capsys):
     out, err = capsys.readouterr()
     assert err == ""
     assert "64 base points (50, rounded up to a power of two), 256 motions, seed 0" in out
-    assert re.search(r"no indices of onset_time: \d+ of 256 motions have no value", out)
+    assert re.search(r"no indices for onset_time: \d+ of 256 motions have no value", out)
     assert re.search(r"V +0.00012 +omega0 +[01]\.\d+", out).start() < out.index(" mu ")
     with xr.open_dataset("s.nc", engine="h5netcdf") as stored:
         assert stored.attrs["run_file"] == ONSET

@@ -82,7 +82,7 @@ def test_curves_are_dashed_beyond(tmp_path):
         assert np.array_equal(seen, (x >= low) & (x <= high))
         assert (seen | beyond).all()
         assert np.count_nonzero(seen & beyond) == 1
-        assert "dashed: beyond what was measured" in figure.get_suptitle()
+        assert "dashed: outside the measured band" in figure.get_suptitle()
     assert "dashed" not in replace(RUBBER, measured=None).plot().get_suptitle()
 
 

@@ -212,9 +212,9 @@ def test_what_is_no_table(alphas, saved, tmp_path):
     for changed, words in (
         (alphas.drop_vars("beta"), "variable 'beta' is missing"),
         (alphas.assign(Q=alphas.Q * np.nan), "finite"),
-        (alphas.assign_attrs(schema_version="2.0"), "is a table of schema 2.0, and this viscoroll"),
-        (alphas.assign_attrs(viscoroll_table="other"), "is no table of viscoroll"),
-        (alphas.transpose("alpha", "V", "delta"), "has dimensions"),
+        (alphas.assign_attrs(schema_version="2.0"), "has the table schema 2.0, but viscoroll"),
+        (alphas.assign_attrs(viscoroll_table="other"), "is not a table of viscoroll"),
+        (alphas.transpose("alpha", "V", "delta"), "has the dimensions"),
         (alphas.isel(V=slice(None, None, -1)), "must increase"),
     ):
         refused(partial(vr.tables.save, changed, tmp_path / "x.nc"), words, error=vr.FileError)

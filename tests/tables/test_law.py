@@ -156,8 +156,8 @@ def error_of(path: Path) -> str:
         (lambda file: file["press"].__setitem__((3, 5), 0.125), "its numbers are not those of its sha256_of_numbers"),
         (lambda file: file.attrs.__setitem__("sha256_of_numbers", "0" * 64), "its numbers are not those"),
         (lambda file: file.__delitem__("share"), "variable 'share' is missing"),
-        (lambda file: file.attrs.__setitem__("material", "not TOML"), "is no whole law file"),
-        (lambda file: file.attrs.__delitem__("material"), "is no whole law file"),
+        (lambda file: file.attrs.__setitem__("material", "not TOML"), "is an incomplete law file"),
+        (lambda file: file.attrs.__delitem__("material"), "is an incomplete law file"),
     ],
 )
 def test_edited_by_another_program(copy, change, words):

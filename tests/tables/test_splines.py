@@ -188,7 +188,7 @@ def test_what_is_no_grid_of_a_law(si_grid, tmp_path):
     bare, unitless = si_grid.copy(), si_grid.Q.copy()
     bare.attrs = unitless.attrs = {}
     for changed, words in (
-        (si_grid.drop_vars("M"), ("is no grid of a law", "'M'")),
+        (si_grid.drop_vars("M"), ("is not a grid of a law", "'M'")),
         (bare, ("R = ", "radius in m")),
         (si_grid.assign_attrs(R=-1.0), ("R = -1", "> 0")),
         (si_grid.assign(Q=si_grid.Q.assign_attrs(units="N m2")), ("units of Q = N m2", "N/m")),

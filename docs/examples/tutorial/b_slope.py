@@ -19,43 +19,40 @@ roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)
 slope = np.radians(0.5)
 
 # %%
-# First: may the law of steady rolling drive a motion of this roller?  Curves over speed
-# are exact for any rubber, but a motion asks more: the speed must not change much while the
-# contact moves on.  ``validity`` tells, for all that the model assumes.
+# First check the assumptions.  A motion needs one more than a contact at constant speed: the speed
+# must change little during the transit of the contact.  ``validity`` reports every assumption.
 print(roller.validity(2.0))
 
 # %%
-# All holds, and the error of V is below 1 % to the end.  At 20 °C the relaxation times are 300 times
-# longer.  That matters at low speeds alone (:doc:`/validity`):
+# No assumption is violated, and the error of V is below 1 % to the end.  At 20 °C the relaxation
+# times are 300 times longer.  This matters only at low speeds (:doc:`/validity`):
 print(roller.replace(base=cool).validity(2.0).steady.sentence)
 
 # %%
-# Where does the roller settle?  ``steady`` gives every speed at which the pull of the
-# slope and rolling resistance balance.
+# ``steady`` gives every speed at which the force of the slope and the rolling resistance balance.
 s = roller.steady(slope=slope)
 for V, stable in zip(s.V, s.stable, strict=True):
     print(f"{V:.3g} m/s: {'stable' if stable else 'unstable'}")
 
 # %%
-# The first is its terminal speed.  The second is far beyond anything real; from there it
-# would run away.
+# The first is the terminal speed.  The second is unstable and far above any real speed.
 #
-# The motion: pushed off at 2 m/s without spin.  It slides, friction spins it up, and then
-# it slowly comes to its terminal speed.
+# The roller is launched at 2 m/s without rotation.  It slides until friction has accelerated the
+# rotation, and then approaches its terminal speed slowly.
 t = np.unique(np.concatenate([np.linspace(0.0, 0.3, 151), np.linspace(0.3, 120.0, 240)]))
 m = roller.roll(V0=2.0, omega0=0.0, t=t, slope=slope)
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
 for axes, end in ((left, 0.3), (right, 120.0)):
-    axes.plot(m.t, m.V, label="V")
-    axes.plot(m.t, roller.R * m.omega, "--", label="omega R")
-    axes.set(xlabel="t, s", ylabel="speed, m/s", xlim=(0.0, end), ylim=(0.0, None))
+    axes.plot(m.t, m.V, label="$V$")
+    axes.plot(m.t, roller.R * m.omega, "--", label=r"$\omega R$")
+    axes.set(xlabel="$t$, s", ylabel="speed, m/s", xlim=(0.0, end), ylim=(0.0, None))
 right.axhline(s.V[0], color="0.6", linewidth=0.8)
-right.annotate("terminal speed", (60.0, s.V[0]), (0, 4), textcoords="offset points")
+right.annotate("terminal speed", (60.0, s.V[0]), (0, -14), textcoords="offset points")
 left.legend(frameon=False)
 print(f"it slides for {m.onset_time:.3f} s")
 
 # %%
-# Where did the energy go?  J per metre of the roller's length.
+# The energy balance, in J per metre of length: losses by slip and by rolling resistance, work of gravity.
 print(
     f"slip {m.slip_loss[-1]:.0f}, rolling {m.rolling_loss[-1]:.0f}, from the slope {m.work_force[-1]:.0f}"
 )

@@ -2,8 +2,8 @@
 3. Uncertain friction
 =====================
 
-Friction between steel and rubber may be anything from 0.3 to 0.7, and the slope 0.45 or
-0.55 degrees. What of it matters?  Roll twenty thousand rollers.
+The coefficient of friction between steel and rubber lies between 0.3 and 0.7, the slope between 0.45
+and 0.55 degrees.  Twenty thousand motions show the influence of each.
 """
 
 import matplotlib.pyplot as plt
@@ -22,8 +22,8 @@ steel = vr.Material.elastic(E=2.1e11, nu=0.3, density=7850.0)
 roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)
 
 # %%
-# Draw friction and slope.  A Sobol sequence covers both ranges more evenly than random
-# numbers do.  Keep the seed.
+# Draw friction and slope.  A Sobol sequence covers both ranges more evenly than random numbers.  The
+# seed makes the draw reproducible.
 draw = vr.sampling.sample(
     20_000,
     seed=1,
@@ -39,15 +39,21 @@ sliding, late = e.onset_time, e.V[:, -1]  # s, m/s
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
 left.plot(draw["mu"][:3000], sliding[:3000], ".", markersize=2)
-left.set(xlabel="friction", ylabel="slides for, s")
+left.set(xlabel=r"coefficient of friction $\mu$", ylabel="duration of sliding, s")
 right.plot(draw["slope"][:3000], late[:3000], ".", markersize=2)
-right.set(xlabel="slope, degrees", ylabel="speed after two minutes, m/s")
-print("slides for (5 %, 50 %, 95 %), s:", np.quantile(sliding, [0.05, 0.5, 0.95]).round(3))
-print("speed after two minutes, m/s:   ", np.quantile(late, [0.05, 0.5, 0.95]).round(3))
+right.set(xlabel="slope, degrees", ylabel="speed after 120 s, m/s")
+print(
+    "duration of sliding, s (5 %, 50 %, 95 %):",
+    np.quantile(sliding, [0.05, 0.5, 0.95]).round(3),
+)
+print(
+    "speed after 120 s, m/s (5 %, 50 %, 95 %): ",
+    np.quantile(late, [0.05, 0.5, 0.95]).round(3),
+)
 
 # %%
-# Friction decides the first tenths of a second and nothing else.  The slope decides the
-# rest: measure the slope.
+# Friction determines only the duration of sliding, some tenths of a second.  The slope determines
+# the speed after two minutes: measure the slope.
 #
-# From here: the same from a run file, resumable and in SI units, with a million motions:
-# :doc:`/ensembles`.  Shares of the variance instead of pictures: :doc:`/sensitivity`.
+# Next: a million motions from a run file, resumable and in SI units, :doc:`/ensembles`; shares of
+# the variance for each input, :doc:`/sensitivity`.

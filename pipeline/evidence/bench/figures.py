@@ -16,14 +16,14 @@ from ..document.blocks import finished, paper_rows
 from ..results import RESULTS, Results, parser
 
 #: line and marker by method: told apart without colour
-_STYLES = {"flow": "*-k", "table": "o-k", "lsoda": "D-.g", "gsl-adams": "x:c", "gsl-bdf": "+:c"}
+_STYLES = {"flow": "*-k", "table": "o-k", "lsoda": "D-.g", "gsl-adams": "x:C3", "gsl-bdf": "+:C4"}
 #: key of a row -> what it is, over all outputs of the motions
 _ERRORS = {"max": "max", "p99": "99th percentile"}
 
 
 def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]], str]]) -> Any:
     """Error over time of each panel's rows by a key, a line for each method."""
-    title = "Relative error of V and ω over the time of a motion, down to a speed of 1e-3"
+    title = "Error of V and ω against computing time, until the speed has fallen to 1e-3"
     figure, drawn = new_figure(title, 1, len(shown), (4 * len(shown), 4.2), sharey=True)
     for axes, (title, (rows, key)) in zip(drawn, shown.items(), strict=True):
         for name, label in methods.items():
@@ -31,7 +31,7 @@ def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]],
             if points:
                 axes.loglog(*zip(*points), _STYLES[name], label=label, ms=5, lw=1.2)
         axes.grid(True, which="major", color="0.9")
-        axes.set(xlabel="time of a motion, µs, one core", ylim=(1e-12, 10.0))
+        axes.set(xlabel="computing time of a motion, µs, one core", ylim=(1e-12, 10.0))
         axes.set_title(title, fontsize="small")
         log_ticks(axes.xaxis)
     drawn[0].set_ylabel("relative error of V and ω")

@@ -16,7 +16,7 @@ from viscoroll.core.scale import DIMENSIONS, si_unit
 from viscoroll.core.symbols import SYMBOLS, describe_quantity
 
 from ..results import Results, rows_of, table
-from . import house, identification
+from . import costs, house, identification
 from .cells import cell, listed, two
 
 Row = Mapping[str, Any]
@@ -28,7 +28,7 @@ def block(name: str, results: Results) -> str:
     """The text of a block."""
     given = BLOCKS[name]
     values = results[given["of"]] if "of" in given else {}
-    found = MAKERS[name](results) if name in MAKERS else values.get(given.get("rows"), values)
+    found = MAKERS[name](results, *given.get("given", ())) if name in MAKERS else values.get(given.get("rows"), values)
     if "claims" in given:
         found = [row for part, words in given["claims"].items() for row in claims(results, part, words)]
     if "lines" in given:
@@ -114,7 +114,7 @@ def mutants(results: Results) -> str:
     noticed = "all of them" if killed == len(outcomes) else f"{killed}"
     return (
         "Coverage by lines cannot be measured in compiled kernels.  Instead "
-        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.py) were planted in them, one at a time: "
+        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.toml) were planted in them, one at a time: "
         f"the tests noticed {noticed} ([results](data/results/mutants.json)).\n"
     )
 
@@ -281,11 +281,12 @@ def symbols(_: Results) -> Iterator[Row]:
         yield said | {"name": name, "greek": greek(name), "unit": unit}
 
 
-MAKERS: dict[str, Callable[[Results], Any]] = {
+MAKERS: dict[str, Callable[..., Any]] = {
     made.__name__: made
     for made in (
         three, headline, grids, mutants, ensembles, ensembles_plan, proofs, independent_paper,
         unsteady_gamma, unsteady, unsteady_ways, bench_peers, bench_own, bench_driven, bench_bound_law,
-        bench_series, symbols, house.rooms, house.commands, house.sections, *identification.MAKERS,
+        bench_series, symbols, costs.folder_costs, costs.capability_costs, house.rooms,
+        house.commands, house.sections, *identification.MAKERS,
     )
 }  # fmt: skip

@@ -2,7 +2,7 @@
 
     python -m pipeline.evidence.mutate [--check] [--only WORD ...] [--fresh] [--jobs N]
 
-Each mutant of mutants.py is planted in a copy of the tree with a compile cache of its own, and the tests
+Each mutant of mutants.toml is planted in a copy of the tree with a compile cache of its own, and the tests
 named beside it run until the first failure; without a defect they must pass.  As many run at a time as there
 are cores: all of them take half an hour on two.  --only takes those whose file or texts hold a WORD, --fresh
 leaves out what was run on the same kernels before.  The file says when each was run and on which kernels.

@@ -19,9 +19,12 @@ from .table import TABLE
 
 
 def part(name: str, sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    """The rows of its proofs, each with random numbers of its own."""
-    numbered = ((n, proof) for n, proof in enumerate(TABLE) if proof.part == name)
-    return [row for n, proof in numbered for row in proof.rows([sizes["seed"], n], sizes[proof.size])]
+    """Return the rows of all proofs of a part.
+
+    name: of the part.
+    sizes: section [prove] of the sizes: the seed, and how many states or motions each proof draws.
+    """
+    return [row for proof in TABLE if proof.part == name for row in proof.rows(sizes["seed"], sizes[proof.size])]
 
 
 #: name -> function of the sizes that returns rows

@@ -20,6 +20,7 @@ class Proof(NamedTuple):
     domain : what is drawn.
     claims : name of an error -> (sentence, bound); one that begins with "share" is held by the mean.
     found : (random numbers, size) -> errors; names of which nothing is claimed are left out.
+    name : tells proofs of one part and size apart.
     """
 
     part: str
@@ -27,14 +28,31 @@ class Proof(NamedTuple):
     domain: str
     claims: dict[Any, tuple[str, float]]
     found: Callable[[np.random.Generator, Any], Found]
+    name: str = ""
 
-    def rows(self, seed: Any, size: Any) -> list[dict[str, Any]]:
-        """Claim, domain, bound, points, worst, mean, and where the worst was.
+    def key(self) -> str:
+        """Return part, size and name: the name of this proof among all."""
+        return f"{self.part} {self.size} {self.name}"
+
+    def random(self, seed: int) -> np.random.Generator:
+        """Return the random numbers of this proof.
+
+        They follow from its own key, not from its place among the proofs, so that a new proof changes no other's draws.
+
+        seed: of all proofs, [prove].seed of the sizes.
+        """
+        return np.random.default_rng([seed, *self.key().encode()])
+
+    def rows(self, seed: int, size: Any) -> list[dict[str, Any]]:
+        """Return a row for each claim: claim, domain, bound, points, worst, mean, and where the worst was.
 
         A NaN counts as infinite, an error below 0, within what was allowed for, as 0.
+
+        seed: of all proofs.
+        size: how many states or motions are drawn.
         """
         kept = {name: [0, 0.0, -1.0, ""] for name in self.claims}  # points, sum, worst, where
-        progress = tqdm(self.found(np.random.default_rng(seed), size), self.part, delay=1.0, leave=False)
+        progress = tqdm(self.found(self.random(seed), size), self.part, delay=1.0, leave=False)
         for where, errors in progress:
             for name in self.claims.keys() & errors.keys():
                 each = np.atleast_1d(np.asarray(errors[name], float)).ravel()

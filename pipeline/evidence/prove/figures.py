@@ -28,7 +28,7 @@ _LEAST = 1e-17
 def motion_errors(results: Results) -> Any:
     """Tolerance against achieved error: worst and mean over the motions, with the bound and rtol itself."""
     rows = results["proofs motion"]["rows"]
-    title = "Relative error of random motions over the tolerance asked for"
+    title = "Relative error of random motions against the tolerance rtol"
     figure, panels = new_figure(title, 1, len(PANELS), (9.6, 3.8), sharey=True)
     for axes, (begin, title) in zip(panels, PANELS.items(), strict=True):
         own = [row for row in rows if row["claim"].startswith(f"{begin}, rtol 1e-")]
@@ -47,7 +47,7 @@ def motion_errors(results: Results) -> Any:
 
 def transient(results: Results) -> Any:
     """The size of e over the unsteadiness, by the law and with N."""
-    title = "V by a transient solver over V by the law of steady rolling (full) and by the law with N (dotted), less 1"
+    title = "Relative error of V against a transient solver: quasi-steady law (solid), with the correction N (dotted)"
     figure, panels = new_figure(title, 1, 2, (9.6, 4.2), sharey=True)
     words = {"steady": "from steady contact", "rest": "from long rest"}
     colours = {1: LINES[0], 2: LINES[1], 4: LINES[2]}
@@ -61,7 +61,7 @@ def transient(results: Results) -> Any:
         axes.set(title=name, xlabel="unsteadiness", ylim=(1e-5, 3.0))
     for modes, line in colours.items():
         panels[0].plot([], [], **(line | {"linestyle": "-"}), label=f"{modes} relaxation time{'s' * (modes > 1)}")
-    panels[0].set_ylabel("|e|")
+    panels[0].set_ylabel("relative error of V")
     panels[0].legend(fontsize="small", frameon=False)
     return figure
 

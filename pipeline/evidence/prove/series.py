@@ -134,7 +134,8 @@ PROOFS = [
         Proof(
             "series", "series_states",
             f"times over up to {DECADES:g} decades, z from the least e^-{BELOW:g} to the longest e^{ABOVE:g}",
-            {"": (f"g, h, m of {modes} mode{'s' * (modes > 1)}", 1e-13)}, partial(functions, modes=modes),
+            {"": (f"g, h, m of {modes} mode{'s' * (modes > 1)}", 1e-13)},
+            partial(functions, modes=modes), f"{modes} modes",
         ) for modes in (1, 3, 10, 30)
     ),
     Proof(

@@ -155,7 +155,7 @@ def _shape(way: str, domain: str, found: Any) -> Proof:
     fall = {"Q": "Q rises with delta", "beta": "beta falls with delta", "lam": "lam falls with V"}
     claims = {name: (f"{claim} ({way}): violation, ULP", FALL) for name, claim in fall.items()}
     most = {"most": (f"|Q| <= mu ({way}): violation, ULP", 0.0)}
-    return Proof("shape", "shape_pairs", domain, claims | most, partial(found, way=way))
+    return Proof("shape", "shape_pairs", domain, claims | most, partial(found, way=way), f"{way}, {domain}")
 
 
 PROOFS = [

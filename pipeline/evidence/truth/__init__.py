@@ -4,6 +4,5 @@ Nothing here is installed with the package: python-flint comes with ``viscoroll[
 """
 
 from .enclosures import contact_enclosure
-from .motion import roll_precise
 
-__all__ = ["contact_enclosure", "roll_precise"]
+__all__ = ["contact_enclosure"]

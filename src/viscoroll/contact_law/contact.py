@@ -7,7 +7,7 @@ from typing import Literal, overload
 
 from ..core.array_types import Numbers
 from ..core.checks import check_array, check_array_extent, check_bool
-from ..core.errors import exactly_one_error
+from ..core.errors import check_one_given
 from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
@@ -115,15 +115,13 @@ def contact(
     broadcasting (``tests/test_invariance.py``).
     """
     _, scene, scale = resolve_model(roller, "contact")
-    if (delta is None) == (omega is None):
-        raise exactly_one_error("delta", "omega", both=delta is not None)
+    creep_name = check_one_given(delta=delta, omega=omega)
     if slopes is not False:
         slopes = check_bool("slopes", slopes)
     cover = scene.material if type(scene.material) is Cover else None
     split = cover is None or cover.other.alpha == 1.0
     like, of_cover = scene.like_bodies, cover is not None
     names = field_names(fields, slopes, method, like=like, si=scale.si, cover=of_cover, split=split)
-    creep_name = "omega" if delta is None else "delta"
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
     creep = check_array(creep_name, given[creep_name])

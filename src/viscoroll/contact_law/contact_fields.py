@@ -68,7 +68,9 @@ def field_names(
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct":
         if set(names) & set(SLOPES + SLOPES_OF_BODIES):
-            raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
+            raise ParameterError(
+                "slopes", True, "False with method='direct': the equations of the paper give no slopes"
+            )
         for name in (UNSTEADY, GRIP, FREE_CREEP):
             if name in names:
                 raise ParameterError("fields", repr(name), "computed by method='table' alone: it is not in the paper")
@@ -82,7 +84,7 @@ def field_names(
         allowed = f"of {', '.join(_BEFORE_THE_SPLIT)} where the body beside a layer relaxes: the rest is not known"
         raise ParameterError("fields", repr(unknown), allowed)
     if UNSTEADY in names:
-        allowed = "left out for a cover: N of a layer of finite thickness is not known"
+        allowed = "left out for a cover: N of a layer of finite thickness is not available"
         raise ParameterError("fields", repr(UNSTEADY), allowed)
     return (*names, FREE_CREEP) if fields is None else names
 

@@ -66,11 +66,11 @@ def evaluate_contact(
     elif not abs(scene.kappa * float(V)) <= fastest:
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
-        raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
+        raise ParameterError("method", "'direct'", "'table': the equations of the paper have one relaxation time")
     material = None if direct else scene.table or scene.material_array
     if isinstance(material, Prony | Bodies):
         if UNSTEADY in names:
-            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
+            raise ParameterError("fields", repr(UNSTEADY), "computed for one material at a time, material[i]")
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
@@ -119,7 +119,9 @@ def evaluate_law(
         workspace = np.empty((4, _TOGETHER if record else 1))
         if direct:
             if loop(law, request, stop - start):
-                raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")
+                raise ConvergenceError(
+                    f"contact: an iteration reached its limit near element {start} (method 'direct')"
+                )
         elif names != (UNSTEADY,):
             loop(law, request, workspace, stop - start)
         if UNSTEADY not in names:

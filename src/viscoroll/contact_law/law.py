@@ -33,6 +33,16 @@ class Law:
     Attributes
     ----------
     roller, scene : the scene or cylinder, and its dimensionless parameters.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> law = vr.law(vr.presets.RUBBER_CYLINDER)
+    >>> loads = law(1.0, 10.2)  # m/s, rad/s
+    >>> loads.Q > 0.0 and loads.M == loads.M_half_space + loads.M_cylinder
+    True
+    >>> law(1.0, 10.2, slopes=True).dQ_domega >= 0.0
+    True
     """
 
     def __init__(self, roller: Roller) -> None:
@@ -42,9 +52,9 @@ class Law:
 
         _, scene, scale = resolve_model(roller, "law")
         if scene.material_array is not None:
-            allowed = "one material, as material[i]: a law is of one scene"
+            allowed = "one material, as material[i]: a law belongs to one scene"
             raise ParameterError("material", repr(scene.material), allowed)
-        refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
+        refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law belongs to one scene")
         table = scene.table
         assert table is not None
         self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])

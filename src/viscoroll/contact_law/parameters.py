@@ -11,7 +11,7 @@ import numpy as np
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array, check_array_extent, read_only
 from ..core.drive import slope_tan_cos
-from ..core.errors import ParameterError, exactly_one_error
+from ..core.errors import ParameterError, check_one_given
 from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
 from ..materials.bodies import Bodies
@@ -112,8 +112,7 @@ class Parameters(Roller):
         """Check and freeze the parameters; raises ParameterError as :class:`viscoroll.Scene` says."""
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
-        if (material is None) == (values["alpha"] is None):
-            raise exactly_one_error("alpha", "material", both=material is not None)
+        check_one_given(alpha=values["alpha"], material=material)
         if isinstance(material, LawTable):
             object.__setattr__(self, "_law", material)
             material = material.material
@@ -127,7 +126,7 @@ class Parameters(Roller):
         extents = {}
         for name, value in values.items():
             if name != "gamma" or value is not None:
-                arrays[name], extents[name] = check_array_extent(name, value, low=0.0, strict=True)
+                arrays[name], extents[name] = check_array_extent(name, value, above=0.0)
         object.__setattr__(self, "shape", broadcast_shape(**arrays))
         object.__setattr__(self, "material", material)
         if arrays["mu"].size and arrays["kappa"].size:
@@ -254,7 +253,7 @@ def resolve_model(
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
         if isinstance(roller, LawGrid):
             sentence = f"{call} reads the rows of a law, as motions do, not a grid: vr.law(grid) gives its splines to "
-            sentence += "an integrator of your own (docs/howto/law.md)"
+            sentence += "your own integrator (docs/howto/law.md)"
         raise ParameterError("roller", type(roller).__name__, "a Scene or a Cylinder", sentence)
     if slope is not None:
         roller = roller.on_slope(slope)
@@ -262,7 +261,9 @@ def resolve_model(
     if scene.cover is not None and call not in _BEFORE_THE_SPLIT:
         scene.cover.refuse_unknown_split(call)
     if moves and scene.gamma is None:
-        sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
+        sentence = (
+            f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale, but gamma is not given"
+        )
         raise ParameterError("gamma", None, "a number > 0", sentence)
     return roller, scene, roller.scale
 
@@ -271,7 +272,7 @@ def refuse_cover(scene: Parameters, why: str) -> None:
     """Raise ParameterError where a body is a layer of finite thickness; ``why``: what is not known of such a layer."""
     if scene.cover is not None:
         sentence = (
-            f"thickness = {format_value(scene.cover.thickness)} (divided by l0): of a layer of finite thickness {why}"
+            f"thickness = {format_value(scene.cover.thickness)} (divided by l0): for a layer of finite thickness {why}"
         )
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..core.array_types import Floats, Numbers
 from ..core.blocks import block_reader, run_blocks
 from ..core.checks import broadcast_shape, check_array
-from ..core.errors import exactly_one_error
+from ..core.errors import check_one_given
 from ..core.labels import strip_labels
 from ..core.results import Values
 from ..materials.bodies import total_series
@@ -72,9 +72,7 @@ def stress(
     from ..kernels.rows.stress import Points
 
     _, scene, scale = resolve_model(roller, "stress")
-    if (delta is None) == (omega is None):
-        raise exactly_one_error("delta", "omega", both=delta is not None)
-    creep_name = "omega" if delta is None else "delta"
+    creep_name = check_one_given(delta=delta, omega=omega)
     given, labels = strip_labels({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
     given = {name: check_array(name, value) for name, value in given.items()}
     position, speed, creep = given.values()
@@ -119,12 +117,13 @@ def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats)
     ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
     for first, last in pairwise([0, *ends, p.size]):
         part = points._make(each[first:last] if each.size > 1 else each for each in points)
+        index = int(alpha[min(first, alpha.size - 1)])  # of one of many materials
         if scene.cover is not None:
-            p[first:last] = _cover_pressure(scene, int(alpha[min(first, alpha.size - 1)]), part)
+            p[first:last] = _cover_pressure(scene, index, part)
             continue
         material: Any = alpha if scene.series is None else scene.series
         if scene.material_array is not None:
-            material = total_series(scene.material_array[int(alpha[min(first, alpha.size - 1)])])
+            material = total_series(scene.material_array[index])
         series, alphas = series_record(material)
         stress_loop(
             series, alphas, new_memory_weights(series), new_memory_weights(series), part, p[first:last], tau[first:last]

@@ -28,19 +28,19 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     ----------
     name : of the argument.
     value : a number, an array or a list.
-    **bounds : ``unit``, ``low``, ``strict``, ``high`` of :func:`check_array_extent`.
+    **bounds : ``unit``, ``low``, ``above``, ``high`` of :func:`check_array_extent`.
 
     Raises
     ------
     ParameterError
-        If it is not numeric, not finite, below ``low``, above ``high``, or of another dimension.
+        If it is not numeric, not finite, beyond a bound, or of another dimension.
     """
     return check_array_extent(name, value, **bounds)[0]
 
 
 def check_array_extent(
-    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, strict: bool = False,
-    high: float = math.inf,
+    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf,
+    above: float = -math.inf, high: float = math.inf,
 ) -> tuple[Floats, tuple[float, float]]:  # fmt: skip
     """Return the array of :func:`check_array`, and its smallest and largest element ((0, 0) if it is empty).
 
@@ -49,31 +49,31 @@ def check_array_extent(
     name, value : as of :func:`check_array`.
     unit : of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a dimensionless
         number, or an object that has units by name, as a :class:`.scale.Scale`.
-    low : smallest allowed value, which is excluded if ``strict``.
+    low : smallest allowed value.
+    above : number that all values must exceed.
     high : largest allowed value.
     """
-    if type(value) is float and low < value < high:
+    if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)
-    array = _as_doubles(name, value, unit, (low, strict, high))
+    array = _as_doubles(name, value, unit, (low, above, high))
     smallest, largest = extent(array) if array.size else (0.0, 0.0)
-    # A NaN makes both comparisons false.  An array without errors needs no mask of its size.
-    above = smallest > low if strict else smallest >= low
-    if array.size and not (above and -math.inf < smallest and largest < math.inf and largest <= high):
-        wrong = ~(np.isfinite(array) & (array > low if strict else array >= low) & (array <= high))
-        raise ParameterError(name, _first_wrong(array, wrong), _range_words(low, strict, high) or "a finite number")
+    # A NaN makes all comparisons false.  An array without errors needs no mask of its size.
+    if array.size and not (above < smallest and low <= smallest and largest < math.inf and largest <= high):
+        wrong = ~(np.isfinite(array) & (array > above) & (array >= low) & (array <= high))
+        raise ParameterError(name, _first_wrong(array, wrong), _range_words(low, above, high) or "a finite number")
     return array, (smallest, largest)
 
 
-def _range_words(low: float, strict: bool, high: float) -> str:
+def _range_words(low: float, above: float, high: float) -> str:
     """Return a range in words, "" for all finite numbers; arguments as of :func:`check_array_extent`."""
-    least = [] if low == -math.inf else [f"finite and {'>' if strict else '>='} {low:g}"]
-    return ", ".join(least + ([] if high == math.inf else [f"<= {high:g}"]))
+    words = [f"finite and >= {low:g}"] if low > -math.inf else [f"finite and > {above:g}"] if above > -math.inf else []
+    return ", ".join(words + ([f"<= {high:g}"] if high < math.inf else []))
 
 
-def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, bool, float]) -> Floats:
+def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:
     """Return numbers as float64 in the unit of the argument.
 
-    name: of the argument.  value: what a caller gave.  unit: as of :func:`check_array_extent`.  bounds: low, strict
+    name: of the argument.  value: what a caller gave.  unit: as of :func:`check_array_extent`.  bounds: low, above
     and high of the range, for the ParameterError of a value that is not numeric.
     """
     plain = value
@@ -117,22 +117,23 @@ def extent(array: Floats) -> tuple[float, float]:
 
 
 def check_number(
-    name: str, value: ArrayLike, *, low: float = -math.inf, high: float = math.inf, **bounds: Any
-) -> float:
+    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, above: float = -math.inf,
+    high: float = math.inf,
+) -> float:  # fmt: skip
     """Return a single number, checked as by :func:`check_array`.
 
     Parameters
     ----------
-    name, value, low, high, **bounds : as of :func:`check_array`.
+    name, value, unit, low, above, high : as of :func:`check_array_extent`.
 
     Raises
     ------
     ParameterError
         As there, and for an array.
     """
-    if type(value) is float and low < value < high:
+    if type(value) is float and above < value < high and low <= value:
         return value
-    array = check_array(name, value, low=low, high=high, **bounds)
+    array = check_array(name, value, unit=unit, low=low, above=above, high=high)
     if array.ndim:
         raise ParameterError(name, describe_value(value), "a single number")
     return float(array)

@@ -57,10 +57,12 @@ class Schedule:
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
-            raise ParameterError("Schedule", shapes, "times (k,) and values (k,), or (n, k) for n motions")
+            raise ParameterError(
+                "Schedule", shapes, "times of shape (k,) and values of shape (k,), or (n, k) for n motions"
+            )
         for wrong, allowed in (
             (times[..., 1:] < times[..., :-1], "in ascending order"),
-            (times[..., 2:] == times[..., :-2], "there once, or twice for a jump"),
+            (times[..., 2:] == times[..., :-2], "given once, or twice for a jump"),
         ):
             if wrong.any():
                 raise ParameterError("times", times[..., : wrong.shape[-1]][wrong][0], allowed)
@@ -102,7 +104,9 @@ class Feedback:
         for name in ("V", "omega"):
             _check_field(self, name, -np.inf)
             if np.ndim(gain := getattr(self, name)) > 1:
-                raise ParameterError(name, f"of shape {np.shape(gain)}", "a number, or one a motion, (n,)")
+                raise ParameterError(
+                    name, f"of shape {np.shape(gain)}", "a number, or an array (n,) with one for each motion"
+                )
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -136,7 +140,7 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
     if not isinstance(value, Feedback):
         return to_unit(name, value, units.unit(name))
     if name not in _GAINS:
-        sentence = f"{name} is a Feedback, which acts as force= or torque= alone: give its gains there"
+        sentence = f"{name} is a Feedback, which can only be given as force= or torque="
         raise ParameterError(name, "a Feedback", "no Feedback", sentence)
     wanted = dict(zip(("value", "V", "omega"), map(units.unit, (name, *_GAINS[name])), strict=True))
     value = _convert_fields(name, value, wanted)
@@ -165,8 +169,9 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
         parameters.bind(0.0)
     except TypeError:
         sentence = (
-            f"{name} is called with t alone, this function takes {parameters}: for gains on the speeds give Feedback, "
-            "any other controller goes with vr.law into an integrator of your own"
+            f"{name} must be a function of t only, but this function takes {parameters}: for gains on the "
+            f"speeds give Feedback, "
+            "any other controller goes with vr.law into your own integrator"
         )
         raise ParameterError(name, function, "a function of t", sentence) from None
 
@@ -184,7 +189,7 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
     theta = check_array("slope", slope, unit="rad")
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
-        allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2), as np.radians(degrees) gives"
+        allowed = "an angle of at most pi/2 in magnitude: radians in (-pi/2, pi/2), for example np.radians(5.0)"
         raise ParameterError("slope", f"{theta[steep].flat[0]:g}", allowed)
     return np.tan(theta), np.cos(theta)
 
@@ -209,7 +214,9 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
         return Feedback(make_dimensionless(name, value.value, scale), *gains)
     if callable(value):
         if np.ndim(unit):
-            raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
+            raise ParameterError(
+                name, "a function", "a number", f"{name} is a function: then the call must have a single cylinder"
+            )
         require_time_argument(name, value)
         return lambda t: check_array(f"{name}(t)", value(t * scale["t"]), unit=scale.unit(name), low=low) / unit
     if isinstance(value, Schedule):

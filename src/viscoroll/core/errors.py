@@ -23,7 +23,17 @@ from typing import Any
 
 
 class ViscorollError(Exception):
-    """Base class of all exceptions of this package."""
+    """Base class of all exceptions of this package.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> try:
+    ...     vr.load_law("absent.nc")
+    ... except vr.ViscorollError as error:
+    ...     print(type(error).__name__)
+    FileError
+    """
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the attributes, because the arguments of the subclasses are not those of Exception."""
@@ -39,6 +49,15 @@ class ParameterError(ViscorollError, ValueError):
     value : that was found.
     allowed : words that follow "must be".
     sentence : the whole message, where name, value and allowed values do not make one.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> try:
+    ...     vr.Scene(alpha=0.5, kappa=10.0, mu=0.3)
+    ... except vr.ParameterError as error:
+    ...     print(error.name, error.value)
+    alpha 0.5
     """
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
@@ -82,6 +101,18 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
 
 
+def check_one_given(**values: Any) -> str:
+    """Return the name of that one of two parameters which is given; raises ParameterError for none and for both.
+
+    values: both parameters by name, None where one is not given.
+    """
+    given = [name for name, value in values.items() if value is not None]
+    if len(given) != 1:
+        first, second = values
+        raise exactly_one_error(first, second, both=bool(given))
+    return given[0]
+
+
 def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
     """Return the error of a parameter whose value is not a known name.
 
@@ -116,6 +147,16 @@ class OutOfTableError(ParameterError):
     name : of the coordinate.
     value : that was found.
     low, high : ends of the axis.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> grid = vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1])
+    >>> try:
+    ...     vr.tables.interpolate(grid, ["M"], V=0.5)
+    ... except vr.ParameterError as error:
+    ...     print(error)
+    V = 0.5: must be within the table's range [0.1, 0.4]
     """
 
     def __init__(self, name: str, value: float, low: float, high: float) -> None:
@@ -130,6 +171,15 @@ class FileError(ViscorollError):
     ----------
     path : of the file.
     problem : the reason, in words that follow the path.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> try:
+    ...     vr.read_dma("absent.csv")
+    ... except vr.FileError as error:
+    ...     print(error)
+    absent.csv: cannot be read (No such file or directory)
     """
 
     def __init__(self, path: Any, problem: str) -> None:
@@ -148,6 +198,12 @@ class MissingDependencyError(ViscorollError):
     ----------
     package : its name.
     extra : of viscoroll, which installs it; None where no extra does.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> print(vr.MissingDependencyError("zarr", "runs"))
+    zarr is not installed: pip install 'viscoroll[runs]'
     """
 
     def __init__(self, package: str, extra: str | None) -> None:
@@ -156,7 +212,14 @@ class MissingDependencyError(ViscorollError):
 
 
 class ConvergenceError(ViscorollError):
-    """An iteration reached its limit.  This is a defect of the package: please report the input."""
+    """An iteration reached its limit.  This is a defect of the package: please report the input.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> issubclass(vr.ConvergenceError, vr.ViscorollError)
+    True
+    """
 
 
 class ModelWarning(UserWarning):
@@ -165,11 +228,29 @@ class ModelWarning(UserWarning):
     It is raised for a motion or a contact outside the validity of the model, for a contact whose transit frequency lies
     outside the band in which the material was measured, and for a file of measurements without units.  Every call is
     checked; Python shows a text once per line of the program.  Texts on a material or a file appear once for each.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import viscoroll as vr
+    >>> with warnings.catch_warnings(record=True) as found:
+    ...     warnings.simplefilter("always")
+    ...     factor = vr.WLF(T0=20.0)(293.0)  # kelvins in place of degrees Celsius
+    >>> found[0].category.__name__
+    'ModelWarning'
     """
 
 
 class MotionStatus(IntEnum):
-    """How a motion ended."""
+    """How a motion ended.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, 1.0)
+    >>> motion.status.name, motion.status.message
+    ('DONE', 'reached the last output time')
+    """
 
     DONE = 0
     RESTED = 1
@@ -190,12 +271,12 @@ _MESSAGES = (
     "|V| and R |omega| fell below the rest threshold",
     "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed grows without bound,"
     " loosen rtol",
-    "the step size fell to rounding level: the motion changes faster than doubles resolve time there, because a gain,"
+    "the step size fell to rounding level: the motion changes faster than doubles resolve time there, since a gain,"
     " drag, speed or friction is extreme, or rtol too tight",
-    "V and omega were both 0, from where the motion is not unique: with mu > 2 kappa the cylinder can depart in two"
-    " ways",
-    "too slow for the added mass N, which reached 1 + j, or -(1 + j)/2",
-    "too slow to leave the indentation of its rest, which takes seven tenths of the energy",
+    "V and omega were both 0, where the motion is not unique: with mu > 2 kappa the cylinder can start in two"
+    " directions",
+    "too slow for the unsteady correction: the added mass gamma N reached 1 + j, or -(1 + j)/2",
+    "too slow to leave the indentation of the standstill, which would take seven tenths of the kinetic energy",
 )
 
 

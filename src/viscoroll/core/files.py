@@ -105,7 +105,7 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     file = Path(path)
     try:
         if file.is_file() and file.stat().st_size > max_bytes:
-            raise FileError(path, f"is no {kind}: it is larger than {max_bytes} bytes")
+            raise FileError(path, f"is not a {kind}: it is larger than {max_bytes} bytes")
         content = file.read_bytes()
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error}): it must be a {kind}") from error

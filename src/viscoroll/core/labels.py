@@ -93,7 +93,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
     ]  # fmt: skip
     if plain or (arrays and series):
         names = ", ".join((*labelled, *plain))
-        raise ParameterError(names, "some labelled", "alike", f"{names}: give labels to all of them, or to none")
+        raise ParameterError(names, "some labelled", "alike", f"{names}: give labels to all of them or to none")
     values, labels = _from_xarray(arrays) if arrays else _from_pandas(series)
     return given | values, labels
 
@@ -131,7 +131,9 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     index = first.index
     if not all(index.equals(other.index) for other in others):
         names = " and ".join(series)
-        raise ParameterError(names, "unlike indices", "of one index", f"{names} are of unlike index: align them first")
+        raise ParameterError(
+            names, "unlike indices", "of one index", f"{names} have different indexes: align them first"
+        )
 
     def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
         if len(further) > 1:  # no type of pandas has more axes

@@ -157,7 +157,7 @@ def unit_error(name: str, unit: str, target: str, known: bool = True) -> Paramet
 
     name: of the argument.  unit: that was found.  target: unit of the argument.  known: whether pint knows the unit.
     """
-    allowed = "a number without dimension" if target == "1" else f"in {target}, or in a unit of that dimension"
+    allowed = "a number without dimension" if target == "1" else f"in {target}, or in another unit of that dimension"
     found = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
     return ParameterError(name, found, allowed, f"{name} is {found}: must be {allowed}")
 

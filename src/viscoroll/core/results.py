@@ -160,6 +160,15 @@ class Values(Result):
     ----------
     success, status, message : True, 0 and a sentence, as motions and equilibria have them: a call that cannot compute
         its results raises an exception.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> state = vr.contact(vr.presets.RUBBER_CYLINDER, [0.5, 1.0], delta=0.01, fields=("Q", "M"))
+    >>> state.Q.shape, list(state.keys())
+    ((2,), ['Q', 'M'])
+    >>> list(state.to_pandas().columns)
+    ['delta', 'Q [N m-1]', 'M [N m m-1]']
     """
 
     success, status, message = True, 0, "all fields were computed"
@@ -175,25 +184,46 @@ class Values(Result):
         labels: Labels | None = None,
         about: dict[str, Any] | None = None,
     ) -> None:
+        """Keep the fields of a result, with what is needed for tables and figures of it.
+
+        values: name -> number or array of the field.
+        given: name -> argument by which the call varied, for coordinates.
+        units: name -> unit, where it is not that of the field's name.
+        title: first line of the summary.
+        si: whether values are in SI units.
+        labels: labels of the caller's arrays, put onto the fields; None for plain arrays.
+        about: attributes of the dataset.
+        """
         self._about = about or {}
         self._values = values if labels is None else {name: labels.apply(name, each) for name, each in values.items()}
         self._given, self._units, self._labels = given or {}, units or {}, labels
         self._title, self._si = title + ", in SI units" * si, si
 
     def __getattr__(self, name: str) -> Any:
+        """Return the field of a name; AttributeError names the fields that were computed.
+
+        name: of a field.
+        """
         if name.startswith("_"):
             raise AttributeError(name)
         try:
             return self._values[name]
         except KeyError:
             names = ", ".join(self._values)
-            raise AttributeError(f"{name!r} was not computed; this result holds {names}") from None
+            raise AttributeError(f"{name!r} was not computed; this result contains {names}") from None
 
     def __dir__(self) -> Iterable[str]:
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]
 
     def as_dict(self) -> dict[str, Any]:
-        """The results by name."""
+        """The results by name.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> list(vr.contact(vr.presets.RUBBER_CYLINDER, 0.5, delta=0.01, fields="M").as_dict())
+        ['M']
+        """
         return dict(self._values)
 
     def keys(self) -> Iterable[str]:
@@ -210,6 +240,13 @@ class Values(Result):
 
         An axis along which one argument alone varies has the name and the values of that argument; other axes are
         called ``state``.  Arguments with labels of xarray or pandas determine axes and coordinates.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> data = vr.contact(vr.presets.RUBBER_CYLINDER, [0.5, 1.0], delta=0.01).to_xarray()
+        >>> data["Q"].dims
+        ('V',)
         """
         import xarray as xr
 

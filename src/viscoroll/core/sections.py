@@ -92,7 +92,12 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
 
 
 def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
-    """Raise FileError for an unknown key in a section or its subsections; arguments as of :func:`as_struct`."""
+    """Refuse keys that a section or its subsections do not have; raises FileError with the line of the key.
+
+    path, name: of the file and of the section.
+    content: keys and values of the section.
+    kind: struct or dataclass whose fields are the allowed keys.
+    """
     hints = get_type_hints(kind)
     check_keys(path, name, content, hints)
     for key, value in content.items():

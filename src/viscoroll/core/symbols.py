@@ -85,8 +85,8 @@ SYMBOLS = {
 
 #: Name in code -> meaning, of quantities without a symbol.
 _MEANINGS = {
-    "full_slip": "1 where the whole contact slips",
-    "stable": "1 where small disturbances decay",
+    "full_slip": "1 in full slip, else 0",
+    "stable": "1 if small disturbances decay, else 0",
     "rest_time": "time at which the rest threshold was crossed",
     "loss_slip": "power lost: slip",
     "loss_half_space": "power lost: half-space",

@@ -1,4 +1,4 @@
-"""Sample measurements that are installed with the package: files for the examples of the documentation."""
+"""Sample files that are installed with the package, for the examples of the documentation."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ def path(name: str) -> Path:
     name : ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5 % noise.
         ``"dma_export.csv"``: storage modulus and tan delta as an instrument writes them, with semicolons and decimal
         commas, 0.1 to 100 Hz.
+        ``"run.toml"``: a run file of 16 motions with uncertain speed and friction.
 
     Returns
     -------
@@ -35,7 +36,7 @@ def path(name: str) -> Path:
     >>> vr.datasets.path("dma.csv").name
     'dma.csv'
     """
-    names = sorted(file.name for file in _FOLDER.glob("*.csv"))
+    names = sorted(file.name for file in _FOLDER.iterdir() if file.suffix in (".csv", ".toml"))
     if name not in names:
         raise ParameterError("name", repr(name), f"one of {', '.join(names)}")
     return _FOLDER / name

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ..core.array_types import Floats
 from ..core.checks import check_array, check_integer, check_number
-from ..core.errors import ParameterError, exactly_one_error, unknown_name_error
+from ..core.errors import ParameterError, check_one_given, unknown_name_error
 
 __all__ = ["Sample", "sample"]
 
@@ -41,7 +41,15 @@ _BITS = 52
 
 
 class Sample(dict[str, Floats]):
-    """Draws of each quantity by name, (n,), with the seed and the design that give them again."""
+    """Draws of each quantity by name, (n,), with the seed and the design that give them again.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> draws = vr.sampling.sample(4, seed=1, mu=0.3)
+    >>> draws.seed, draws.design, draws["mu"].tolist()
+    (1, 'random', [0.3, 0.3, 0.3, 0.3])
+    """
 
     seed: int
     design: str
@@ -83,8 +91,7 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
     strata of every quantity, "sobol" if n is a power of two (``tests/test_sampling.py``).
     """
-    if (seed is None) == (rng is None):
-        raise exactly_one_error("seed", "rng", both=rng is not None)
+    check_one_given(seed=seed, rng=rng)
     if seed is None:
         seed = int(np.random.default_rng(rng).integers(2**63))
     n, seed = check_integer("n", n, 1, 10**12), check_integer("seed", seed, 0, 2**63 - 1)
@@ -118,8 +125,8 @@ def _is_distribution(name: str, value: Any) -> bool:
 def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int) -> Floats:
     """Return a block of points inside (0, 1), (dimensions, stop - start).
 
-    design: "random", "latin" or "sobol".  seed: of all points.  n: number of all points.  dimensions: coordinates of a
-    point.  start, stop: indices of the block.  block: its number.
+    design: "random", "latin" or "sobol".  seed: seed of all points.  n: number of all points.  dimensions:
+    coordinates of a point.  start, stop: indices of the block.  block: its number.
     """
     if dimensions == 0:
         return np.empty((0, stop - start))
@@ -188,7 +195,8 @@ def _sequence(seed: int, dimensions: int) -> Any:
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
     """Return points of the Sobol sequence, (dimensions, stop - start).
 
-    seed: of the sequence.  dimensions: of a point.  start, stop: indices of the points.
+    seed: seed of the sequence.  dimensions: coordinates of a point.  start, stop: first index, and the one behind
+    the last.
 
     ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block
     (and refuses more than 32 bits).  Its state is set instead; a test compares with a sequence from its start.

@@ -60,6 +60,7 @@ class Bodies(OneOrMany):
     share: Any = 0.5
 
     def __post_init__(self) -> None:
+        """Check the bodies, set ``shape`` and make ``share`` read-only; raises ParameterError."""
         bodies = {"cylinder": self.cylinder, "base": self.base}
         for name, body in bodies.items():
             if not isinstance(body, Prony):

@@ -92,8 +92,8 @@ class Cover(Bodies):
             raise ParameterError("on", repr(on), "'cylinder' or 'base'")
         ratios = {"nu": nu, "other_nu": other_nu}
         values: dict[str, Any] = {name: check_number(name, nu, low=0.0, high=0.5) for name, nu in ratios.items()}
-        part = check_number("part", part, low=0.0, strict=True, high=1.0)
-        given = check_array("thickness", thickness, low=0.0, strict=True, high=_THICKEST)
+        part = check_number("part", part, above=0.0, high=1.0)
+        given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
         if given.ndim > 1:
             raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
         other = Prony.elastic() if other is None else other

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.array_types import Floats
 from ..core.checks import check_array, check_bool, check_number
-from ..core.errors import ParameterError, check_names, exactly_one_error
+from ..core.errors import ParameterError, check_names, check_one_given, exactly_one_error
 from ..core.scale import SI
 from .bodies import Bodies
 from .prony import Prony
@@ -126,7 +126,7 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths, an unknown keyword.
         """
-        E, nu = check_number("E", E, unit=SI, low=0.0, strict=True), check_poisson(nu)
+        E, nu = check_number("E", E, unit=SI, above=0.0), check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
         bulk = None if K is None else check_pairs("K", K, "tau", times)[0]
         return cls._from_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
@@ -169,21 +169,20 @@ class FromPrograms:
             A value out of range, lists of different lengths, no long-time modulus or several, both or
             neither of nu and bulk, an unknown keyword.
         """
-        strengths, rates = check_pairs("G", G, "beta", beta, strict=False)
+        strengths, rates = check_pairs("G", G, "beta", beta, above=-math.inf)
         resting = rates == 0.0
         rest = _long_time_shear(strengths, G0, G_inf, strengths[resting])
         strengths, times = strengths[~resting], 1.0 / rates[~resting]
-        terms = None if K is None else check_pairs("K", K, "beta", rates, strict=False)[0]
+        terms = None if K is None else check_pairs("K", K, "beta", rates, above=-math.inf)[0]
         if terms is not None:
             if terms[resting].any():
                 if nu is not None or bulk is not None:
-                    raise exactly_one_error("nu or bulk", "K of beta = 0", both=True)
+                    raise exactly_one_error("nu or bulk", "K with beta = 0", both=True)
                 bulk = math.fsum(terms[resting])
             terms = terms[~resting]
-        if (nu is None) == (bulk is None):
-            raise exactly_one_error("nu", "bulk", both=nu is not None)
+        check_one_given(nu=nu, bulk=bulk)
         if bulk is not None:
-            bulk = check_number("bulk", bulk, unit=SI, low=0.0, strict=True)
+            bulk = check_number("bulk", bulk, unit=SI, above=0.0)
             nu = (3.0 * bulk - 2.0 * rest) / (6.0 * bulk + 2.0 * rest)
             terms = np.zeros_like(strengths) if terms is None else terms
         return cls._from_moduli(rest, check_poisson(nu), strengths, times, terms, more, bulk)
@@ -203,7 +202,7 @@ class FromPrograms:
         long_term: whether E and nu are those of long times.
         more: keywords of the material.
         """
-        E, nu = check_number("E0", E, unit=SI, low=0.0, strict=True), check_poisson(nu)
+        E, nu = check_number("E0", E, unit=SI, above=0.0), check_poisson(nu)
         values, times = check_pairs(name, fractions, "tau", tau)
         rest = _remaining_fraction(name, values)
         if bulk is None:
@@ -251,15 +250,15 @@ def check_poisson(nu: Any) -> float:
 
 
 def check_pairs(
-    name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True
+    name: str, values: ArrayLike, other: str, at: ArrayLike, *, above: float = 0.0
 ) -> tuple[Floats, Floats]:
     """Return two lists of equal length as arrays; raises ParameterError.
 
     name, values: the first list, >= 0.
-    other, at: the second list, > 0, or >= 0 unless ``strict``.
+    other, at: the second list, > 0 or, with ``above`` = -inf, >= 0.
     """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
-    second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, strict=strict)
+    second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
     if first.ndim != 1 or first.shape != second.shape:
         raise ParameterError(other, f"of shape {second.shape}", f"one for each {name}, of shape {first.shape}")
     return first, second
@@ -282,8 +281,8 @@ def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, 
     if len(given) != 1:
         found = " and ".join(given) or "nothing"
         raise ParameterError("long-time modulus by", found, "one of G_inf, G0 and a pair with beta = 0")
-    (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G of beta = 0"}
-    return check_number(named.get(name, name), value, unit="Pa", low=0.0, strict=True)
+    (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G with beta = 0"}
+    return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
 
 def _remaining_fraction(name: str, fractions: Floats) -> float:
@@ -293,7 +292,11 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:
-        raise ParameterError(name, f"{fractions.tolist()}", "of a sum below 1: no long-time modulus would be left")
+        raise ParameterError(
+            name,
+            f"{fractions.tolist()}",
+            "values whose sum is below 1: otherwise the long-time modulus is not positive",
+        )
     return rest
 
 

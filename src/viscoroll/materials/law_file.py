@@ -64,34 +64,34 @@ _ROW = (
     "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
     "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. "
 )
-_E0 = (), "row 0 holds [0, 2^e0)"
+_E0 = (), "row 0 covers [0, 2^e0)"
 _LAW = Kind(
-    "The contact law of one material or pair as polynomials, one an octave of speed: ",
+    "The contact law of one material or pair as polynomials, one for each octave of speed: ",
     {
-        "lam": "contact length over that at rest, over kappa |V|",
-        "epsilon": "shift of the contact over half its length, over kappa |V|",
-        "m_half_space": "M_half_space/V, over kappa |V|",
-        "m_cylinder": "M_cylinder/V, over kappa |V|",
-        "N": "N of M = M(V) + N dV/dt, over kappa |V|",
-        "share": "eta/F(eta), over v = 1/F(eta)",
-        "press": "H(eta)/F(eta)^2, over v = 1/F(eta)",
+        "lam": "contact length divided by contact length at rest, as a function of kappa |V|",
+        "epsilon": "shift of the contact divided by half its length, as a function of kappa |V|",
+        "m_half_space": "M_half_space/V, as a function of kappa |V|",
+        "m_cylinder": "M_cylinder/V, as a function of kappa |V|",
+        "N": "N of M = M(V) + N dV/dt, as a function of kappa |V|",
+        "share": "eta/F(eta), as a function of v = 1/F(eta)",
+        "press": "H(eta)/F(eta)^2, as a function of v = 1/F(eta)",
     },
     ("octave", "power"),
     "powers of t",
     {
         "e0": _E0,
-        "alpha": ((), "instantaneous over long-time modulus"),
-        "T_mean": ((), "sum J_j T_j over T_ref"),
+        "alpha": ((), "instantaneous modulus divided by long-time modulus"),
+        "T_mean": ((), "sum of J_j T_j, divided by T_ref"),
         "T_ref": ((), "unit of time; 1 where none was given"),
         "fast_limit": (
             ("body", "term"),
             "W = sum J_j/T_j and C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all, of the half-space and of the cylinder",
         ),
-        "relaxation_strength": (("mode",), "E_i over the long-time modulus"),
-        "relaxation_time": (("mode",), "tau_i over T_ref"),
-        "creep_strength": (("mode",), "J_j over the long-time compliance"),
-        "retardation_time": (("mode",), "T_j over T_ref"),
-        "half_space_weight": (("mode",), "part of J_j that is the half-space's"),
+        "relaxation_strength": (("mode",), "E_i divided by the long-time modulus"),
+        "relaxation_time": (("mode",), "tau_i divided by T_ref"),
+        "creep_strength": (("mode",), "J_j divided by the long-time compliance"),
+        "retardation_time": (("mode",), "T_j divided by T_ref"),
+        "half_space_weight": (("mode",), "share of the half-space in J_j"),
     },
     _ROW + "u = kappa |V|; L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; "
     "D >= L: full slip, |Q| = mu, beta = 0."
@@ -106,16 +106,23 @@ _OF_SPEED = ("lam", "epsilon", "m_half_space", "m_cylinder", "share", "press")
 KINDS = {
     LAW: _LAW,
     COVER: Kind(
-        "The contact law of a layer of finite thickness at one l0/h as polynomials, one an octave of speed: ",
+        "The contact law of a layer of finite thickness at one l0/h as polynomials, one for each octave of speed: ",
         {name: _LAW.functions[name] for name in _OF_SPEED}
-        | {"limit": "2 kappa delta_star/mu, over kappa |V|", "free": "2 kappa delta_0, over kappa |V|"},
+        | {
+            "limit": "2 kappa delta_star/mu, as a function of kappa |V|",
+            "free": "2 kappa delta_0, as a function of kappa |V|",
+        },
         ("octave", "power"),
         "powers of t",
         {
             "e0": _E0,
             "alpha": _LAW.others["alpha"],
             "T_ref": _LAW.others["T_ref"],
-            "limits": (("limit_number",), "u -> infinity: limit, lam, free, their factors of 1/u; epsilon u, m u^2"),
+            "limits": (
+                ("limit_number",),
+                "limits for u -> infinity: of limit, lam and free; of their coefficients of 1/u; of epsilon u "
+                "and m u^2",
+            ),
         },
         _ROW + "u = kappa |V|; L = limit(u); delta_star = mu L/(2 kappa); delta_0 = free/(2 kappa); "
         "D = |2 kappa delta - free|/mu; D >= L: full slip, |Q| = mu, beta = 0. Else w = L - D, v = 2 u/w: "
@@ -127,9 +134,9 @@ KINDS = {
         "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",
         {
             "lam": _LAW.functions["lam"],
-            "epsilon": "shift of the contact over half its length and over c, over kappa |V|",
-            "m": "M/V over c, over kappa |V|",
-            "N": "N of M = M(V) + N dV/dt, over c, over kappa |V|",
+            "epsilon": "shift of the contact divided by half its length and by c, as a function of kappa |V|",
+            "m": "M/V divided by c, as a function of kappa |V|",
+            "N": "N of M = M(V) + N dV/dt divided by c, as a function of kappa |V|",
             "share": _LAW.functions["share"],
             "press": _LAW.functions["press"],
         },
@@ -137,7 +144,10 @@ KINDS = {
         "T_j(s) and of powers of t",
         {
             "first": ((), "log2 of the lowest alpha"),
-            "rows": (("octave_of_alpha",), "rows of an octave of alpha before the fast limit; what follows is 0"),
+            "rows": (
+                ("octave_of_alpha",),
+                "number of rows of an octave of alpha before the fast limit; the remaining rows are 0",
+            ),
             "e0": _E0,
         },
         "alpha = m 2^e with m in [1/2, 1) (frexp); i = e - 1 - first; s = 2 log2(2 m) - 1; c = (alpha - 1)/alpha. The "
@@ -266,13 +276,13 @@ def check_law(content: Content, path: Any) -> None:
     numbers, attributes = content
     kind = attributes.get(KIND)
     if kind not in KINDS:
-        raise FileError(path, "is no law file of viscoroll: `viscoroll tables law` writes one")
+        raise FileError(path, "is not a law file of viscoroll: `viscoroll tables law` writes one")
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
-        problem = f"is a law file of schema {schema!s:.20}, and this viscoroll ({__version__}) reads {VERSION}"
+        problem = f"has the law schema {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
         raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
     missing = [name for name in (*KINDS[kind].functions, *KINDS[kind].others) if name not in numbers]
     if missing:
-        raise FileError(path, f"is no whole law file: variable {missing[0]!r} is missing; {REMEDY}")
+        raise FileError(path, f"is an incomplete law file: variable {missing[0]!r} is missing; {REMEDY}")
     if checksum(numbers, kind) != attributes.get(CHECKSUM):
         raise FileError(path, f"is damaged or was edited: its numbers are not those of its {CHECKSUM}; {REMEDY}")

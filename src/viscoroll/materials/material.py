@@ -73,14 +73,15 @@ class Material(FromPrograms):
     temperature: float | None = None
 
     def __post_init__(self) -> None:
+        """Convert the fields to numbers in SI units and check them; raises ParameterError."""
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
-                raise ParameterError("E", self.E, "finite where the material relaxes")
+                raise ParameterError("E", self.E, "finite for a viscoelastic material")
             if self.thickness is not None:
-                raise ParameterError("thickness", self.thickness, "left out of a rigid body")
+                raise ParameterError("thickness", self.thickness, "left out for a rigid body")
         else:
             check_fields(self, E=0.0)
         object.__setattr__(self, "nu", check_poisson(self.nu))
@@ -115,8 +116,8 @@ class Material(FromPrograms):
         >>> vr.Material.sls(1e6, 0.5, T_epsilon=0.1, T_sigma=0.02).instant
         5000000.0
         """
-        T_epsilon = check_number("T_epsilon", T_epsilon, unit=SI, low=0.0, strict=True)
-        T_sigma = check_number("T_sigma", T_sigma, unit=SI, low=0.0, strict=True)
+        T_epsilon = check_number("T_epsilon", T_epsilon, unit=SI, above=0.0)
+        T_sigma = check_number("T_sigma", T_sigma, unit=SI, above=0.0)
         refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
         prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
@@ -136,12 +137,25 @@ class Material(FromPrograms):
         ------
         ParameterError
             A value out of range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.elastic(2.1e11, 0.3, name="steel").prony.alpha
+        1.0
         """
         return cls(E, nu, **more)
 
     @classmethod
     def rigid(cls, **more: Any) -> Material:
-        """Make a body that does not deform, with infinite E; ``more``: ``name`` and ``density``."""
+        """Make a body that does not deform, with infinite E; ``more``: ``name`` and ``density``.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.rigid(name="drum").is_rigid
+        True
+        """
         return cls(math.inf, 0.5, **more)
 
     @property
@@ -194,8 +208,8 @@ class Material(FromPrograms):
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
-                f"temperature is an array of shape {given.shape}, and a material is at one temperature: make "
-                "one each, [rubber.at(T, shift) for T in temperatures], or give the temperatures to a run file as a "
+                f"temperature is an array of shape {given.shape}, but a material has one temperature: make "
+                "a list, [rubber.at(T, shift) for T in temperatures], or give the temperatures to a run file as a "
                 "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
             )
             raise ParameterError("temperature", given.shape, "one number", sentence)
@@ -215,15 +229,38 @@ class Material(FromPrograms):
         ------
         ParameterError
             A frequency that is negative, NaN or infinite.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), T_ref=0.01)
+        >>> float(rubber.storage(100.0))
+        6000000.0
         """
         return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
-        """Return the loss modulus E'', Pa; arguments and errors as of :meth:`storage`."""
+        """Return the loss modulus E'', Pa; arguments and errors as of :meth:`storage`.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), T_ref=0.01)
+        >>> float(rubber.loss(100.0))
+        3000000.0
+        """
         return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
-        """Return the loss factor E''/E', dimensionless; arguments and errors as of :meth:`storage`."""
+        """Return the loss factor E''/E', dimensionless; arguments and errors as of :meth:`storage`.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), T_ref=0.01)
+        >>> float(rubber.tan_delta(100.0))
+        0.5
+        """
         storage, loss = self._moduli(omega)
         return loss / storage
 
@@ -238,17 +275,39 @@ class Material(FromPrograms):
         ------
         ParameterError
             A time that is negative, NaN or infinite.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), T_ref=0.01)
+        >>> rubber.relaxation([0.0, 1.0])
+        array([9000000., 3000000.])
         """
         decay = np.exp(-self._divide_time(t, self.prony.tau))
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
     def creep(self, t: ArrayLike) -> Any:
-        """Return the creep compliance in tension times E, from E/E(0) to 1; arguments as of :meth:`relaxation`."""
+        """Return the creep compliance in tension times E, from E/E(0) to 1; arguments as of :meth:`relaxation`.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(3e6, 0.49, vr.Prony([3.0], [1.0]), T_ref=0.01)
+        >>> rubber.creep([0.0, 10.0])
+        array([0.25, 1.  ])
+        """
         growth = -np.expm1(-self._divide_time(t, self.prony.T))
         return (1.0 / self.prony.alpha + (self.prony.J * growth).sum(axis=-1))[()]
 
     def to_xarray(self) -> xr.Dataset:
-        """Return both forms of the series and the constants as a dataset, with names and units, as in files."""
+        """Return both forms of the series and the constants as a dataset, with names and units, as in files.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0])).to_xarray().sizes["mode"]
+        1
+        """
         from .material_netcdf import material_as_dataset
 
         return material_as_dataset(self)
@@ -290,6 +349,11 @@ class Material(FromPrograms):
         ------
         FileError
             If it cannot be written there; a file of that name is left as it was.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.elastic(2.1e11, 0.3).to_netcdf("steel.nc")
         """
         from .material_netcdf import save_material
 
@@ -307,6 +371,14 @@ class Material(FromPrograms):
         ------
         FileError
             A file that is missing, damaged in any byte, or no material.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> steel = vr.Material.elastic(2.1e11, 0.3)
+        >>> steel.to_netcdf("steel.nc")
+        >>> vr.Material.from_netcdf("steel.nc") == steel
+        True
         """
         from .material_netcdf import load_material
 

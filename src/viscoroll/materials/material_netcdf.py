@@ -28,14 +28,14 @@ _SCHEMA = "viscoroll material 1"
 _FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
 #: meaning and unit of each variable
 _MEANING = {
-    "E": ("strengths of relaxation over E_long", "1"),
+    "E": ("strengths of relaxation divided by E_long", "1"),
     "tau": ("relaxation times over T_ref", "1"),
-    "J": ("strengths of creep over the long-time compliance", "1"),
+    "J": ("strengths of creep divided by the long-time compliance", "1"),
     "T": ("retardation times over T_ref", "1"),
-    "E_long": ("long-time Young's modulus; infinite of a rigid body", "Pa"),
+    "E_long": ("long-time Young's modulus; infinite for a rigid body", "Pa"),
     "nu": ("Poisson's ratio, constant in time", "1"),
-    "T_ref": ("what the times are counted in", "s"),
-    "alpha": ("instantaneous over long-time modulus", "1"),
+    "T_ref": ("unit of the times tau and T", "s"),
+    "alpha": ("instantaneous modulus divided by long-time modulus", "1"),
     "density": ("density", "kg m-3"),
     "thickness": ("thickness of the layer", "m"),
     "temperature": ("temperature of moduli and times", "degC"),
@@ -91,9 +91,11 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
     try:
         numbers, about = read_content(path, "material of this package", "write it again")
         if about.get("schema") != _SCHEMA:
-            raise FileError(path, f"is no material: its schema is {about.get('schema')!r}, not {_SCHEMA!r}")
+            raise FileError(path, f"is not a material file: its schema is {about.get('schema')!r}, not {_SCHEMA!r}")
         if seal_matches(Path(path).read_bytes()) is None:
-            raise FileError(path, "is damaged, or no material of this package: there is no SHA-256 at its end")
+            raise FileError(
+                path, "is damaged or is not a material file of this package: the SHA-256 at its end is missing"
+            )
         form = tuple(numbers[name] for name in _FORMS[about["given"]])
         series = Prony(*form) if about["given"] == "relaxation" else Prony.creep(*form, alpha=numbers["alpha"])
         found: dict[str, Any] = {name: numbers[name] for name in ("nu", "T_ref", *_OPTIONAL) if name in numbers}
@@ -102,4 +104,4 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
             found["measured"] = Measured(**band, source=about["measured"])
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
     except (ParameterError, KeyError, ValueError, OSError) as error:
-        raise FileError(path, f"is no material ({' '.join(str(error).split()):.200})") from error
+        raise FileError(path, f"is not a material file ({' '.join(str(error).split()):.200})") from error

@@ -211,7 +211,7 @@ def _material_of_law(path: Path) -> Material:
     """Return the material of the law in file ``path``; raises FileError for a pair and for a law without units."""
     content = tomllib.loads(read_law(path).attributes["material"])
     if not content.keys() & set(SECTIONS):
-        raise FileError(path, "is the law of a material without units: it must be of one with [material]")
+        raise FileError(path, "is the law of a material without units: it must be the law of a [material] in SI units")
     if "base" in content:
         raise FileError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
     return parse_materials(path, content)["material"]

@@ -23,6 +23,13 @@ class Measured:
     ------
     ParameterError
         A value that is not finite or out of range, low above high.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> band = vr.Measured(low=0.06, high=630.0, misfit=0.004, source="dma.csv")
+    >>> print(band)
+    0.06 to 630 rad/s, misfit 0.4 % (dma.csv)
     """
 
     low: float
@@ -39,7 +46,14 @@ class Measured:
             raise ParameterError("source", f"{self.source!r:.60}", "a text")
 
     def shifted(self, a_T: float) -> Measured:
-        """Return the band at a temperature where all times are ``a_T`` times longer."""
+        """Return the band at a temperature where all times are ``a_T`` times longer.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Measured(low=0.1, high=100.0, misfit=0.004).shifted(10.0).high
+        10.0
+        """
         return replace(self, low=self.low / a_T, high=self.high / a_T)
 
     def __str__(self) -> str:

@@ -60,21 +60,21 @@ class Pair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
+        """Check the bodies, and what a layer of finite thickness allows; raises ParameterError."""
         for name in ("cylinder", "base"):
             body = getattr(self, name)
             if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
                 named = "material" if name == "cylinder" else name
                 raise ParameterError(named, f"{body!r:.60}", "a Material")
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
-            raise ParameterError("base", "rigid", "a body that deforms: the cylinder is rigid")
+            raise ParameterError("base", "rigid", "a deformable body, since the cylinder is rigid")
         if self.covered is not None:
             self._refuse_covers()
 
     def _refuse_covers(self) -> None:
         """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
-        thick = [body for body in (self.cylinder, self.half_space) if getattr(body, "thickness", None) is not None]
-        if len(thick) > 1:
-            allowed = "that of one body: of two layers the law is not known; give base=, rigid or elastic"
+        if self.cylinder.thickness is not None and self.half_space.thickness is not None:
+            allowed = "given for one body only: the law of two layers is not available; give base=, rigid or elastic"
             raise ParameterError("thickness", "of both bodies", allowed)
         if self.plane != "strain":
             raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
@@ -82,9 +82,9 @@ class Pair:
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
         """Name of the body that is a layer of finite thickness, or None."""
-        if getattr(self.cylinder, "thickness", None) is not None:
+        if self.cylinder.thickness is not None:
             return "cylinder"
-        return "base" if getattr(self.half_space, "thickness", None) is not None else None
+        return "base" if self.half_space.thickness is not None else None
 
     @property
     def half_space(self) -> Any:
@@ -148,7 +148,8 @@ class Pair:
     def cover(self, l0: Any) -> Cover:
         """Return the layer of finite thickness and its counterpart as a dimensionless :class:`Cover`.
 
-        Parameters ----------
+        Parameters
+        ----------
         l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array for many
         covers.
 
@@ -162,7 +163,9 @@ class Pair:
         layer, other = (self.cylinder, self.half_space) if on == "cylinder" else (self.half_space, self.cylinder)
         parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
         if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
-            allowed = "one series, nu and part of the compliance where a body has a thickness: only l0 and it may vary"
+            allowed = (
+                "one series, nu and compliance share where a body has a thickness: only the thickness and l0 may vary"
+            )
             raise ParameterError(on, "of many materials", allowed)
         series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
         part = float(np.max(parts))

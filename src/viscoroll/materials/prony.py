@@ -111,7 +111,9 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
-            raise ParameterError("E", f"of a sum of {np.max(alpha) - 1.0:g}", f"of a sum up to {HIGHEST_ALPHA:g}")
+            raise ParameterError(
+                "E", f"values with the sum {np.max(alpha) - 1.0:g}", f"values with a sum up to {HIGHEST_ALPHA:g}"
+            )
         self._set(False, strengths, times, alpha)
 
     @classmethod
@@ -140,11 +142,15 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("J", "T"), J, T)
         rest = np.asarray(1.0 - _exact_sums(strengths))
         if not (rest > 0.0).all():
-            found = f"of a sum of {1.0 - rest.min()!s}"
-            raise ParameterError("J", found, "of a sum below 1: the instantaneous modulus would be infinite")
+            found = f"values with the sum {1.0 - rest.min()!s}"
+            raise ParameterError(
+                "J", found, "values whose sum is below 1: otherwise the instantaneous modulus is infinite"
+            )
         given = 1.0 / rest if alpha is None else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
         if given.shape not in ((), rest.shape):
-            raise ParameterError("alpha", f"of shape {given.shape}", f"a number, or one a material, {rest.shape}")
+            raise ParameterError(
+                "alpha", f"of shape {given.shape}", f"a number, or one for each material, {rest.shape}"
+            )
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
@@ -156,7 +162,14 @@ class Prony(OneOrMany):
 
     @classmethod
     def elastic(cls) -> Prony:
-        """Make a material without modes: alpha = 1."""
+        """Make a material without modes: alpha = 1.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony.elastic().alpha
+        1.0
+        """
         return cls([], [])
 
     @classmethod
@@ -264,8 +277,14 @@ class Prony(OneOrMany):
         """Return the material with all times multiplied by ``factor``, a number or one for each, as of a colder rubber.
 
         Raises ParameterError for a factor that is not positive.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony([2.0], [1.0]).slower(10.0).tau
+        array([10.])
         """
-        times = self._times * check_array("factor", factor, low=0.0, strict=True)[..., np.newaxis]
+        times = self._times * check_array("factor", factor, above=0.0)[..., np.newaxis]
         if self.by_creep:
             return Prony.creep(self._strengths, times, alpha=self.alpha)
         return Prony(self._strengths, times)
@@ -285,6 +304,7 @@ class Prony(OneOrMany):
         return self.by_creep, self._strengths.shape, self._strengths.tobytes(), self._times.tobytes(), alpha
 
     def __repr__(self) -> str:
+        """Return the call that makes the series or, of many materials, their number and form."""
         if self.shape:
             form = "creep" if self.by_creep else "relaxation"
             return f"<{len(self)} series of {self._strengths.shape[-1]} modes, by {form}>"
@@ -301,7 +321,7 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
     strengths, times: (modes,) or (n, modes); dimensionless, in units of T_ref.
     Returns strengths and times by descending time, modes without strength dropped or, for many, set behind the others.
     """
-    values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, low=0.0, strict=True)
+    values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, above=0.0)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
         allowed = f"one time for each {names[0]}, of shape {values.shape}"
         raise ParameterError(names[1], f"of shape {each.shape}", allowed)

@@ -79,11 +79,12 @@ def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
 
 
 def _rate_differences(times: NDArray) -> Floats:
-    """Return the differences rate[j] - rate[l] of the rates 1/times, [..., j, l], from differences of times.
+    """Return the differences of the rates 1/times of the modes, computed from the differences of the times.
 
-    For close times their difference is exact, that of their rates is not.
+    For close times their difference is exact, that of the rounded rates is not.
 
-    times: (..., modes).
+    times: relaxation or retardation times, > 0, (..., modes).
+    Returns rate[j] - rate[l] as (..., modes, modes), [..., j, l].
     """
     row, column = times[..., None, :], times[..., :, None]
     return (row - column) / (column * row)
@@ -165,14 +166,15 @@ def _improve_distance(
 
 
 def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
-    """Return the strengths (J, E) times their rates: products of gaps divided by differences of the rates of one
-    form.
+    """Return the strengths of both forms of a series from the differences between the rates of the two forms.
 
-    The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.  Factors
-    are paired so that nothing overflows.
+    A strength times its rate is a product of gaps between rates of the two forms, divided by differences of rates of
+    one form.  The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits
+    cancel.  Factors are paired so that nothing overflows.
 
-    gap: a_i - b_j, [..., j, i].
-    alpha: a number or (...).
+    gap: a_i - b_j, rates of relaxation minus rates of creep, (..., modes, modes), [..., j, i].
+    alpha: instantaneous divided by long-time modulus, a number or (...).
+    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, (..., modes).
     """
     size, own = np.abs(gap), np.eye(gap.shape[-1], dtype=bool)
     nearest, alpha = np.diagonal(size, 0, -2, -1), np.asarray(alpha)[..., None]

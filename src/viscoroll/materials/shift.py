@@ -45,6 +45,13 @@ class WLF:
     -----
     ModelWarning
         A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+    >>> shift(20.0), shift(0.0) > 1.0
+    (1.0, True)
     """
 
     T0: float
@@ -59,7 +66,7 @@ class WLF:
         """Return a_T at a ``temperature`` in degrees Celsius."""
         above = check_celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
-            allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF, in degrees Celsius"
+            allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, where the WLF shift is infinite, in degrees Celsius"
             raise ParameterError("temperature", temperature, allowed)
         return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
 
@@ -83,6 +90,13 @@ class Arrhenius:
     -----
     ModelWarning
         A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+    >>> shift(20.0), shift(60.0) < 1.0
+    (1.0, True)
     """
 
     energy: float
@@ -117,7 +131,7 @@ def check_celsius(name: str, temperature: Any) -> float:
         A temperature outside :data:`USUAL_RANGE`.  The text contains no value, so that Python shows it once for each
         line of a program.
     """
-    found = check_number(name, temperature, unit="degC", low=ABSOLUTE_ZERO, strict=True)
+    found = check_number(name, temperature, unit="degC", above=ABSOLUTE_ZERO)
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
         low, high = USUAL_RANGE
         text = f"{name} is outside {low:g} to {high:g}: temperatures are in degrees Celsius, and this looks like kelvin"
@@ -142,12 +156,8 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
     ParameterError
         A temperature that the shift does not allow; a shift that returns no positive number.
     """
-    factor = check_number("a_T", shift(temperature), low=0.0, strict=True)
-    if reference is None:
-        return factor
-    return check_number(
-        "a_T", factor / check_number("a_T", shift(reference), low=0.0, strict=True), low=0.0, strict=True
-    )
+    factor, unit = (1.0 if at is None else check_number("a_T", shift(at), above=0.0) for at in (temperature, reference))
+    return check_number("a_T", factor / unit, above=0.0)
 
 
 def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
@@ -158,9 +168,7 @@ def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
     lows: lower bound of each field by name; the number must be larger.
     """
     for name, low in lows.items():
-        object.__setattr__(
-            instance, name, check_number(name, getattr(instance, name), unit=unit, low=low, strict=low > -math.inf)
-        )
+        object.__setattr__(instance, name, check_number(name, getattr(instance, name), unit=unit, above=low))
 
 
 def _shift(temperature: float, exponent: float) -> float:
@@ -170,5 +178,9 @@ def _shift(temperature: float, exponent: float) -> float:
     exponent: ln a_T.
     """
     if not abs(exponent) < 700.0:
-        raise ParameterError("temperature", temperature, f"nearer to T0: a_T = exp({exponent:.3g}) is no double")
+        raise ParameterError(
+            "temperature",
+            temperature,
+            f"nearer to T0: a_T = exp({exponent:.3g}) cannot be represented in double precision",
+        )
     return math.exp(exponent)

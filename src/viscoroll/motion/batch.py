@@ -35,11 +35,12 @@ FLOW_PAYS = 4096
 class Batch(NamedTuple):
     """Motions to be solved; dimensionless.
 
+    problem : the checked motions.
     inputs : parameters and start speeds by name, vectors of one or n values.
     immobile : motions that stay in the indentation of a standstill, (n,).
     times : output times.
     rows : names of the rows to compute.
-    threads : to use.
+    threads : number of threads.
     progress : title of a progress bar, None for none.
     """
 
@@ -74,13 +75,13 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     scene = batch.problem.scene
     free = not batch.problem.driven and scene.like_bodies
     if method == "flow" and (scene.shape or not free):
-        which = "motions have scenes of their own" if free else "motions are driven or unsteady, or bodies differ"
+        which = "motions have different scenes" if free else "motions are driven or unsteady, or bodies differ"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
     mapped = method == "flow" or (method == "auto" and batch.immobile.size >= FLOW_PAYS)
     if free and not scene.shape and mapped:
-        found = _look_up(batch, speed, about)
+        found = _solve_by_flow_map(batch, speed, about)
     if found is None:
         found = FlowResult.empty(len(batch.rows), batch.immobile.size, batch.times.size)
     about["flow"] = found.status >= 0
@@ -91,7 +92,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     return Solution(found, about)
 
 
-def _look_up(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowResult | None:
+def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowResult | None:
     """Look motions up in the flow map of their scene, which counts in the material's own time.
 
     batch: motions of one scene.
@@ -156,8 +157,8 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """Return the function that gives the kernel's law of some motions.
 
-    scene: parameters.
-    unsteady: whether the added mass acts; then several materials are asked for one motion at a time.
+    scene: parameters of the motions.
+    unsteady: whether the added mass acts; then several materials are requested for one motion at a time.
     The function takes alphas and indices of motions, and returns (law; whether bodies differ).
     """
     several: Any = scene.material_array
@@ -170,8 +171,8 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
         if several is not None:
             index = np.minimum(index, len(several) - 1)
         if unsteady:
-            one: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]
-            return law_table(one.item() if several is None else one).unsteady_record, False
+            material: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]
+            return law_table(material.item() if several is None else material).unsteady_record, False
         if several is None:
             return record_of_alphas(alpha), False
         return record_of_materials(several, index), isinstance(several, Bodies)

@@ -23,10 +23,11 @@ MOST_STEPS = 10_000_000
 
 
 def output_times(t: ArrayLike, units: Units = "1") -> Floats:
-    """Return output times as a vector of its own.
+    """Check output times.
 
     t: one time or a vector, in ``units``.
     units: unit of time, or those of a roller.
+    Returns a new vector (n,) in ``units``.
     Raises ParameterError unless they are finite, >= 0, ascending, and at least one.
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
@@ -50,8 +51,11 @@ def refuse_end(end: float, T: float) -> None:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
 
 
-def refuse_many(**arguments: Any) -> None:
-    """Raise ParameterError for an array where ``roll`` takes one number; arguments by name."""
+def require_single(**arguments: Any) -> None:
+    """Raise ParameterError for an array where ``roll`` takes one number.
+
+    arguments: argument of ``roll`` by name.
+    """
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
@@ -77,7 +81,7 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = 0.0 if rest is None else check_number("rest", rest, low=0.0, strict=True)
+    threshold = 0.0 if rest is None else check_number("rest", rest, above=0.0)
     return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
@@ -97,7 +101,7 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0
         if abs(fastest) > high:
-            raise ParameterError(name, fastest, f"at most {high:g} in size")
+            raise ParameterError(name, fastest, f"at most {high:g} in magnitude")
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer((V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16):
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
@@ -111,12 +115,12 @@ def in_words(error: ParameterError, scale: Scale) -> ParameterError:
     """Return the refusal of a dimensionless value with the units that it was divided by.
 
     error: the refusal.
-    scale: of the roller; for a scene the error itself is returned.
+    scale: scale of the roller; for a scene the error itself is returned.
     """
     if not scale.si:
         return error
     about = "dimensionless"
     if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):
         T, V, P = (f"{scale[name]:.6g} {unit}" for name, unit in (("t", "s"), ("V", "m/s"), ("force", "N/m")))
-        about += f": times over {T}, speeds over {V}, forces over {P}"
+        about += f": times divided by {T}, speeds by {V}, forces by {P}"
     return ParameterError(error.name, error.value, error.allowed, f"{error} ({about})")

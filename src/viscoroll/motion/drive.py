@@ -23,7 +23,10 @@ ROWS = STATES + ACTING + LOSSES
 
 
 class Drive(NamedTuple):
-    """What a caller gave to drive one motion or many; None: nothing."""
+    """Loads and prescribed speeds of one motion or many, as the caller gave them; None where nothing is given.
+
+    force, torque, slope, brake, drag, omega, V : as of :func:`viscoroll.roll`.
+    """
 
     force: Any = None
     torque: Any = None
@@ -71,7 +74,7 @@ class Drive(NamedTuple):
 def _is_zero(name: str, value: Any) -> bool:
     """Say whether a load is 0 at all times; a callable never counts as 0.
 
-    name: of the argument, for refusals.
+    name: name of the argument, for refusals.
     value: as given.
     Raises ParameterError for what is no number and no function of time.
     """
@@ -93,7 +96,7 @@ def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainA
 
     start: V0 and omega0 as given.
     drive: as given.
-    units: of the roller.
+    units: units of the roller.
     Raises ParameterError for a unit of another dimension.
     """
     plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)

@@ -94,7 +94,7 @@ class _Sampled:
     ) -> None:
         """Sample a callable.
 
-        name: of the argument, for refusals.
+        name: name of the argument, for refusals.
         function: takes t in T_ref, returns a number.
         end: last time, in T_ref.
         rtol: relative tolerance of the motion.
@@ -207,7 +207,7 @@ def fit_callable(
     """
     samples = SAMPLES
     if resolve is not None:
-        spacing = check_number("resolve", resolve, low=0.0, strict=True)
+        spacing = check_number("resolve", resolve, above=0.0)
         if spacing * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise ParameterError("resolve", spacing, allowed)
@@ -244,9 +244,10 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
         short = stop - start <= _LEAST_SPACINGS * np.spacing(stop)
         if sampled.taken - sampled.times.size > MOST or (cut is None and short):
             found = (
-                f"a callable that no polynomials follow near t = {start:.6g} ({sampled.taken} values of it were taken)"
+                f"a function that piecewise polynomials cannot approximate near t = {start:.6g} "
+                f"({sampled.taken} values of it were taken)"
             )
-            raise ParameterError(sampled.name, found, "smooth but for jumps and corners; give it as a Schedule")
+            raise ParameterError(sampled.name, found, "smooth except for jumps and corners; give it as a Schedule")
         left, right = cut or (0.5 * (start + stop),) * 2
         open_intervals += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
     return pieces
@@ -292,7 +293,7 @@ def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
     return _bisect(low, high, lambda t: is_above(t) != above_at_end)[1]
 
 
-def _product(first: NDArray[Any], second: NDArray[Any]) -> Floats:
+def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
     """Return the product of two matrices; its bits do not depend on numpy's library of linear algebra."""
-    product: Floats = np.einsum("ij,jk->ik", first, second)
+    product: Floats = np.einsum("ij,jk->ik", A, B)
     return product

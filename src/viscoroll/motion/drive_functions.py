@@ -12,6 +12,13 @@ from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array
 from ..core.drive import Feedback, slope_tan_cos
 from ..core.errors import ParameterError, exactly_one_error
+from ..kernels.motion.records import (
+    COL_COEFFICIENTS,
+    N_DRIVE_FUNCTIONS,
+    NOT_PRESCRIBED,
+    PRESCRIBED_OMEGA,
+    PRESCRIBED_V,
+)
 from .checks import start_speeds
 from .drive import Drive
 from .drive_fit import TERMS
@@ -35,11 +42,15 @@ _BLOCK_BYTES = 1 << 18
 _START = 1e-9
 #: (argument, prescribed speed beside which it must not be given, reason).
 _BESIDE = (
-    ("torque", "omega", "it is what the prescribed omega needs"), ("force", "V", "it is what the prescribed V needs"),
+    ("torque", "omega", "the torque follows from the prescribed omega"), ("force", "V", "the force follows "
+        "from the prescribed V"),
     ("brake", "omega", "omega is prescribed"), ("drag", "omega", "omega is prescribed"),
 )  # fmt: skip
 #: Names of the gains in the order of the kernel's.
 _GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
+
+#: Code in the kernels of the prescribed speed, by its name; "" for none.
+_PRESCRIBED_CODES = {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}
 
 #: (pieces (1 or m, k, columns); gains (4, 1 or m); code of the prescribed speed), as the kernels take a drive.
 KernelDrive = tuple[Floats, Floats, int]
@@ -52,9 +63,9 @@ class DriveFunctions:
     Attributes
     ----------
     functions : force, torque, brake and prescribed speed by name, where there are any.
-    tangent : of the slope, which adds to the force, () or (m,).
+    tangent : tangent of the slope, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
-    gains : of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
+    gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
     end : last time, in T_ref.
     """
 
@@ -101,7 +112,7 @@ class DriveFunctions:
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
         """Return (value at t = 0, largest size) of a prescribed speed, of every motion that has its own.
 
-        name: of the speed.
+        name: name of the speed.
         Raises ParameterError where it jumps.
         """
         speed, firsts, sizes = self.functions[name], [], []
@@ -128,7 +139,7 @@ class DriveFunctions:
         """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
         pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
-        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _code_of(self.prescribed)
+        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
     def _take(self, index: Any) -> DriveFunctions:
         """Return the functions of some motions; ``index`` of numpy."""
@@ -146,19 +157,9 @@ class DriveFunctions:
 
 
 @cache
-def _code_of(speed: str) -> int:
-    """Return the kernel's code of a prescribed ``speed``, "omega", "V" or "" for none."""
-    from ..kernels.motion.workspace import NOT_PRESCRIBED, PRESCRIBED_OMEGA, PRESCRIBED_V
-
-    return {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}[speed]
-
-
-@cache
 def undriven() -> KernelDrive:
     """Return the kernel's drive of free motions."""
-    from ..kernels.motion.workspace import COL_COEFFICIENTS, N_DRIVE_FUNCTIONS
-
-    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), _code_of("")
+    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
 
 
 class DrivenStart(NamedTuple):
@@ -182,7 +183,7 @@ def prepare_drive(
     from them given as well; a start that is not the prescribed one; ``resolve`` without a callable.
     """
     if resolve is not None and not drive.has_callable:
-        sentence = f"resolve = {resolve!s:.60} is given, but nothing that drives is a function of t: leave it out"
+        sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
         raise ParameterError("resolve", resolve, "left out", sentence)
     if not drive.acts:
         return DrivenStart(None, *start_speeds(V0, omega0))
@@ -213,28 +214,30 @@ def _refuse_both(drive: Drive) -> None:
         raise exactly_one_error("V", "omega", both=True)
     for name, speed, why in _BESIDE:
         if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
-            raise ParameterError(name, value, "left out", f"{name} is given beside {speed}=: leave it out, {why}")
+            raise ParameterError(
+                name, value, "left out", f"{name} is given together with {speed}=: leave it out, {why}"
+            )
 
 
-def _prescribed_start(name: str, given: Any, functions: DriveFunctions, speed: Any) -> Any:
+def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: Any) -> Any:
     """Return the start that is prescribed: a number where it is the same for all, else one for each motion.
 
     name: "V" or "omega".
-    given: the start that the caller gave; None without.
+    stated: the start that the caller gave; None without.
     functions: with the prescribed speed.
     speed: the prescribed speed as the caller gave it.
-    Raises ParameterError where ``given`` is another start, or where the speed jumps.
+    Raises ParameterError where ``stated`` is another start, or where the speed jumps.
     """
     if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
-        raise ParameterError(name, "an empty array", "a number, one a motion, or a function of t")
+        raise ParameterError(name, "an empty array", "a number, an array with one for each motion, or a function of t")
     start, scale = functions.speed_at_start(name)
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
-    if given is not None and not (np.abs(check_array(f"{name}0", given) - start) <= _START * scale).all():
-        raise ParameterError(f"{name}0", given, f"None, or {float(start[0]):.12g} as prescribed")
+    if stated is not None and not (np.abs(check_array(f"{name}0", stated) - start) <= _START * scale).all():
+        raise ParameterError(f"{name}0", stated, f"None, or {float(start[0]):.12g} as prescribed")
     if start.size > 1:
         return start
-    return float(start[0]) if np.ndim(given) == 0 else np.full(np.shape(given), start[0])
+    return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])
 
 
 def _gains(drive: Drive) -> Floats:
@@ -253,6 +256,6 @@ def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
     functions: that drive.
     """
     if rest > 0.0 and functions is not None and functions.acts_at_end:
-        sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
-        sentence += " (what a brake stops and holds is at rest in finite time: switches say when)"
+        sentence = f"rest = {rest:g} is given, but the motion is driven to its end: leave it out"
+        sentence += " (a brake stops the motion in finite time: see switches)"
         raise ParameterError("rest", rest, "None", sentence)

@@ -118,7 +118,7 @@ def ensemble(
     start, drive, labels = strip_units((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
     progress = check_bool("progress", progress)
     if speed is not None:
-        speed = check_number("speed", speed, unit=units, low=0.0, strict=True)
+        speed = check_number("speed", speed, unit=units, above=0.0)
     options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
     problem = make_problem(roller, start, drive, times[-1], options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)

@@ -63,7 +63,7 @@ class Ensemble(RollResult):
     flow_problem : why a map that was tried could not be used, or "".
     drive_error : as of a :class:`Motion`.
     drive : loads and prescribed speeds as they were given.
-    labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
+    labels : labels of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
 
     Examples
     --------
@@ -89,7 +89,14 @@ class Ensemble(RollResult):
         return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
 
     def messages(self) -> dict[str, int]:
-        """How many motions ended in which way, in words."""
+        """How many motions ended in which way, in words.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0).messages()
+        {'reached the last output time': 2}
+        """
         codes, counts = np.unique(self.status, return_counts=True)
         return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
 
@@ -112,11 +119,18 @@ class Ensemble(RollResult):
         ------
         ParameterError
             If there are no motions, or quantiles are none.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.summary(quantiles=[0.5])["V_quantiles"].dims
+        ('quantile', 't')
         """
         from .summaries import summary_of
 
-        given: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
-        levels = check_array("quantiles", given, low=0.0, high=1.0)
+        values: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
+        levels = check_array("quantiles", values, low=0.0, high=1.0)
         if levels.ndim != 1:
             raise ParameterError("quantiles", describe_value(quantiles), "a list of numbers")
         return summary_of(self, tuple(levels.tolist()))
@@ -126,6 +140,13 @@ class Ensemble(RollResult):
 
         ``steady`` examines all speeds of a motion.  See :func:`viscoroll.validity`; arrays over the motions, for more
         than 256 over that many of them, evenly spaced.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.validity().steady.holds.shape
+        (2,)
         """
         index, V, omega = self.fastest()
         roller = self.roller.take(index, len(self))
@@ -162,7 +183,15 @@ class Ensemble(RollResult):
         return f"Ensemble of {len(self)} motions", rows + ends
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over (motion, t) with starts, outputs, onset and status."""
+        """Dataset over (motion, t) with starts, outputs, onset and status.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.to_xarray()["V"].dims
+        ('motion', 't')
+        """
         from .export import ensemble_dataset
 
         return ensemble_dataset(self)

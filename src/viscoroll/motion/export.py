@@ -59,8 +59,8 @@ def _dataset(
     """Return the dataset of a result.
 
     result: its rows, drive and roller are put into the dataset.
-    title: of the dataset.
-    dims: of the rows.
+    title: title of the dataset.
+    dims: dimensions of the rows.
     variables, about: further variables and attributes.
     """
     si = result.scale.si
@@ -132,7 +132,7 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 
     if isinstance(materials, Cover):
         layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
-        return along("cover_thickness", materials.thickness, "thickness of the cover over l0", **layer)
+        return along("cover_thickness", materials.thickness, "thickness of the cover divided by l0", **layer)
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")
@@ -143,14 +143,17 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
     """Return the strengths and times of the modes of one body, over (motion, mode).
 
-    series: of each motion, or one.
+    series: the series of each motion, or one.
     count: number of motions.
-    prefix, title: of the names and of the long_names.
+    prefix, title: first letters of the names and of the long_names.
     """
     form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
     parts = {
-        "strengths": (series.J if series.by_creep else series.E, f"strengths of {form} over the long-time {total}"),
-        "times": (series.T if series.by_creep else series.tau, f"times of {form} over T_ref"),
+        "strengths": (
+            series.J if series.by_creep else series.E,
+            f"strengths of {form} divided by the long-time {total}",
+        ),
+        "times": (series.T if series.by_creep else series.tau, f"times of {form} divided by T_ref"),
     }
     return {
         f"{prefix}{form}_{name}": (

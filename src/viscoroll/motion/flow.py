@@ -44,10 +44,10 @@ _OCTAVE_STEP = 4
 
 
 def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
-    """Parameters and highest octave of the map for a scene.
+    """Return the parameters and the highest octave of the flow map of a scene.
 
-    scene : parameters of one scene.  speed : highest speed, > 0.
-
+    scene : parameters of one scene.
+    speed : highest speed, > 0, dimensionless.
     Returns ((material, kappa, mu, j), octave): the map covers kappa V < 2**octave at onset.
     """
     from ..kernels.flow.layout import OCTAVE_RANGE
@@ -58,9 +58,11 @@ def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
 
 
 def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:
-    """The map of a scene for speeds up to ``speed`` > 0: from memory, from disk, or built.
+    """Return the flow map of a scene: from memory, from disk, or built.
 
-    scene : parameters of one scene.  speed : highest speed.  threads : of the construction.
+    scene : parameters of one scene.
+    speed : highest speed that the map must cover, > 0, dimensionless.
+    threads : number of threads.
 
     A damaged map on disk is built again, with a RuntimeWarning.  If the disk cannot be written, the map is kept in
     memory.
@@ -70,6 +72,11 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
 
 @lru_cache(_MAPS_IN_MEMORY)
 def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
+    """Return a flow map from memory, from disk, or built; the last few stay in memory.
+
+    parameters, octave : as of :func:`map_key`.
+    threads : number of threads.
+    """
     path = path_of(parameters, octave)
     found = load(path, parameters)
     if found is None:
@@ -79,11 +86,11 @@ def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowM
 
 
 def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
-    """Build a map, and measure its error.
+    """Build the flow map of a scene and measure its error.
 
-    parameters : (material, kappa, mu, j).  octave : the map covers kappa V < 2**octave at onset.  threads : of the
-    work.
-
+    parameters : (material, kappa, mu, j).
+    octave : the map covers kappa V < 2**octave at onset.
+    threads : number of threads.
     Returns a :class:`FlowMap`; if the scene has none, its ``problem`` says why.
     """
     from ..kernels.flow.layout import OCTAVES, SIZE
@@ -97,11 +104,13 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
 
 
 def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
-    """Stated errors of a new map: the largest errors against the integrator on sampled motions, times the margin.
+    """Measure the errors of a new map: the largest errors against the integrator on sampled motions, times the
+    margin.
 
-    new_map : the map.  octave : highest octave of kappa V.  threads : of the work.
-
-    Returns the errors of speeds, path and losses.
+    new_map : the map.
+    octave : highest octave of kappa V.
+    threads : number of threads.
+    Returns (error of the speeds, of the path, of the losses), relative.
     """
     _, kappa, mu, _ = new_map.parameters
     rng = np.random.default_rng(20)
@@ -122,11 +131,11 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
 
 
 def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
-    """Largest relative errors of one motion of a new map against the integrator.
+    """Return the largest relative errors of one motion of a new map against the integrator.
 
-    new_map : the map.  V0, omega0 : initial speeds.
-
-    Returns the errors of the speeds (with the onset time), of distance and angle, and of the losses.
+    new_map : the map.
+    V0, omega0 : start speeds, dimensionless.
+    Returns (error of the speeds and the onset time, of distance and angle, of the losses).
     """
     _, _, _, j = new_map.parameters
     decay, start = 1.0 / new_map.slow_rate, (np.array([V0]), np.array([omega0]))
@@ -171,10 +180,11 @@ def _stiff_time(new_map: FlowMap, speed: float) -> float:
 class FlowResult(NamedTuple):
     """Motions as arrays.
 
-    out : outputs, (rows, motions, times).  status : of each motion; < 0 for a motion outside the map, whose other
-    entries are
-    undefined.  onset, rest : times of the onset of partial slip and of rest, NaN where there is none.
-    switches : number of regime changes.
+    out : outputs, (rows, motions, times).
+    status : code of each motion, (motions,); below 0 for a motion outside the map, whose other entries are
+    undefined.
+    onset, rest : times of the onset of partial slip and of rest, (motions,); NaN where there is none.
+    switches : number of regime changes, (motions,).
     """
 
     out: Floats
@@ -185,7 +195,12 @@ class FlowResult(NamedTuple):
 
     @classmethod
     def empty(cls, rows: int, count: int, times: int) -> FlowResult:
-        """Arrays for ``count`` motions with ``rows`` quantities at ``times`` times; no motion is looked up yet."""
+        """Return arrays for motions of which none is computed yet.
+
+        rows : number of output rows.
+        count : number of motions.
+        times : number of output times.
+        """
         return cls(
             np.empty((rows, count, times)), np.full(count, -1, np.int8), np.empty(count), np.empty(count),
             np.zeros(count, np.int64),
@@ -195,10 +210,13 @@ class FlowResult(NamedTuple):
 def look_up_ensemble(
     chosen: FlowMap, motions: Motions, *, threads: int | None = 1, progress: str | None = None
 ) -> FlowResult:
-    """Look up motions in a map.
+    """Compute motions from the tables of a flow map.
 
-    chosen : the map.  motions : gamma, threshold of rest, initial speeds, output times and rows.  threads : of the
-    work.  progress : title of a progress bar.
+    chosen : the map.
+    motions : gamma, threshold of rest, start speeds, output times and rows.
+    threads : number of threads.
+    progress : title of a progress bar, None for none.
+    Returns the motions as a :class:`FlowResult`; those outside the map have a status below 0.
     """
     from ..kernels.flow.loop import look_up_motions
     from ..kernels.flow.records import Flow

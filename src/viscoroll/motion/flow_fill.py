@@ -20,11 +20,11 @@ from .flow_store import FlowMap
 
 
 def fill_tables(new_map: FlowMap, threads: int | None) -> str:
-    """Fill the tables of a new map.
+    """Fill the tables of a new flow map.
 
-    new_map : the map, whose table is written.  threads : of the work.
-
-    Returns the reason why the scene has no map, or "".
+    new_map : the map, whose table is written.
+    threads : number of threads.
+    Returns the reason why the scene has no map, "" if it has one.
     """
     if new_map.slow_rate == 0.0:
         return "an elastic cylinder never slows down"

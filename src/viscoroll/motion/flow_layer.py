@@ -80,12 +80,22 @@ def fill_layers(
 
 
 def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
-    """k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes."""
+    """Return k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes.
+
+    problem : the scene.
+    V : speeds, dimensionless; the rates have their shape.
+    """
     return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V, np.zeros(V.shape))[STIFFNESS] / V
 
 
 def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Floats) -> tuple[Floats, Floats]:
-    """(V, delta) in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip at V."""
+    """Return (V, delta) in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip.
+
+    problem : the scene.
+    sign : sign of omega - V.
+    V : speeds at onset, (n,).
+    gamma : time scale of each motion, (n,).
+    """
     _, _, mu, j = problem.parameters
     state = problem.contact_states(V, np.zeros(V.shape))
     push, half_moment, tau = sign * mu, 0.5 * state[MOMENT], _LEAD * gamma
@@ -119,11 +129,12 @@ def _layer_motions(
 
 
 def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
-    """Coefficients, over kappa V at onset, of the value of E near which delta passes 0; 1 where it does not.
+    """Fit the value of E near which delta passes 0 by polynomials of kappa V at onset; it is 1 where delta does not.
 
-    problem : the scene.  sign : sign of omega - V at onset.  onsets : octaves of kappa V at onset.
-
-    Returns (octaves, powers).
+    problem : the scene.
+    sign : sign of omega - V at onset.
+    onsets : octaves of kappa V at onset.
+    Returns the coefficients, (octaves, powers).
     """
     powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
     powers[:, 0] = 1.0
@@ -147,5 +158,8 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
 
 
 def _padded(powers: Floats) -> Floats:
-    """Coefficients, padded with zeros to the number of powers of functions of one variable."""
+    """Pad coefficients with zeros to the number of powers of functions of one variable.
+
+    powers : coefficients, (rows, powers).
+    """
     return np.pad(powers, [(0, 0), (0, NODES.t.size - powers.shape[-1])])

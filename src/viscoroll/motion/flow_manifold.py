@@ -42,9 +42,11 @@ class SlowManifold(NamedTuple):
     slow_log: Floats
 
     def path_between(self, start: Floats, span: Floats, rate: float) -> tuple[Floats, Floats]:
-        """Distance and angle along the manifold, as ``manifold_path`` of :mod:`..kernels.flow.lookup`.
+        """Return (distance, angle) along the manifold, as ``manifold_path`` of :mod:`..kernels.flow.lookup`.
 
-        start : slow logarithms at the beginning.  span : their decrease.  rate : decrease in unit time.
+        start : slow logarithms at the beginning.
+        span : their decrease.
+        rate : decrease in unit time.
         """
         end, value = start - span, self.rows.value
         x, angle = (value(powers, start) - value(powers, end) for powers in self.path)

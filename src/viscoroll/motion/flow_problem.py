@@ -9,18 +9,18 @@ import numpy as np
 from ..core.array_types import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.states import states
-from ..kernels.motion.workspace import PARTIAL_SLIP
+from ..kernels.motion.records import PARTIAL_SLIP
 from .flow_rows import octaves
 from .problem import integrate_motions
 
 #: Reason: the rolling resistance exceeds the friction.
-STOPS = "rolling resistance can hold the sliding cylinder at a speed"
+STOPS = "the sliding cylinder can reach a steady speed"
 #: Reason: a motion of the slow manifold leaves partial slip.
 FULL_SLIP_RETURNS = "full slip returns"
 #: Reason: a motion of a boundary layer leaves partial slip.
-STICK_ENDS = "the stick zone does not always last"
+STICK_ENDS = "the cylinder can return from partial slip to full slip"
 #: Reason: numbers that are not finite.
-OUT_OF_RANGE = "its speeds or times leave the range of doubles"
+OUT_OF_RANGE = "its speeds or times exceed the range of double precision"
 
 #: Octaves of the tables over kappa V.
 SPEEDS = octaves(layout.LOW, layout.HIGH)
@@ -33,9 +33,10 @@ class NoFlowMap(Exception):
 class FlowProblem(NamedTuple):
     """A scene for which a map is made.
 
-    parameters : (material, kappa, mu, j).  law : record of the law's rows.  slow_rate : rate at which the slow
-    logarithm
-    falls.  threads : of the work.
+    parameters : (material, kappa, mu, j).
+    law : record of the law's rows.
+    slow_rate : rate at which the slow logarithm falls, in units of gamma.
+    threads : number of threads.
     """
 
     parameters: tuple[Any, ...]
@@ -44,11 +45,10 @@ class FlowProblem(NamedTuple):
     threads: int | None
 
     def contact_states(self, V: Floats, delta: Floats) -> Floats:
-        """Return contact states.
+        """Return delta_star, moment, traction and stiffness of the contact at speeds and creepages.
 
         V, delta : speeds and creepages, dimensionless, of one shape.
-
-        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V.
+        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V, shape (4, ...).
         """
         _, kappa, mu, _ = self.parameters
         out = np.empty((4, V.size))
@@ -58,10 +58,10 @@ class FlowProblem(NamedTuple):
     def integrate(self, V: Floats, delta: Floats, gamma: Floats, t: Floats, reason: str) -> tuple[Floats, Floats]:
         """Integrate motions in partial slip.
 
-        V, delta : initial speeds and creepages, (n,).  gamma : time scale of each motion, (n,).  t : common output
-        times.
+        V, delta : start speeds and creepages, (n,).
+        gamma : time scale of each motion, (n,).
+        t : output times, common to all.
         reason : message of :class:`NoFlowMap` if a motion leaves partial slip.
-
         Returns (V, delta), each (n, times).
         """
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):

@@ -30,27 +30,39 @@ class Nodes:
         self._chebyshev, self._powers = to_chebyshev(count), powers_of_chebyshev(count, 0.0, 1.0).T.copy()
 
     def powers(self, values: Floats) -> Floats:
-        """Coefficients of the powers of t in [-1, 1], by way of Chebyshev coefficients, which limits the rounding
-        errors.
+        """Return the coefficients of the powers of t in [-1, 1] of the polynomials through values at the nodes.
+
+        values : at the nodes, along the last axis.
+        Chebyshev coefficients are computed between, which limits the rounding errors.
         """
         return _applied(self._powers, _applied(self._chebyshev, values))
 
     def integrals(self, slopes: Floats, half: Any, start: Any = 0.0) -> Floats:
-        """Integral at the nodes, from ``start`` at the left end of the first row.
+        """Return the integral at the nodes, from a value at the left end of the first row.
 
-        slopes : values of the integrand, (rows, nodes).  half : half the length of each row.  start : initial value.
+        slopes : values of the integrand, (rows, nodes).
+        half : half the length of each row.
+        start : value at the left end.
         """
         whole = _applied(self._integrals, slopes) * np.asarray(half)[..., None]
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
         return whole[..., :-1] + (start + rises)[..., None]
 
     def end(self, slopes: Floats, half: Any) -> Floats:
-        """Integral over all rows."""
+        """Return the integral over all rows.
+
+        slopes : values of the integrand, (..., rows, nodes).
+        half : half the length of each row.
+        """
         return (_applied(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
 
 
 def _applied(matrix: Floats, values: Floats) -> Floats:
-    """A matrix applied along the last axis, without BLAS, whose last bits differ between machines."""
+    """Apply a matrix along the last axis, without BLAS, whose last bits differ between machines.
+
+    matrix : (m, n).
+    values : (..., n).
+    """
     return np.einsum("...n,mn->...m", values, matrix)
 
 
@@ -69,8 +81,11 @@ class Rows:
         return self.edges[:-1, None] + self.half[:, None] * (1.0 + nodes.t)
 
     def value(self, powers: Floats, x: Floats) -> Floats:
-        """Values at x of the function with the coefficients ``powers``, (row, power); beyond the ends the first or
-        last row is used.
+        """Evaluate a piecewise polynomial.
+
+        powers : coefficients, (row, power).
+        x : arguments, of any shape; beyond the ends the first or last row is used.
+        Returns the values, of the shape of x.
         """
         row = np.searchsorted(self.edges[1:-1], x, side="right")
         t, total = (x - self.edges[row]) / self.half[row] - 1.0, np.zeros(x.shape)
@@ -79,9 +94,11 @@ class Rows:
         return total
 
     def inverse(self, powers: Floats, target: Floats) -> Floats:
-        """Arguments at which an increasing function takes the values ``target``; the upper end for values beyond it.
+        """Return the arguments at which an increasing piecewise polynomial takes given values, by Newton's
+        iteration.
 
         powers : coefficients, (row, power).
+        target : values, of the shape of ``x``; the upper end is returned for values beyond it.
         """
         slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]
         x = np.interp(np.log(target), np.log(self.value(powers, self.x).ravel()), self.x.ravel())

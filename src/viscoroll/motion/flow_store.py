@@ -51,7 +51,10 @@ class FlowMap:
         return T_mean / (1.0 + j)
 
     def stated_error(self, *, path: bool, loss: bool) -> float:
-        """Largest stated error of the speeds and, if requested, of path and losses."""
+        """Return the largest stated error of the speeds and, if requested, of path and losses.
+
+        path, loss : whether errors of path and losses count.
+        """
         speeds, way, lost = self.errors
         return max(speeds, way if path else 0.0, lost if loss else 0.0)
 
@@ -74,7 +77,10 @@ def _digest(package: Path) -> str:
 
 
 def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
-    """The parameters as numbers; those of a series are alpha, relaxation rates and strengths."""
+    """Return the parameters as numbers; those of a series are alpha, relaxation rates and strengths.
+
+    parameters : (alpha or series, kappa, mu, j).
+    """
     material, *others = parameters
     if isinstance(material, Prony):
         return (material.alpha, *material.modes.a.tolist(), *material.modes.E.tolist(), *others)
@@ -82,14 +88,20 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
 
 
 def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
-    """File of the map for kappa V < 2**octave at onset."""
+    """Return the file of the map that covers kappa V < 2**octave at onset.
+
+    parameters : (material, kappa, mu, j).
+    octave : highest octave.
+    """
     numbers = np.array((*_numbers(parameters), octave), np.float64)
     return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
-    """The map in the file ``path``; None if there is none, or, after a warning, if it is damaged or of other
-    ``parameters``.
+    """Return the map in a file; None if there is none, or, after a warning, if it is damaged or of other parameters.
+
+    path : path of the file.
+    parameters : (material, kappa, mu, j) that the map must have.
     """
     try:
         content = read_private(path)
@@ -98,7 +110,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     try:
         found = _read(content, parameters)
     except Exception as error:
-        warnings.warn(f"{path}: flow map is damaged ({error}); it is built anew", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"{path}: flow map is damaged ({error}) and is built again", RuntimeWarning, stacklevel=2)
         return None
     with suppress(OSError):  # a folder that is read-only
         path.touch()
@@ -115,14 +127,16 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
         if not np.array_equal(data["parameters"], _numbers(parameters)):
             raise ValueError("its parameters are others")
         if data["table"].shape != (SIZE,):
-            raise ValueError("its table is of another size")
+            raise ValueError("its table has another size")
         errors = tuple(data["errors"].tolist())
         return FlowMap(parameters, int(data["first"]), data["table"], errors, str(data["problem"]))
 
 
 def save(new_map: FlowMap, path: Path) -> None:
-    """Write ``new_map`` to ``path``, and delete the oldest maps beyond the limit; if it cannot be written nothing
-    happens.
+    """Write a map, and delete the oldest maps beyond the limit; if it cannot be written nothing happens.
+
+    new_map : the map.
+    path : path of the file.
     """
     try:
         content, numbers = io.BytesIO(), _numbers(new_map.parameters)

@@ -25,8 +25,8 @@ class Histogram(msgspec.Struct):
     """Counts and moments of the finite values of one quantity at one time.
 
     bins : numbers of the bins that hold values, ascending.
-    counts : of the values in each, > 0.
-    count : of all values.
+    counts : number of the values in each, > 0.
+    count : number of all values.
     mean, low, high : moments; NaN without values.
     spread : sum of squares about the mean.
     values : all of them, where quantiles are to be exact; else None.
@@ -43,7 +43,11 @@ class Histogram(msgspec.Struct):
 
     @classmethod
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
-        """Return the histogram of the finite ones of ``values``, (n,); ``exact`` keeps them."""
+        """Return the histogram of the finite ones of some values.
+
+        values: (n,); those that are not finite are left out.
+        exact: whether to keep the values, for exact quantiles.
+        """
         kept = values[np.isfinite(values)]
         bits = (kept + 0.0).view(np.int64)  # -0 becomes 0
         # The order of numbers is that of their bins.
@@ -56,8 +60,9 @@ class Histogram(msgspec.Struct):
         return cls(bins, counts, kept.size, *moments, kept if exact else None)
 
     def merge(self, other: Histogram) -> Histogram:
-        """Return the histogram of its values and those of ``other``, without keeping them.
+        """Return the histogram of the values of two histograms, without keeping the values.
 
+        other: the second histogram.
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
         """
         if not self.count or not other.count:
@@ -76,9 +81,10 @@ class Histogram(msgspec.Struct):
         return counts
 
     def quantiles(self, levels: tuple[float, ...]) -> Floats:
-        """Return the quantiles at levels in [0, 1]; NaN without values.
+        """Return the quantiles, (levels,); NaN without values.
 
-        Without the values each lies between the two values beside it, which are known to their bins.
+        levels: in [0, 1]. Where the values were not kept, each quantile lies between the two values beside it, which
+        are known to their bins.
         """
         if not self.count:
             return np.full(len(levels), np.nan)

@@ -18,7 +18,7 @@ from ..core.errors import MotionStatus, ParameterError
 from ..core.results import SummaryRow, Values
 from .checks import SPEED_RANGE, output_times
 from .drive import ROWS
-from .problem import NO_NOTES, MotionProblem, integrate_one
+from .problem import NO_NOTES, MotionProblem, integrate_single
 from .result import RollResult
 
 if TYPE_CHECKING:
@@ -94,13 +94,13 @@ class Motion(RollResult):
             return text
         last = self._last_reached
         t, V, omega = (f"{x} = {float(last[x][0]):.6g} {self._unit(x)}".rstrip() for x in ("t", "V", "omega"))
-        return f"{text}; it stood at {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
+        return f"{text}; the last state was {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
 
     @cached_property
     def _step_ends(self) -> Floats:
         """Ends of the integration steps, ascending, in T_ref."""
         ends = np.full(2 * self.steps + _MORE_STEPS, np.nan)
-        integrate_one(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
+        integrate_single(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
         return ends[~np.isnan(ends)]
 
     @cached_property
@@ -143,6 +143,13 @@ class Motion(RollResult):
         ------
         ParameterError
             Unknown fields or options out of range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.contact(["Q", "beta"]).beta.shape
+        (2,)
         """
         reached = self.regime >= 0
         V, delta = self.V[reached], self.delta[reached]
@@ -160,6 +167,13 @@ class Motion(RollResult):
         """Report which assumptions of the model the motion violates, at each output time that it reached.
 
         See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.validity().steady.holds.shape
+        (2,)
         """
         reached = self.regime >= 0
         V = self.V[reached]
@@ -173,7 +187,7 @@ class Motion(RollResult):
         """Title and rows of the printed report."""
         rows = [self._row_of_times()]
         rows += [
-            SummaryRow(name, _describe_course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
+            SummaryRow(name, _describe_values(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
         ]
         for name, given in self.drive.given.items():
             title = f"prescribed {name}" if name in ("V", "omega") else name  # V and omega have rows of their own above
@@ -207,6 +221,13 @@ class Motion(RollResult):
         ------
         ParameterError
             Times that are not ascending or lie beyond the end of the motion.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, 2.0)
+        >>> motion.at([0.5, 1.5]).V.shape
+        (2,)
         """
         times = output_times(t, self.scale)
         end = self._problem.end * self.scale["t"]
@@ -228,7 +249,15 @@ class Motion(RollResult):
         return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
+        """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.to_xarray()["V"].attrs["units"]
+        'm s-1'
+        """
         from .export import motion_dataset
 
         return motion_dataset(self)
@@ -237,7 +266,7 @@ class Motion(RollResult):
 def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     """Integrate one motion.
 
-    problem: of one motion.
+    problem: checked problem of one motion.
     times: output times, ascending, in the unit of its roller; the motion is integrated to its end in any case.
     """
     scale, end = problem.roller.scale, problem.end
@@ -246,22 +275,22 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
         t = np.append(t, end)
     noted = np.empty((_SWITCHES_KEPT, 2))
     noted.fill(np.nan)
-    out, (status, steps, _, onset_time, rest_time) = integrate_one(problem, t, noted, NO_NOTES[1])
+    out, (status, steps, _, onset_time, rest_time) = integrate_single(problem, t, noted, NO_NOTES[1])
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
     codes = rows.pop("regime")
     if scale.si:
         rows = {name: row * scale[name] for name, row in rows.items()}
-    regime = np.where(np.isnan(codes), -1, codes).astype(np.int8)
+    codes[np.isnan(codes)] = -1.0
     noted = noted[~np.isnan(noted[:, 1])]
     switches = tuple(Switch(float(when) * T, REGIMES[int(code)]) for when, code in noted if code >= 0.0)
     return Motion(
-        problem.roller, problem.drive, times, **rows, regime=regime, switches=switches, onset_time=onset_time * T,
-        rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
+        problem.roller, problem.drive, times, **rows, regime=codes.astype(np.int8), switches=switches,
+        onset_time=onset_time * T, rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
         reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.drive_error, _problem=problem,
     )  # fmt: skip
 
 
-def _describe_course(t: NDArray, values: NDArray) -> str:
+def _describe_values(t: NDArray, values: NDArray) -> str:
     """Describe values over time: the first, the last that was reached, and the largest between them with its time.
 
     t, values: (times,); NaN where the motion did not get.

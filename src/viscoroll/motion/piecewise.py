@@ -14,6 +14,7 @@ from ..core.array_types import Floats
 from ..core.checks import check_array
 from ..core.drive import Feedback, Schedule, require_time_argument
 from ..core.errors import ParameterError
+from ..kernels.motion.records import COL_COEFFICIENTS, COL_SCALE, COL_START
 from .drive_fit import fit_callable
 
 #: First value of a piece divided by the size of its terms, dimensionless, that counts as rounding: some 50 roundings.
@@ -49,12 +50,12 @@ TimeFunction = Floats | Schedule | Piecewise
 
 
 def check_function(
-    name: str, given: Any, end: float, rtol: float, *, low: float = -np.inf, resolve: float | None = None
+    name: str, function: Any, end: float, rtol: float, *, low: float = -np.inf, resolve: float | None = None
 ) -> TimeFunction:
     """Check a function of time; a callable is fitted.
 
-    name: of the argument, for refusals.
-    given: None (0), a number, one of each motion, a Schedule, a callable of t, or a Feedback of one of these, whose
+    name: name of the argument, for refusals.
+    function: None (0), a number, one of each motion, a Schedule, a callable of t, or a Feedback of one of these, whose
     gains are ignored; dimensionless.
     end: last time, in T_ref.
     rtol: relative tolerance of the motion, of which the fit of a callable takes a tenth.
@@ -63,20 +64,20 @@ def check_function(
     Raises ParameterError for what is neither a number, a schedule nor a callable; values that are not finite or below
     ``low``; a callable that polynomials do not follow.
     """
-    if isinstance(given, Feedback):
-        given = given.value
-    if callable(given):
-        require_time_argument(name, given)
-        starts, terms, error = fit_callable(name, given, end, rtol, low, resolve)
+    if isinstance(function, Feedback):
+        function = function.value
+    if callable(function):
+        require_time_argument(name, function)
+        starts, terms, error = fit_callable(name, function, end, rtol, low, resolve)
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         return Piecewise(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
-    if isinstance(given, Schedule):
-        check_array(f"values of {name}", given.values, low=low)
-        return given
-    values = check_array(name, 0.0 if given is None else given, low=low)
+    if isinstance(function, Schedule):
+        check_array(f"values of {name}", function.values, low=low)
+        return function
+    values = check_array(name, 0.0 if function is None else function, low=low)
     if values.ndim > 1:
-        allowed = "a number, one a motion, or a Schedule(times, values)"
+        allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
         raise ParameterError(name, f"array of shape {values.shape}", allowed)
     return values
 
@@ -131,7 +132,7 @@ def _ends(starts: Floats) -> Floats:
 def differentiate(name: str, speed: Piecewise) -> Piecewise:
     """Return the derivative of a prescribed speed.
 
-    name: of the argument, for the refusal.
+    name: name of the argument, for the refusal.
     speed: in the unit of the kernels.
     Raises ParameterError where the speed jumps.
     """
@@ -171,13 +172,11 @@ def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
 def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """Return several functions over common pieces, in the layout of the kernels.
 
-    functions: of the same motions, or the same for all.
+    functions: piecewise polynomials of the same motions, or the same for all.
     end: last time, in T_ref.
     Returns (m, k, 2 + terms of all functions).  Where motions have times of their own, pieces between equal times have
     no length; the kernels skip them.
     """
-    from ..kernels.motion.workspace import COL_COEFFICIENTS, COL_SCALE, COL_START
-
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
@@ -202,9 +201,9 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
 def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> Floats:
     """Return the terms of a function over finer pieces.
 
-    function: of one motion or m.
+    function: piecewise polynomial of one motion or of m motions.
     rows: number of motions with times of their own, or 1.
-    starts, ends: of the finer pieces, (rows, k).
+    starts, ends: when the finer pieces start and end, (rows, k).
     Returns (1 or m, k, terms).
     """
     piece = _piece_at(function.starts, starts)
@@ -237,7 +236,7 @@ def _substitute(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, e
 
     terms: (m, k, terms).
     first, last: start and end of each piece, (m, k); inf for one without end, which is constant.
-    starts, ends: of the part, (m, k).
+    starts, ends: start and end of each part, (m, k).
     """
     endless = np.isinf(last) | (last == first)
     length = np.where(endless, 1.0, last - first)

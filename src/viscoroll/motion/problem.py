@@ -19,7 +19,7 @@ from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
 from ..materials.law.table import law_table
-from .checks import controls, in_words, refuse_end, refuse_many
+from .checks import controls, in_words, refuse_end, require_single
 from .drive import LOSSES, ROWS, STATES, Drive
 from .drive_functions import DriveFunctions, DrivenStart, KernelDrive, prepare_drive, refuse_rest, undriven
 
@@ -98,11 +98,11 @@ def make_problem(
     """
     acts = drive.acts
     if single:
-        refuse_many(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
+        require_single(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
     drive, (rtol, rest, max_steps, resolve, unsteady, rested) = drive.without_zeros() if acts else drive, options
     roller, scene, scale = resolve_model(roller, "roll" if single else "ensemble", moves=True, slope=drive.slope)
     if single and scene.shape:
-        refuse_many(material=roller.material, **roller.numbers)
+        require_single(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
@@ -135,9 +135,9 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refuse_cover(scene, "N is not known: leave unsteady=True out")
+    refuse_cover(scene, "N is not available: leave unsteady=True out")
     if not scene.like_bodies:
-        sentence = "unsteady = True: the bodies differ, and the added mass of either is not known then"
+        sentence = "unsteady = True: the added mass N is not available for bodies of different materials"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     return True
 
@@ -146,7 +146,7 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
     """Return the time of the standstill before the start, infinite for a long one, in the unit of the roller.
 
     rested: as given.
-    units: of the roller.
+    units: units of the roller.
     Raises ParameterError for what is not one number >= 0.
     """
     if isinstance(rested, bool | np.bool_):
@@ -168,13 +168,13 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
     """
     if rested == 0.0:
         return start.V0, start.omega0, False
-    refuse_cover(scene, "the cost of leaving the indentation of a standstill is not known: leave rested out")
+    refuse_cover(scene, "the energy loss of a start after a standstill is not available: leave rested out")
     V = np.asarray(start.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     prescribed = start.functions is not None and start.functions.prescribed
     if prescribed or np.any(np.abs(start.omega0 - V) > limit):
         why = "a speed is prescribed" if prescribed else "it starts in full slip"
-        sentence = f"rested is given, but {why}: the cost of leaving the indentation is not known then"
+        sentence = f"rested is given, but {why}: the energy loss of the start is then not available"
         raise ParameterError("rested", rested, "left out", sentence)
     lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
     return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS
@@ -188,24 +188,24 @@ def integrate(
 
     count: their number.
     batch: law, whether bodies differ, kappa, mu, gamma, j, V0, omega0, each one number or (count,).
-    drive: of the motions.
+    drive: drive of the motions as the kernels take it.
     times: output times, ascending, in T_ref.
     limits: (rtol, threshold of rest, step limit).
     rows: indices into :data:`ROWS`.
     notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
     Returns (rows (rows, count, times); status, steps, switches, onset and rest time of each motion (count, 5)).
     """
-    from ..kernels.motion.batch import INFO_COLUMNS, motion_loop
+    from ..kernels.motion.batch import N_INFO_COLUMNS, motion_loop
 
-    out, info = np.empty((rows.size, count, times.size)), np.empty((count, len(INFO_COLUMNS)))
+    out, info = np.empty((rows.size, count, times.size)), np.empty((count, N_INFO_COLUMNS))
     motion_loop(batch, drive, times, limits, rows, out, info, notes)
     return out, info
 
 
-def integrate_one(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
+def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """Integrate one motion; returns all rows (rows, times), and status, steps, switches, onset and rest time.
 
-    problem: of one motion.
+    problem: checked problem of one motion.
     times: output times, ascending, in T_ref.
     notes: as of :func:`integrate`.
     """
@@ -231,7 +231,7 @@ def integrate_motions(
 
     parameters: (alpha or series, kappa, mu, j).
     starts: V0 and omega0, (n,).
-    gamma: of each motion, (n,); the times count in its unit.
+    gamma: time scale of each motion, (n,).
     t: output times, common to all.
     threads: to use.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss (8, n, times); status, steps, switches, onset

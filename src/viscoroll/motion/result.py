@@ -64,8 +64,8 @@ class RollResult(Result):
     ) -> Validity:
         """Add to a report whether the law of steady rolling may drive the motions.
 
-        report: of the motions' states.
-        roller: of the motions.
+        report: validity of the states of the motions.
+        roller: roller of the motions.
         V: speeds in its unit, (times, ...); rolls, x, ends: as of :meth:`.Steadiness.along`.
         """
         free = FreeRolling.of_scene(roller.scene(), V / roller.scale["V"]).scaled(roller.scale)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Quantity(NamedTuple):
     """A quantity that summaries describe.
 
-    fields : of an ensemble that it needs.
+    fields : names of the fields of an ensemble that it needs.
     values : (motions, index of the output time) -> its values, (n,); the index is ignored without ``over_time``.
     column : whose name and unit it has; "" for a part of the kinetic energy at the start.
     part : which part that is.
@@ -46,8 +46,13 @@ class Quantity(NamedTuple):
         return column_attributes(self.column, si)
 
 
-def _bare(motions: Any, name: str, k: int) -> NDArray:
-    """Return a field at an output time without dimension, (n,)."""
+def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
+    """Return a field at an output time without dimension, (n,).
+
+    motions: an ensemble.
+    name: name of the field.
+    k: index of the output time.
+    """
     return getattr(motions, name)[:, k] / motions.scale[name]
 
 
@@ -60,17 +65,17 @@ def _start_energy(motions: Any) -> NDArray:
 
 def _translation(motions: Any, k: int) -> NDArray:
     """Return the part of the kinetic energy at the start that is in translation, (n,)."""
-    return _bare(motions, "V", k) ** 2 / _start_energy(motions)
+    return _dimensionless(motions, "V", k) ** 2 / _start_energy(motions)
 
 
 def _rotation(motions: Any, k: int) -> NDArray:
     """Return the part of the kinetic energy at the start that is in rotation, (n,)."""
-    return motions.scene.j * _bare(motions, "omega", k) ** 2 / _start_energy(motions)
+    return motions.scene.j * _dimensionless(motions, "omega", k) ** 2 / _start_energy(motions)
 
 
 def _loss(name: str, motions: Any, k: int) -> NDArray:
     """Return a loss divided by the kinetic energy at the start, half of whose unit is m (R/T_epsilon)^2, (n,)."""
-    return 2.0 * _bare(motions, name, k) / _start_energy(motions)
+    return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
 
 def _field(name: str, motions: Any, k: int) -> NDArray:
@@ -117,7 +122,7 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     """Return the summary of an ensemble in memory with exact quantiles, see ``Ensemble.summary``.
 
     motions: the ensemble.
-    levels: of the quantiles, in [0, 1].
+    levels: levels of the quantiles, in [0, 1].
     Raises ParameterError for an ensemble without motions.
     """
     if not len(motions):
@@ -134,7 +139,7 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
     """Return the summary of a block.
 
     motions: an ensemble.
-    names: of the quantities.
+    names: names of the quantities.
     exact: whether to keep the values for exact quantiles.
     """
     histograms = {}
@@ -164,7 +169,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
 
     total: the summary.
     t: output times, in the unit of the roller.
-    levels: of the quantiles, in [0, 1].
+    levels: levels of the quantiles, in [0, 1].
     si: whether the units are those of a cylinder.
     """
     import xarray as xr
@@ -174,7 +179,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
         data |= _variables(name, histograms, levels, si)
     codes = np.array([int(code) for code in MotionStatus], np.int8)
     ended = column_attributes("status") | {
-        "long_name": "motions by how they ended", "units": "1",
+        "long_name": "number of motions with each status", "units": "1",
         "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
     }  # fmt: skip
     data["ended"] = "status", np.array([total.statuses.get(code, 0) for code in codes.tolist()]), ended
@@ -190,7 +195,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
 def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...], si: bool) -> dict[str, Any]:
     """Return the variables of one quantity: moments, quantiles, and counts in all bins that hold a value at some time.
 
-    name: of the quantity.
+    name: name of the quantity.
     histograms: one for each output time, or one.
     levels, si: as of :func:`summary_dataset`.
     """
@@ -217,6 +222,6 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
         attributes = {"long_name": f"{title} of: {about['long_name']}", "units": units}
         data[f"{name}_{part}"] = dims, values.reshape(values.shape[: len(dims)]), attributes
     exact = any(one.values is not None for one in histograms)
-    accuracy = "exact" if exact else "known to the bin that they lie in, at most 0.4 % wide"
+    accuracy = "exact" if exact else "accurate to the width of a bin, at most 0.4 %"
     data[f"{name}_quantiles"][2]["comment"] = accuracy
     return data

@@ -384,16 +384,16 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 
 # --- what is said ---
 
-SCENE = "import numpy as np; import viscoroll as vr; scene = vr.presets.PAPER_SECTION_5\n"
 #: without a figure: the first kernel does not know how many follow it
 NOTICE = r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
 
 
 def test_who_waits_is_told_once_a_process(tmp_path):
-    code = SCENE + "print(*(np.size(vr.contact(scene, V, delta=0.01).Q) for V in (0.5, [0.5] * 100)))"
+    calls = "print(kernel(lambda x: x)(1), kernel(lambda x: 2.0 * x)(50.0))"
+    code = f"from viscoroll.kernels.compile.jit import kernel; {calls}"
     first = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="")
     assert re.fullmatch(NOTICE, first.stderr)
-    assert first.stdout == "1 100\n"
+    assert first.stdout == "1 100.0\n"
     assert python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="").stderr == ""
 
 

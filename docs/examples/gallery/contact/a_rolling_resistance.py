@@ -14,11 +14,10 @@ import viscoroll as vr
 
 V = np.geomspace(1e-3, 1e2, 400)  # in units of R/T_epsilon
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-for alpha in (1.5, 3.0, 11.0, 81.5):
+for alpha, style in zip((1.5, 3.0, 11.0, 81.5), (":", "-.", "--", "-"), strict=True):
     scene = vr.Scene(alpha=alpha, kappa=10.0, mu=0.3)
-    axes.semilogx(
-        V, vr.contact(scene, V, delta=0.0, fields="M").M, label=rf"$\alpha = {alpha:g}$"
-    )
+    M = vr.contact(scene, V, delta=0.0, fields="M").M
+    axes.semilogx(V, M, style, label=rf"$\alpha = {alpha:g}$")
 axes.set(
     xlabel=r"speed $V T_\varepsilon/R$",
     ylabel="rolling resistance $M/(PR)$",

@@ -9,6 +9,7 @@ unstable steady speed: from there the roller slows down to the first, or acceler
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullFormatter
 
 import viscoroll as vr
 
@@ -24,18 +25,27 @@ for axes, scene, title in zip(
     strict=True,
 ):
     extrema = vr.resistance_extrema(scene)
-    V = np.geomspace(extrema.V[0] / 10.0, 3.0 * extrema.V[-1], 801)
+    V = np.geomspace(extrema.V[0] / 20.0, 5.0 * extrema.V[-1], 801)
     axes.semilogx(V, vr.contact(scene, V, delta=0.0, fields="M").M, "k", label="M")
     for pull in (0.35, 0.7, 0.95):  # of the largest M
         slope = np.arctan(pull * extrema.M.max())
         s = vr.steady(scene, slope=slope)
         axes.axhline(np.tan(slope), color="0.7", linewidth=0.6)
         axes.text(
-            1.2 * V[0], np.tan(slope), f"{np.degrees(slope):.2g}°", va="bottom", fontsize=8
+            0.99,
+            np.tan(slope),
+            f"{np.degrees(slope):.2g}°",
+            transform=axes.get_yaxis_transform(),
+            ha="right",
+            va="bottom",
+            fontsize=8,
         )
         axes.plot(s.V[s.stable], s.M[s.stable], "o", color="C0")
         axes.plot(s.V[~s.stable], s.M[~s.stable], "o", color="C0", mfc="white")
-    axes.set(xlabel=r"$V\,T/R$", title=title, xlim=(V[0], V[-1]), ylim=(0.0, None))
+    axes.set(
+        xlabel=r"speed $V\,T/R$", title=title, xlim=(V[0], 2.0 * V[-1]), ylim=(0.0, None)
+    )
+    axes.xaxis.set_minor_formatter(NullFormatter())
 panels[0].set_ylabel(r"$M/(PR)$; $\tan(\mathrm{slope})$")
 figure.suptitle(
     "Steady speeds on three slopes: stable (filled) and unstable (open)", fontsize="medium"

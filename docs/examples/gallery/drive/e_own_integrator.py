@@ -50,10 +50,12 @@ figure, (top, bottom) = plt.subplots(
 top.plot(t, 0.1 * found.y[1])
 top.set(ylabel="speed, m/s")
 bottom.plot(t, 100.0 * stiffness * found.y[0])
-bottom.axhline(100.0 * law(speed, speed).M, color="0.6", linewidth=0.8)
-bottom.set(xlabel="t, s", ylabel="pull, % of the load")
+resistance = 100.0 * law(speed, speed).M
+bottom.axhline(resistance, color="0.4", linewidth=0.8, label="rolling resistance")
+bottom.set(xlabel="$t$, s", ylabel="spring force, % of the load")
+bottom.legend(frameon=False)
 print(f"{found.nfev} calls of the law, {found.njev} of its slopes")
 
 # %%
-# Grey: rolling resistance at the speed of the tractor.  The same law serves numba
-# (``law.jitted``) and C (``law.address``): :doc:`/howto/law`.
+# The horizontal line is the rolling resistance at the speed of the tractor.  The same law is available
+# in numba (``law.jitted``) and C (``law.address``): :doc:`/howto/law`.

@@ -21,11 +21,12 @@ rubber = vr.Material(
 shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 speed = np.geomspace(1e-3, 1e3, 300)  # m/s
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-for temperature in (-10.0, 20.0, 60.0):
+for temperature, style in ((-10.0, "--"), (20.0, "-"), (60.0, "-.")):
     roller = vr.Cylinder(
         R=0.05, m=9.0, material=rubber.at(temperature, shift=shift), mu=0.6, load=2000.0
     )
     M = roller.contact(speed, delta=0.0, fields="M").M  # N m per m of length
-    axes.semilogx(speed, 100.0 * M / (roller.R * roller.load), label=f"{temperature:g} °C")
+    C_rr = M / (roller.R * roller.load)
+    axes.semilogx(speed, 100.0 * C_rr, style, label=f"{temperature:g} °C")
 axes.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
 axes.legend(frameon=False)

@@ -25,15 +25,14 @@ for name, base in {"rubber on rubber": rubber, "rubber on steel": steel}.items()
     (line,) = axes.semilogx(
         speed,
         100.0 * c.M / (roller.R * roller.load),
+        "-" if base is rubber else "-.",
         label=f"{name}: contact {1e3 * roller.l0:.1f} mm at rest",
     )
-    axes.semilogx(
-        speed,
-        100.0 * c.M_half_space / (roller.R * roller.load),
-        "--",
-        color=line.get_color(),
-        label="   loss in the base",
-    )
+    if base is rubber:  # steel dissipates nothing
+        half = 100.0 * c.M_half_space / (roller.R * roller.load)
+        axes.semilogx(
+            speed, half, "--", color=line.get_color(), label="   part of the base"
+        )
 axes.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
 axes.legend(frameon=False, fontsize="small")
 

@@ -25,12 +25,13 @@ speed = np.geomspace(1e-3, 1e3, 300)  # m/s
 figure, (left, right) = plt.subplots(
     1, 2, figsize=(9.6, 4.0), sharex=True, layout="constrained"
 )
-for thickness in (None, 10e-3, 5e-3, 2.5e-3):  # m
+styles = {None: "-", 10e-3: "--", 5e-3: "-.", 2.5e-3: ":"}  # thickness in m
+for thickness, style in styles.items():
     covered = roller.replace(material=replace(rubber, thickness=thickness))
     c = covered.contact(speed, delta=0.0, fields=("C_rr", "length"))
     name = "half-space" if thickness is None else f"{1e3 * thickness:g} mm"
-    left.semilogx(speed, 100.0 * c.C_rr, label=name)
-    right.semilogx(speed, 1e3 * c.length, label=name)
+    left.semilogx(speed, 100.0 * c.C_rr, style, label=name)
+    right.semilogx(speed, 1e3 * c.length, style, label=name)
 left.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
 right.set(xlabel="speed, m/s", ylabel="contact length, mm", ylim=(0.0, None))
 left.legend(frameon=False, title="cover")

@@ -3,8 +3,8 @@ The example of the paper
 ========================
 
 Sect. 5 of the paper has three motions of a soft, slow cylinder; its Fig. 5 shows V and omega.
-The figure is the exact solution of Eq. (22) of the paper.  A real cylinder would not move so: at
-9 mm/s the quasi-steady assumption is violated (:doc:`/validity_measured`).
+The figure is the exact solution of Eq. (22) of the paper.  A real cylinder would move differently:
+at 9 mm/s the quasi-steady assumption is violated (:doc:`/validity_measured`).
 """
 
 import matplotlib.pyplot as plt
@@ -19,13 +19,13 @@ for n, (name, start) in enumerate(vr.presets.PAPER_STARTS.items()):
     m = vr.roll(scene, *start, t)
     axes.plot(1e4 * t, m.V, f"C{n}", label=f"{name}: $V$")
     axes.plot(1e4 * t, m.omega, f"C{n}--", label=rf"{name}: $\omega$")
-    axes.axvline(1e4 * m.onset_time, color=f"C{n}", linewidth=0.6, linestyle=":")
+    axes.axvline(1e4 * m.onset_time, color=f"C{n}", linewidth=0.9, linestyle=":")
 axes.set(
     xlabel=r"$t/T_\varepsilon\times 10^4$",
     ylabel=r"$V T_\varepsilon/R$, $\omega T_\varepsilon$",
     xlim=(0.0, 40.0),
 )
-axes.set_title("Fig. 5 of the paper; dotted: onset of stick", fontsize="medium")
+axes.set_title("Fig. 5 of the paper; vertical lines: onset of stick", fontsize="medium")
 axes.legend(frameon=False, ncols=3)
 
 # %%
@@ -63,4 +63,4 @@ for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
     )
 near.set_ylabel("contact state")
 whole.legend(frameon=False)
-contact.suptitle("Circles: times of Fig. 7", fontsize="medium")
+contact.suptitle("Fig. 6 of the paper; circles: times of Fig. 7", fontsize="medium")

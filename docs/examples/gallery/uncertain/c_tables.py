@@ -39,8 +39,8 @@ int main(void) {
 """
 )
 for command in (["cc", "-std=c99", "-O2", "state.c", "-o", "state", "-lm"], ["./state"]):
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
-print(done.stdout)
+    result = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+print(result.stdout)
 
 # %%
 # In Octave, by ``read_law.m`` (:doc:`/loading/README`).
@@ -50,14 +50,14 @@ root = next(path for path in (here, *here.parents) if (path / "docs/loading").ex
 shutil.copy(root / "docs/loading/read_law.m", folder)
 code = "s = read_law('rubber.nc')(20, 0.5, 3, 3.01 - 3); printf('%.15f %.15f', s.Q, s.M)"
 if shutil.which("octave-cli"):
-    done = subprocess.run(
+    result = subprocess.run(
         ["octave-cli", "--eval", code],
         cwd=folder,
         capture_output=True,
         text=True,
         check=False,
     )
-    print(done.stdout)
+    print(result.stdout)
 
 # %%
 # A grid for look-up blocks, and the error of linear interpolation in it.

@@ -35,7 +35,7 @@ class Command(NamedTuple):
 
     Attributes
     ----------
-    run : function that runs it; its docstring is the help, with an example at its end.
+    run : function that runs it.
     options : its arguments; of a list of arguments a command line may have one only.
     """
 
@@ -50,7 +50,7 @@ COMMANDS: dict[str, Command] = {}
 def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
     """Return a decorator that adds a function to :data:`COMMANDS`.
 
-    words: of the command, as "tables law".  options: as of :class:`Command`.
+    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.  options: as of :class:`Command`.
     """
 
     def add(run: CommandFunction) -> CommandFunction:
@@ -61,14 +61,19 @@ def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFun
 
 
 def option(*names: str, **settings: Any) -> Option:
-    """Return an argument of a command; the arguments are those of ``ArgumentParser.add_argument``."""
+    """Return an argument of a command.
+
+    names, settings: as of ``ArgumentParser.add_argument``.
+    """
     return Option(names, settings)
 
 
 def numbers(text: str) -> Any:
-    """Return a float, or an array (n,), of an argument: NUMBER, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or a list of these.
+    """Return a float, or an array (n,), of an argument: NUMBER, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or a list of
+    these.
 
-    The members of a list are separated by commas.
+    text: the argument; the members of a list are separated by commas.
+    Raises ArgumentTypeError.
     """
     import numpy as np
 
@@ -77,7 +82,10 @@ def numbers(text: str) -> Any:
 
 
 def _numbers_of_member(text: str) -> Any:
-    """Return a float, or the array of a range; raise ArgumentTypeError."""
+    """Return a float, or the array of a range; raise ArgumentTypeError.
+
+    text: a member of the list of :func:`numbers`.
+    """
     try:
         low, *rest = text.split(":")
         if not rest:
@@ -87,29 +95,29 @@ def _numbers_of_member(text: str) -> Any:
     except vr.ParameterError as error:
         raise ArgumentTypeError(f"{text!r}: {error}") from None
     except (ValueError, TypeError):
-        allowed = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these with commas between"
+        allowed = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, separated by commas"
         raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
 
 
 def roller_of_argument(text: str) -> Any:
-    """Return the scene or the cylinder of a TOML file, or the preset of that name.
+    """Return the scene or the cylinder of a TOML file, or the preset of a name.
 
-    Raises ParameterError for an unknown preset; FileError for a file that cannot be read, or whose name does not end
-    in .toml.
+    text: path of the file, or the name. Raises ParameterError for an unknown preset; FileError for a file that
+    cannot be read, or whose name does not end in .toml.
     """
     from ...io.config import preset, read_roller
 
     if text.lower().endswith(".toml"):
         return read_roller(text)
     if os.path.exists(text):
-        raise vr.FileError(text, "is no scene file: its name must end in .toml")
+        raise vr.FileError(text, "is not a scene file: its name must end in .toml")
     return preset(text)
 
 
 def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
     """Return the option of an output file; a path that cannot be written is refused before any work.
 
-    suffixes: allowed ones.  name: of the option; of another than -o the argument is name without dashes.
+    suffixes: allowed suffixes.  name: name of the option; without its dashes it names the argument, "output" for -o.
     required: whether it must be given.  more: text behind the suffixes in the help.
     """
 
@@ -132,9 +140,13 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
 #: A file to read.
 FILE = option("file", metavar="FILE")
 #: A scene or cylinder.
-SCENE = option("scene", metavar="SCENE", help="FILE.toml with [scene], [cylinder] (SI units) or preset; or a preset")
+SCENE = option(
+    "scene", metavar="SCENE", help="TOML file with [scene], [cylinder] (SI units) or preset, or the name of a preset"
+)
 #: Output of a table of numbers: to a file, or to standard output in a format.
 TABLE = [
     output(".txt", ".csv", ".nc", required=False, more="; default: standard output"),
-    option("--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"),
+    option(
+        "--format", choices=("text", "csv", "json"), default="text", help="format of standard output (default: text)"
+    ),
 ]

@@ -23,12 +23,10 @@ _EXTRAS = {"runs": "zarr", "cluster": "distributed"}
 
 @command("doctor")
 def doctor(arguments: Namespace) -> int:
-    """Versions, cache, threads, compiled functions and missing packages.
+    """Print the lines of a problem report: versions, cache, threads, a check of the law, packages.
 
-    Send its output with the report of a problem.  Exit code 1 if a required package is missing.
-
-    example:
-      viscoroll doctor
+    arguments: none.
+    Returns 1 if a required package is missing, else 0.
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()
     names = [re.split(r"[^\w-]", requirement)[0] for requirement in required if "extra ==" not in requirement]
@@ -40,7 +38,7 @@ def doctor(arguments: Namespace) -> int:
 
 
 def _lines() -> Iterator[tuple[str, str]]:
-    """Yield (name, value) of each line of the report but the last."""
+    """Yield (name, value) of each line of the report but the last, which :func:`doctor` prints."""
     from ...core.blocks import thread_count
     from ...kernels.compile.cache import sources_digest
     from ...kernels.compile.folder import cache_root
@@ -50,12 +48,19 @@ def _lines() -> Iterator[tuple[str, str]]:
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
     for extra, name in _EXTRAS.items():
         version = _version(name)
-        yield f"[{extra}]", f"{name} {version}" if version else f"no {name}: pip install 'viscoroll[{extra}]'"
+        yield (
+            f"[{extra}]",
+            f"{name} {version}" if version else f"{name} is not installed: pip install 'viscoroll[{extra}]'",
+        )
     source = "VISCOROLL_THREADS" if os.environ.get("VISCOROLL_THREADS") else "the cores available"
     yield "threads", f"{thread_count(None)} ({source})"
     folder = cache_root() / f"kernels-{sources_digest()}"
     sizes = [path.stat().st_size for path in folder.glob("*") if path.is_file()]
-    state = f"{len(sizes)} compiled functions, {sum(sizes) / 1e6:.1f} MB" if sizes else "nothing yet: viscoroll warmup"
+    state = (
+        f"{len(sizes)} compiled functions, {sum(sizes) / 1e6:.1f} MB"
+        if sizes
+        else "no compiled functions; `viscoroll warmup` compiles them"
+    )
     yield "cache", f"{folder}: {state}{_fault_of_cache(folder)}"
     yield "check", _check()
 
@@ -72,7 +77,10 @@ def _check() -> str:
 
 
 def _version(name: str) -> str | None:
-    """Return the version of a package; None if it is not installed."""
+    """Return the version of a package; None if it is not installed.
+
+    name: name of the package.
+    """
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
@@ -80,7 +88,10 @@ def _version(name: str) -> str | None:
 
 
 def _fault_of_cache(folder: Path) -> str:
-    """Return why the cache of compiled functions in ``folder`` is not used or cannot be written; "" if it can."""
+    """Return why the cache of compiled functions is not used or cannot be written; "" if it can.
+
+    folder: folder of the compiled functions, which need not exist.
+    """
     from ...kernels.compile.folder import refuse_writable_by_others
 
     try:

@@ -16,15 +16,13 @@ from .arguments import FIGURES, command, option, output
 
 @command(
     "material show",
-    option("file", metavar="FILE", help="TOML with [material], [base] or both, or the netCDF of a material"),
+    option("file", metavar="FILE", help="TOML file with [material], [base] or both, or netCDF file of a material"),
 )
 def show(arguments: Namespace) -> None:
-    """Moduli, relaxation modes and creep modes.
+    """Print the moduli, relaxation modes and creep modes of each material of a file.
 
-    Of each material of the file, at the temperature that the file states.
-
-    example:
-      viscoroll material show docs/examples/rubber.toml
+    arguments: with file, a TOML file with [material] or [base], or the netCDF of a material.
+    Raises FileError.
     """
     import pandas as pd
 
@@ -37,25 +35,30 @@ def show(arguments: Namespace) -> None:
         if series.E.size:
             columns = {"E_i": series.E, "tau_i [s]": series.tau * T, "J_i": series.J, "T_i [s]": series.T * T}
             mean = f"T_mean = {series.T_mean * T:.6g} s"
-            print(f"M = V T_mean/R at low speeds V in m/s of like bodies, {mean}\n")
+            print(f"Low speeds, identical materials: M/P = V T_mean with V in m/s, {mean}\n")
             print(pd.DataFrame(columns).to_string(index=False, float_format="{:.10g}".format), end="\n\n")
 
 
 @command(
     "material fit",
-    option("data", metavar="DATA", help="a text file of columns"),
-    option("--units", metavar="F,M", help="units of frequency and moduli if the file states none: Hz,MPa"),
+    option("data", metavar="DATA", help="text file with columns"),
+    option("--units", metavar="F,M", help="units of frequency and moduli, if the file states none; for example Hz,MPa"),
     option(
         "--column", metavar="NAME=HEADING", action="append",
-        help="quantity and heading of a column, as storage=Module 1; may be repeated"
+        help="quantity and heading of a column, for example storage=Module 1; may be repeated"
     ),
     option("--decimal", choices=(".", ","), help="decimal mark (default: as the numbers have it)"),
     option("--encoding", help="encoding of the file (default: by its first bytes)"),
-    option("--mode", choices=("tension", "shear"), help="of columns that do not state it (default: tension)"),
-    option("--temperature", type=float, metavar="T", help="of all points, degrees Celsius; default: as in the file"),
-    option("--reference", type=float, metavar="T", help="temperature of the fitted times, of data at several"),
-    option("--wlf", metavar="C1,C2,T0", help="WLF shift between temperatures (default: by overlap of the curves)"),
-    option("--on", choices=("both", "storage"), default="both", help="moduli whose curves overlap (default: both)"),
+    option("--mode", choices=("tension", "shear"), help="type of the moduli, if the headings do not state it "
+        "(default: tension)"),
+    option("--temperature", type=float, metavar="T", help="temperature of all points, degrees Celsius "
+        "(default: as in the file)"),
+    option("--reference", type=float, metavar="T", help="reference temperature of the master curve, for data "
+        "at several temperatures"),
+    option("--wlf", metavar="C1,C2,T0", help="WLF parameters of the shift factors (default: shifts from the "
+        "overlap of the curves)"),
+    option("--on", choices=("both", "storage"), default="both", help="moduli whose overlap determines the "
+        "shift (default: both)"),
     option("--modes", type=int, help="largest number of modes (default: as few as the misfit needs)"),
     option("--misfit", type=float, default=0.01, help="required rms of the relative errors (default: 0.01)"),
     option("--nu", type=float, default=0.49, help="Poisson's ratio, constant in time (default: 0.49)"),
@@ -64,16 +67,13 @@ def show(arguments: Namespace) -> None:
     output(".toml", ".nc", required=False),
 )  # fmt: skip
 def fit(arguments: Namespace) -> int:
-    """Fit of a material to the master curve of a DMA.
+    """Fit a Prony series to a DMA, print the fit, and write its material if that is wanted.
 
-    Fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their heading; prints
-    how well the data determine it; with -o writes it as a section [material] of a TOML file, or as netCDF.
-
-    A fit that misses --misfit, or has an error above 5 %, ends with exit code 1 and writes no file.  With --force the
-    file is written, and the source of the data in it states the misfit.
-
-    example:
-      viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml
+    arguments: data, units, column, decimal, encoding and mode, as of :func:`viscoroll.read_dma`; temperature,
+    reference, on, modes and misfit, as of :func:`viscoroll.fit_prony`; wlf, three numbers with commas between; nu
+    and name of the material; output, a .toml or .nc path or None; force, whether to write a fit that misses the
+    misfit. Returns 1 if the fit misses the misfit, or has an error above 5 %, and force is not given; else 0. Raises
+    ParameterError and FileError.
     """
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
@@ -93,7 +93,7 @@ def fit(arguments: Namespace) -> int:
     elif result.largest_misfit > MISFIT_LIMIT:
         fault = f"the misfit of {result.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}"
     if fault:
-        refusal = f"; {path} is not written: ask for another --misfit, or --force it" if path else ""
+        refusal = f"; {path} is not written: raise --misfit, or write it with --force" if path else ""
         print(f"viscoroll: {fault}{'' if arguments.force else refusal}", file=sys.stderr)
         if not arguments.force:
             return 1
@@ -107,16 +107,22 @@ def fit(arguments: Namespace) -> int:
 
 
 def _columns(texts: list[str] | None) -> dict[str, str]:
-    """Return quantity -> heading of the options --column; raise ParameterError."""
+    """Return quantity -> heading of the options --column; raise ParameterError.
+
+    texts: the options, each "NAME=HEADING"; None without.
+    """
     pairs = [text.partition("=") for text in texts or ()]
     for name, sign, heading in pairs:
         if not (sign and heading):
-            raise vr.ParameterError("--column", repr(name), "NAME=HEADING, as storage=Module 1")
+            raise vr.ParameterError("--column", repr(name), "NAME=HEADING, for example storage=Module 1")
     return {name.strip(): heading.strip() for name, _, heading in pairs}
 
 
 def _wlf(text: str) -> vr.WLF:
-    """Return the shift of --wlf C1,C2,T0; raise ParameterError."""
+    """Return the shift of --wlf C1,C2,T0; raise ParameterError.
+
+    text: the option.
+    """
     try:
         C1, C2, T0 = (float(part) for part in text.split(","))
     except ValueError:
@@ -127,24 +133,17 @@ def _wlf(text: str) -> vr.WLF:
 @command(
     "identify",
     option("file", metavar="DATA.toml", help="known and unknown parameters, and files of the measurements"),
-    option("--starts", type=int, default=8, help="number of searches, from points all over the ranges (default: 8)"),
+    option("--starts", type=int, default=8, help="number of searches from random points in the ranges (default: 8)"),
     option("--seed", type=int, default=0, help="seed of these points (default: 0)"),
     option("--robust", action="store_true", help="give outliers less weight"),
     output(*FIGURES, name="--plot", required=False, more=": data, fit and residuals"),
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),
 )  # fmt: skip
 def identify(arguments: Namespace) -> None:
-    """Friction, modulus, times, strengths and bearing from measurements.
+    """Fit the unknowns of a cylinder to measurements, print the report, and write report and figure if wanted.
 
-    Fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states which of
-    them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
-      [unknown]  NAME = [LOW, HIGH], with the start of the cylinder between
-      [prior]    NAME = [VALUE, SD]
-      [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
-                 Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m
-
-    example:
-      viscoroll identify docs/examples/measured.toml --plot fit.png
+    arguments: file, a TOML file of measurements; robust, starts and seed, as of :func:`viscoroll.identify`; output,
+    a .txt, .json or .nc path or None; plot, path of a figure or None. Raises ParameterError and FileError.
     """
     from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     """Print or write a result by its ``to_xarray`` and ``to_pandas``.
 
-    arguments: with output and format.  result: of the library.  heading: of the text; default: the title of the data.
+    arguments: parsed arguments with output and format.  result: a result of the library.  heading: first line of the
+    text; default: the title of the data.
     Raises FileError as :func:`deliver`.
     """
     import numpy as np
@@ -37,7 +38,7 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
     """Print a table in the required format, or write it or the dataset in the format of the suffix.
 
     arguments: with output (a path or None) and format.  data: for netCDF, and the meanings of its variables.
-    frame: the same as a table.  heading: of the text.  Raises FileError if the file cannot be written.
+    frame: the same as a table.  heading: first line of the text.  Raises FileError if the file cannot be written.
     """
     path = arguments.output
     suffix = arguments.format if path is None else path.suffix.lower()[1:]

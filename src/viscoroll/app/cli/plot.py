@@ -22,23 +22,26 @@ _SPEEDS = 301
     "plot", option("what", metavar="WHAT", help="FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"), output(*FIGURES)
 )
 def plot(arguments: Namespace) -> None:
-    """Figure of a result, a scene, a material, or the results of a run.
+    """Draw a file and write the figure.
 
-    The result in a netCDF file of this program; the contact law over speed of a scene file; moduli and relaxation of
-    the [material] of a file without a scene; or the summaries of a store.
+    arguments: what, path of the file, a .nc, .toml or .zarr; output, path of the figure.
+    Raises ParameterError for another suffix, FileError for a file that cannot be read or written.
     """
     from ...core.plots.style import save
 
     kinds = {".zarr": lambda path: vr.runs.open_run(path).plot(), ".nc": _figure_of_netcdf, ".toml": _figure_of_toml}
     path = arguments.what
     if (draw := kinds.get(Path(path).suffix.lower())) is None:
-        sentence = f"{path!r} is no file to plot: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
+        sentence = f"{path!r} is not a file that can be plotted: give FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
         raise vr.ParameterError("plot", path, "a file to plot", sentence)
     save(draw(path), arguments.output)
 
 
 def _figure_of_netcdf(path: str) -> Any:
-    """Return the figure of a result or a material; raise FileError for any other file."""
+    """Return the figure of a result or a material; raise FileError for any other file.
+
+    path: path of a netCDF file.
+    """
     import xarray as xr
 
     from ...core.plots import draw
@@ -48,13 +51,18 @@ def _figure_of_netcdf(path: str) -> Any:
             return vr.Material.from_netcdf(path).plot() if "schema" in data.attrs else draw(data)
     except OSError as error:
         if not Path(path).is_file():
-            raise vr.FileError(path, "there is no such file") from error
-        problem = "is damaged, or no netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+            raise vr.FileError(path, "the file does not exist") from error
+        problem = (
+            "is damaged or is not a netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
+        )
         raise vr.FileError(path, problem) from error
 
 
 def _figure_of_toml(path: str) -> Any:
-    """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material."""
+    """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material.
+
+    path: path of a TOML file.  Raises FileError.
+    """
     import numpy as np
 
     from ...core.sections import read_toml

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import inspect
 import io
 import os
 import re
@@ -19,6 +18,7 @@ from ...core.errors import Interrupted, ViscorollError
 # each of these modules adds its commands to the table, in this order
 from . import scenes, runs, measured, tables, plot, warmup, doctor  # noqa: F401  # isort: skip
 from .arguments import COMMANDS
+from .help_texts import HELP
 
 #: Exit code of a program that SIGINT ended, as shells report it.
 _INTERRUPTED = 130
@@ -26,8 +26,8 @@ _INTERRUPTED = 130
 _BROKEN_PIPE = 141
 #: First word of several commands -> its help.
 _GROUPS = {
-    "material": "show and fit a material of several relaxation times",
-    "tables": "the law of a material as a file, grids for other programs",
+    "material": "show a material, or fit one to measurements",
+    "tables": "write the contact law to a file, or to a grid for other programs",
 }
 
 
@@ -56,6 +56,13 @@ class _StoreOnce(argparse.Action):
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, name: str | None = None
     ) -> None:
+        """Store the value of an option or a positional argument; raise ArgumentError where the option had one
+        before.
+
+        parser: not used.  namespace: values of all arguments; its ``stored`` is the set of those that have a value.
+        values: the value.  name: name of the option; None of a positional argument.
+        The signature is that of ``argparse.Action``.
+        """
         stored = vars(namespace).setdefault("stored", set())
         if name is not None and self.dest in stored:
             raise argparse.ArgumentError(self, "is given twice")
@@ -91,7 +98,7 @@ def parser() -> Parser:
         if group not in groups:
             subparser = groups[""].add_parser(group, help=_GROUPS[group])
             groups[group] = subparser.add_subparsers(metavar="COMMAND", required=True)
-        text, _, example = (inspect.getdoc(run) or "").partition("\n\nexample:")
+        text, _, example = HELP[words].partition("\n\nexample:")
         summary, epilog = text.partition(".\n")[0].rstrip("."), f"example:{example}" if example else None
         subparser = groups[group].add_parser(name, help=summary, description=text, epilog=epilog)
         for option in options:
@@ -132,7 +139,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(argv: Sequence[str]) -> int:
-    """Parse the arguments, run the command and return its exit code."""
+    """Parse the arguments, run the command and return its exit code.
+
+    argv: the words of the command line without the name of the program.
+    Raises what the command raises; UsageError where the line does not parse.
+    """
     try:
         arguments = parser().parse_args(argv)
         from ...core.blocks import thread_count
@@ -146,18 +157,27 @@ def _run(argv: Sequence[str]) -> int:
 
 
 def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning in one line; the signature is that of ``warnings.showwarning``."""
+    """Print a warning in one line.
+
+    message: the warning.  Other arguments are not used: the signature is that of ``warnings.showwarning``.
+    """
     _print_line(f"warning: {message}")
 
 
 def _print_error(error: object) -> int:
-    """Print an error in one line and return its exit code."""
+    """Print an error in one line and return its exit code, 2.
+
+    error: an exception, or its text.
+    """
     _print_line(f"error: {error}")
     return 2
 
 
 def _print_line(message: object) -> None:
-    """Print a message in one line on standard error, unless it is closed or full."""
+    """Print a message in one line on standard error, unless it is closed or full.
+
+    message: an object whose text is printed, its line breaks as blanks.
+    """
     if sys.stderr is not None:
         try:
             print("viscoroll:", " ".join(str(message).split()), file=sys.stderr, flush=True)
@@ -168,6 +188,7 @@ def _print_line(message: object) -> None:
 def _discard(stream: TextIO) -> None:
     """Discard the buffer and all further text of a stream that cannot be written.
 
+    stream: standard output or standard error.
     The interpreter would try to write it at its end, and exit with its own code.
     """
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -18,23 +18,23 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
 @command(
     "ensemble", _RUN,
     output(".zarr", required=False, more=": the results store; without it: estimate of time and memory, by a trial"),
-    option("--cluster", metavar="WHERE", help="local (processes), or tcp://host:port of a dask scheduler"),
+    option("--cluster", metavar="WHERE", help="local (processes of this machine), or the address "
+        "tcp://host:port of a dask scheduler"),
     option("--threads", type=int, help="number of threads, or of local processes (default: number of cores)"),
 )  # fmt: skip
 def ensemble(arguments: Namespace) -> None:
-    """Many motions with random starts and parameters, by a run file.
+    """Roll the motions of a run file and print their summaries; without a store estimate time and memory.
 
-    Rolls the motions that the store lacks, and summarises all of them.  The same command completes an interrupted run,
-    and extends the store of a run whose file now has a larger n.
-    Without -o it prints size, memory and time of the run.
-
-    example:
-      viscoroll ensemble docs/examples/ensemble.toml
+    arguments: run_file, a TOML file; output, folder of the results or None; cluster and threads, as of
+    :func:`viscoroll.runs.run_ensemble`.
+    Raises ParameterError and FileError.
     """
     run = vr.runs.read_run(arguments.run_file)
     if arguments.output is None:
         if arguments.cluster is not None:
-            raise vr.ParameterError("--cluster", arguments.cluster, "left out without -o: the trial is of this machine")
+            raise vr.ParameterError(
+                "--cluster", arguments.cluster, "left out without -o: the trial runs on this machine"
+            )
         print(vr.runs.estimate(run, arguments.threads))
         return
     evaluated = vr.runs.run_ensemble(
@@ -42,16 +42,17 @@ def ensemble(arguments: Namespace) -> None:
         progress=sys.stderr.isatty() or (False if os.environ.get("VISCOROLL_QUIET") == "1" else "lines"),
     )  # fmt: skip
     if evaluated < run.blocks:
-        print(f"{run.blocks - evaluated} of {run.blocks} blocks were there and whole")
+        print(f"{run.blocks - evaluated} of {run.blocks} blocks were complete already")
     results = vr.runs.open_run(arguments.output)
     print(as_text(results.to_pandas().reset_index(), str(results)), end="")
 
 
 @command("verify", option("store", metavar="STORE.zarr", help="results of viscoroll ensemble"))
 def verify(arguments: Namespace) -> int:
-    """Check of every file of a store against its SHA-256.
+    """Compare the files of a results store with their SHA-256 and print the verdict.
 
-    Exit code 1 if a file differs or is missing.
+    arguments: store, folder of the results.
+    Returns 1 if a file differs or is missing, else 0.  Raises FileError for a folder that is no store.
     """
     verdict = vr.runs.verify(arguments.store)
     print(f"{arguments.store}: {verdict}")
@@ -65,13 +66,10 @@ def verify(arguments: Namespace) -> int:
     TABLE,
 )  # fmt: skip
 def sensitivity(arguments: Namespace) -> None:
-    """Sobol indices of the uncertain inputs of a run file.
+    """Compute the Sobol indices of a run file, and print or write them.
 
-    First-order (S1) and total (ST) indices of the summarised quantities, each with the half-width of its 95 %
-    confidence interval (S1_conf, ST_conf), the largest total first.  `viscoroll plot` draws the .nc as bars.
-
-    example:
-      viscoroll sensitivity run.toml -n 4096 -o sensitivity.nc
+    arguments: run_file, a TOML file; n, number of base points; output and format, as of :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     from ...io.runs.sensitivity import sobol_indices, table
 
@@ -82,7 +80,7 @@ def sensitivity(arguments: Namespace) -> None:
     heading = "\n".join((
         f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed {about['seed']}",
         *(f"{about[key]} motions {key.removeprefix('ended: ')}" for key in about if key.startswith("ended: ")),
-        *(f"no indices of {reason}" for reason in about["refused"].splitlines()),
+        *(f"no indices for {reason}" for reason in about["refused"].splitlines()),
     ))  # fmt: skip
     deliver(arguments, indices, frame, heading)
     if arguments.output is not None:

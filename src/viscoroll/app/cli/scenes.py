@@ -21,24 +21,25 @@ _V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
-    """Return the scene and the speeds of a contact as arguments; kind: type of a speed."""
+    """Return the arguments of a command on a contact: (scene, V, delta, omega).
+
+    kind: type of a speed, a function of the argument's text.
+    """
     return (
         SCENE,
         option("--V", type=kind, required=True, help=_V_HELP),
         option("--delta", type=kind, help="creepage (omega R - V)/V"),
-        option("--omega", type=kind, help="angular velocity, in place of delta"),
+        option("--omega", type=kind, help="angular velocity; give it or --delta"),
     )
 
 
 @command("contact", *_speeds(numbers), TABLE)
 def contact(arguments: Namespace) -> None:
-    """State of the contact: lam, epsilon, delta_star, beta, Q, M.
+    """Print or write the state of the contact for all pairs of speed and creepage.
 
-    For every pair of V and delta (or omega), each a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of
-    these with commas between.
-
-    example:
-      viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5
+    arguments: scene, a file or a preset; V, and delta or omega, each a number or a vector; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 
@@ -49,12 +50,11 @@ def contact(arguments: Namespace) -> None:
 
 @command("stress", *_speeds(float), TABLE)
 def stress(arguments: Namespace) -> None:
-    """Pressure and shear stress along the contact.
+    """Print or write pressure and shear stress at positions from one end of the contact to the other.
 
-    At 101 positions along the contact, at one V and delta (or omega).
-
-    example:
-      viscoroll stress paper-section-5 --V 0.5 --delta -0.01
+    arguments: scene, a file or a preset; V, and delta or omega, numbers; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 
@@ -73,17 +73,15 @@ def stress(arguments: Namespace) -> None:
     "roll", SCENE,
     option("--V0", type=float, required=True, help="velocity of the axis at the start"),
     option("--omega0", type=float, required=True, help="angular velocity at the start"),
-    option("--t", type=numbers, required=True, help="output times: numbers, as of `viscoroll contact`"),
+    option("--t", type=numbers, required=True, help="output times, written as the numbers of `viscoroll contact`"),
     TABLE,
 )  # fmt: skip
 def roll(arguments: Namespace) -> None:
-    """One motion from given start speeds.
+    """Integrate a motion without a drive, and print or write it.
 
-    Free motion of the cylinder from (V0, omega0), Eq. (22), through all regimes of slip.
-    For driven, braked and unsteady motions take vr.roll in Python, or a run file (viscoroll ensemble).
-
-    example:
-      viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7
+    arguments: scene, a file or a preset; V0 and omega0, start speeds; t, output times; output and format, as of
+    :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
@@ -95,20 +93,20 @@ def roll(arguments: Namespace) -> None:
 
 @command(
     "steady", SCENE,
-    option("--force", type=numbers, help="along V (default: 0)"),
-    option("--torque", type=numbers, help="along omega (default: 0)"),
-    option("--slope", type=numbers, help="rad, positive downhill along +V; the load is P cos(slope)"),
-    option("--V", type=numbers, help="speed, in place of --force or --torque, which is then computed"),
+    option("--force", type=numbers, help="force on the axis along V (default: 0)"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
+    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill; the normal load "
+        "is P cos(slope)"),
+    option("--V", type=numbers, help="prescribed speed; it takes the place of --force or --torque, which is "
+        "then computed"),
     TABLE,
 )  # fmt: skip
 def steady(arguments: Namespace) -> None:
-    """Steady rolling under force, torque or slope.
+    """Print or write the equilibria of rolling under each load, and why a load has none.
 
-    Prints a row for every equilibrium of rolling under each load; if there is none, the reason.
-    Options are numbers, as of `viscoroll contact`, all of one length or single.
-
-    example:
-      viscoroll steady paper-section-5-rounded --slope 0:0.1:6
+    arguments: scene, a file or a preset; force, torque, slope and V, numbers, vectors or None; output and format, as
+    of :func:`.output.deliver`. Raises ParameterError and FileError.  A load without an equilibrium is a warning
+    where the output is no text.
     """
     import numpy as np
 
@@ -117,7 +115,7 @@ def steady(arguments: Namespace) -> None:
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
-        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have none"]
+        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have no steady speed"]
     if arguments.output is not None or arguments.format != "text":  # a table for programs has no heading
         for line in lines:
             warnings.warn(line, vr.ModelWarning, stacklevel=2)
@@ -127,14 +125,12 @@ def steady(arguments: Namespace) -> None:
 @command(
     "validity", SCENE,
     option("--V", type=float, required=True, help=_V_HELP),
-    option("--omega", type=float, help="angular velocity; without it the creepage is not known"),
+    option("--omega", type=float, help="angular velocity; without it the assumption on creepage is not checked"),
 )  # fmt: skip
 def validity(arguments: Namespace) -> None:
-    """Validity of the model's assumptions at a speed.
+    """Print which assumptions of the model hold.
 
-    A line for each assumption of the model: whether it holds (yes, no, ?: not known) and why.
-
-    example:
-      viscoroll validity rubber-roller --V 5 --omega 4.9
+    arguments: scene, a file or a preset; V, speed of the axis; omega, angular velocity or None.
+    Raises ParameterError and FileError.
     """
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

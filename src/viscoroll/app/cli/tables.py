@@ -17,33 +17,37 @@ _GRID = (".nc", ".cdf", ".csv", ".txt", ".mat")
 
 
 def _low_high(text: str) -> tuple[float, ...]:
-    """Return the numbers of LOW:HIGH; raise ArgumentTypeError."""
+    """Return the numbers of an argument LOW:HIGH; raise ArgumentTypeError.
+
+    text: the argument.
+    """
     try:
         return tuple(map(float, text.split(":")))
     except ValueError:
-        raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, as 1:4096") from None
+        raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, for example 1:4096") from None
 
 
 def _print_size(path: Path) -> None:
-    """Print the name and the size of a written file."""
+    """Print the name and the size of a written file.
+
+    path: path of the file.
+    """
     print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 
 
 @command(
     "tables law",
     option("file", metavar="MATERIAL", nargs="?",
-           help="TOML with [material], perhaps [base], or with [scene] or [cylinder]; or the netCDF of a material"),
-    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="in place of MATERIAL: range of alpha, as 1:4096"),
+           help="TOML file with [material] (and [base]), [scene] or [cylinder], or netCDF file of a material"),
+    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; it takes "
+        "the place of MATERIAL"),
     output(*_LAW),
 )  # fmt: skip
 def law(arguments: Namespace) -> None:
-    """File of the law of a material, pair or cover, or of every alpha.
+    """Write the law of a material, pair or cover, or of every alpha of a range.
 
-    For vr.load_law, run files and every program that reads netCDF (.nc; .cdf without HDF5); as table and evaluator in
-    one header of C99 or C++ (.h); or as .json.  --alpha writes the law of every alpha of one relaxation time.
-
-    example:
-      viscoroll tables law docs/examples/rubber.toml -o rubber.h
+    arguments: file, of the material, or None; alpha, (low, high), or None; output, path whose suffix is the format.
+    Raises ParameterError and FileError.
     """
     from ...io.config import read_law_source
 
@@ -54,20 +58,18 @@ def law(arguments: Namespace) -> None:
 
 @command(
     "tables build", SCENE,
-    option("--V", type=numbers, required=True, help="speeds of the axis, > 0"),
-    option("--delta", type=numbers, required=True, help="creepages"),
-    option("--alpha", type=numbers, help="a third axis, of a scene"),
-    option("--method", default="table", help="table (default), or direct: root solves of the printed equations"),
+    option("--V", type=numbers, required=True, help="velocities of the axis, > 0"),
+    option("--delta", type=numbers, required=True, help="values of the creepage"),
+    option("--alpha", type=numbers, help="values of a third axis, only for a scene"),
+    option("--method", default="table", help="table (default): the law of the scene; direct: numerical roots "
+        "of the equations of the paper"),
     output(*_GRID),
 )  # fmt: skip
 def build(arguments: Namespace) -> None:
-    """Grid over V, delta and perhaps alpha, for programs that look up tables.
+    """Compute a grid of the contact and write it.
 
-    The contact of a scene, or of a cylinder in SI units, as .nc, .cdf (without HDF5), .csv, .txt (for Modelica) or
-    .mat (MATLAB).  Axes are numbers, as of `viscoroll contact`.
-
-    example:
-      viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
+    arguments: scene, a file or a preset; V, delta and alpha, nodes of the axes, alpha perhaps None; method, "table"
+    or "direct"; output, path whose suffix is the format. Raises ParameterError and FileError.
     """
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
     vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
@@ -76,22 +78,21 @@ def build(arguments: Namespace) -> None:
 
 @command("tables info", FILE)
 def info(arguments: Namespace) -> None:
-    """Content of a table file: functions or grid, stated errors, material and provenance.
+    """Print what a table file contains.
 
-    example:
-      viscoroll tables info data/tables/rubber.nc
+    arguments: file, path of a law or a grid.  Raises FileError.
     """
     print(vr.tables.info(arguments.file))
 
 
-@command("tables validate", FILE, option("-n", type=int, default=10_000, help="random speeds (default: 10000)"))
+@command(
+    "tables validate", FILE, option("-n", type=int, default=10_000, help="number of random speeds (default: 10000)")
+)
 def validate(arguments: Namespace) -> int:
-    """Check of a law file against the formulas of its relaxation modes at random speeds, or of a grid against the law.
+    """Check a table file at random points and print the differences.
 
-    Exit code 1 if an error is larger than the file states.
-
-    example:
-      viscoroll tables validate data/tables/rubber.nc
+    arguments: file, path of a law or a grid; n, number of points.
+    Returns 1 if an error is larger than the file states, else 0.  Raises ParameterError and FileError.
     """
     from ...io.tables.check import Report, check_table
 
@@ -103,13 +104,10 @@ def validate(arguments: Namespace) -> int:
 
 @command("export", FILE, output(*dict.fromkeys(_LAW + _GRID)))
 def export(arguments: Namespace) -> None:
-    """Results of a run, or a table, as a file for other programs.
+    """Write the results of a run, or a table, in another format.
 
-    The summaries of STORE.zarr, and all motions that it keeps, as .nc; a law as .nc, .cdf, .h or .json; a grid as .nc,
-    .cdf, .csv, .txt or .mat.
-
-    example:
-      viscoroll export data/tables/rubber.nc -o rubber.h
+    arguments: file, a results store or a table file; output, path whose suffix is the format.
+    Raises ParameterError for a suffix that the content does not have, and FileError.
     """
     path = arguments.output
     if not Path(arguments.file).is_dir():
@@ -131,14 +129,11 @@ def export(arguments: Namespace) -> None:
     output(".fmu"),
 )  # fmt: skip
 def fmu(arguments: Namespace) -> None:
-    """Cylinder as an FMU, for Modelica tools and others.
+    """Build an FMU of a cylinder or a law.
 
-    With the law of a material, pair or cover, and its sources, compiled for this machine by cc.
-    Roller: drive force and torque -> v, omega, x; co-simulation and model exchange.
-    ContactElement: v, omega, load -> force, torque, moments; model exchange.  Both have exact slopes.
-
-    example:
-      viscoroll fmu docs/examples/rubber.toml -o roller.fmu
+    arguments: file, of a cylinder, a material or a law; model, "Roller" or "ContactElement"; fmi, 2 or 3; output,
+    path of the FMU. Raises ParameterError, FileError and MissingDependencyError.  A dimensionless scene gives its
+    law alone, with a warning.
     """
     from ...core.sections import read_toml
     from ...io.config import SCENES, read_law_source, read_roller

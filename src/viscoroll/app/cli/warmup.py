@@ -14,13 +14,9 @@ from .arguments import command
 
 @command("warmup")
 def warm_up(arguments: Namespace) -> None:
-    """Compilation of all functions that first calls would otherwise compile.
+    """Compile all kernels into the cache by small calls, with a progress bar.
 
-    Compiles the kernels of every public function into the cache, once for a machine and a version of the package; quick
-    if they are there.
-
-    example:
-      viscoroll warmup
+    arguments: none.
     """
     from tqdm import tqdm
 
@@ -52,8 +48,8 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     # build_map computes a map; ensemble might find one on disk
     yield "motions and flow maps", lambda: flow.build_map((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
     yield "contact by root solves", lambda: vr.contact(scene, 0.5, delta=0.01, method="direct")
-    yield "contact of an alpha each", lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
-    yield "contact of a series each", lambda: vr.contact(many, 0.5, delta=0.01)
+    yield "contact with an array of alpha", lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
+    yield "contact with an array of Prony series", lambda: vr.contact(many, 0.5, delta=0.01)
     yield "unsteady rolling", lambda: vr.contact(series, 0.5, delta=0.01, fields="N")
     yield "bound law", lambda: vr.law(scene)
     covered = series.replace(material=vr.Cover(modes, nu=0.5, thickness=1.0))
@@ -62,6 +58,6 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "steady rolling on a cover", lambda: vr.steady(covered, force=0.01)
     yield "bound law of a cover", lambda: vr.law(covered)
     thick = covered.replace(material=vr.Cover(1.0, nu=0.5, thickness=[1.0, 1.5]))
-    yield "contact on covers of a thickness each", lambda: vr.contact(thick, 0.5, delta=0.01)
+    yield "contact with an array of thicknesses", lambda: vr.contact(thick, 0.5, delta=0.01)
     yield "steady rolling", lambda: vr.steady(scene, force=0.01)
     yield "stress", lambda: vr.stress(scene, 0.5, 0.5, delta=0.01)

@@ -26,8 +26,8 @@ class Column(NamedTuple):
     """A column of a known quantity.
 
     position, heading : index and heading in its table.
-    name : of its quantity, a key of :data:`.vocabulary.UNITS`.
-    mode : of its modulus, "tension", "shear", or "" where the heading does not say.
+    name : name of its quantity, a key of :data:`.vocabulary.UNITS`.
+    mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
     log : whether its numbers are logarithms to base 10.
     unit : in which its numbers are.
     stated : whether the file or the user gives the unit, or it is assumed.
@@ -49,14 +49,14 @@ class Column(NamedTuple):
 
 
 def columns_of(
-    table: Table, named: Mapping[str, str], given: Mapping[str, str], default: Mapping[str, str]
+    table: Table, named: Mapping[str, str], overruling: Mapping[str, str], defaults: Mapping[str, str]
 ) -> tuple[list[Column], dict[str, str]]:
     """Find the columns whose quantity is known.
 
     table : with headings.
     named : quantity -> heading, of columns that the user named.
-    given : quantity -> unit that overrules the file.
-    default : quantity -> unit where the file gives none.
+    overruling : quantity -> unit that overrules the file.
+    defaults : quantity -> unit where the file gives none.
     Returns the columns, and headings of the others -> why they are left out ("": no quantity is known of them).
     Raises ParameterError for a heading that the table does not have.
     """
@@ -69,12 +69,12 @@ def columns_of(
             mode = next((each.mode for each in found if each.mode), "")
             ordered = sorted(readings(heading, row), key=lambda reading: reading.unit in NO_UNIT)
             found = [Meaning(owners[index], mode, reading.unit, reading.log) for reading in ordered]
-        faults = [_contradiction(each, given) for each in found]
+        faults = [_contradiction(each, overruling) for each in found]
         if not table.has_numbers(index):
             faults = ["no numbers"]
         if "" in faults:
             name, mode, unit, log = found[faults.index("")]
-            unit = given.get(name) or ("" if unit in NO_UNIT else unit) or default.get(name, "")
+            unit = overruling.get(name) or ("" if unit in NO_UNIT else unit) or defaults.get(name, "")
             columns.append(Column(index, heading, name, mode, log, unit or ASSUMED[name], bool(unit)))
         else:
             others[heading or f"column {index}"] = faults[0] if faults else ""
@@ -90,22 +90,22 @@ def _index(table: Table, heading: str) -> int:
     return found
 
 
-def _contradiction(meaning: Meaning, given: Mapping[str, str]) -> str:
+def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
     """Return why the unit of a heading contradicts the quantity that the heading may name, "" where it does not.
 
     meaning : the quantity and its unit.
-    given : quantity -> unit that overrules the file.
+    overruling : quantity -> unit that overrules the file.
     """
     name, _, unit, _ = meaning
-    if name in given or unit in NO_UNIT:
+    if name in overruling or unit in NO_UNIT:
         return ""
-    problem = f"unit {unit!r} is none of {name}"
+    problem = f"unit {unit!r} is not a unit of {name}"
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
         return problem
     if "angular" in name and unit.lower().endswith("hz"):
-        return f"an angular frequency in {unit}: rename it, or give units="
+        return f"with an angular frequency in {unit}: rename it, or give units="
     angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
     return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
 
@@ -113,8 +113,8 @@ def _contradiction(meaning: Meaning, given: Mapping[str, str]) -> str:
 def numbers_of(table: Table, column: Column) -> Numbers:
     """Return the numbers of a column's quantity in rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
 
-    table : of the column.
-    column : of a known quantity.
+    table : the table that has the column.
+    column : a column whose quantity is known.
     Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed.
     """
     name, unit = column.name, column.unit
@@ -122,7 +122,10 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     # a phase angle of rubber in degrees goes above pi/2
     open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
     if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
-        problem = f"column {column.heading!r} has no unit, and goes to {values.max():g}: give units={{{name!r}: ...}}"
+        problem = (
+            f"column {column.heading!r} has no unit, and its largest value is {values.max():g}: give "
+            f"units={{{name!r}: ...}}"
+        )
         raise FileError(table.path, problem)
     if column.log:
         values = 10.0**values

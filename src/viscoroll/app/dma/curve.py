@@ -86,9 +86,7 @@ class Curve(NamedTuple):
     def fluid(self) -> ParameterError:
         """The error where no long-time modulus is left."""
         lowest = f"from {self.storage[0]:g} at omega = {self.omega[0]:g} on"
-        return ParameterError(
-            "storage", lowest, "a curve that levels off at low frequencies: here it is that of a fluid"
-        )
+        return ParameterError("storage", lowest, "data with a plateau at low frequencies: these have none, as a fluid")
 
 
 class Relaxation(NamedTuple):
@@ -128,7 +126,7 @@ class Relaxation(NamedTuple):
     @property
     def fluid(self) -> ParameterError:
         last = f"down to {self.relaxation[-1]:g} at t = {self.t[-1]:g}"
-        return ParameterError("relaxation", last, "a curve that levels off at long times: here it is that of a fluid")
+        return ParameterError("relaxation", last, "data with a plateau at long times: these have none, as a fluid")
 
 
 _Data = TypeVar("_Data", Curve, Relaxation)
@@ -139,7 +137,7 @@ class KramersKronig(NamedTuple):
 
     omega : angular frequency, rad/s, shape (n,).
     ratio : E''/((pi/2) dE'/d ln omega); infinite where E' does not rise, NaN where there is no slope, shape (n,).
-    median : of the ratios; near 1 where the spectrum is broad and the data are sound.
+    median : median of the ratios; near 1 where the spectrum is broad and the data are sound.
     """
 
     omega: Floats
@@ -160,7 +158,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    values = [check_array(name, given, unit=UNITS[name], low=0.0, strict=True) for name, given in columns.items()]
+    values = [check_array(name, given, unit=UNITS[name], above=0.0) for name, given in columns.items()]
     first = next(iter(columns))
     for name, column in zip(columns, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:

@@ -32,7 +32,7 @@ class DynamicModuli(Result):
     ----------
     omega : angular frequencies, rad/s, shape (n,), in the order of the file.
     storage, loss : storage and loss modulus, Pa, shape (n,).
-    temperature : of each point, degrees Celsius, shape (n,); None where the file has none.
+    temperature : temperature of each point, degrees Celsius, shape (n,); None where the file has none.
     mode : "tension" (E', E'') or "shear" (G', G'').
     source : name of the file.
     columns : meaning -> heading of the column that was taken for it.
@@ -66,7 +66,10 @@ class DynamicModuli(Result):
         """omega, storage, loss; with a warning where temperatures or shear would be lost by that."""
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
-            text = f"{self.source}: three columns lose {' and '.join(lost)}: give the record whole, fit_prony(record)"
+            text = (
+                f"{self.source}: three columns do not state {' and '.join(lost)}: give the record itself, "
+                f"fit_prony(record)"
+            )
             warnings.warn(text, ModelWarning, stacklevel=caller_level())
         return iter((self.omega, self.storage, self.loss))
 
@@ -81,7 +84,14 @@ class DynamicModuli(Result):
         return super().__getitem__(name)
 
     def to_xarray(self) -> xr.Dataset:
-        """All columns over ``point``, with their units; mode, source and notes as attributes."""
+        """All columns over ``point``, with their units; mode, source and notes as attributes.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.read_dma(vr.datasets.path("dma.csv")).to_xarray().sizes["point"]
+        25
+        """
         import xarray as xr
 
         units = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "temperature": "degC"}
@@ -110,6 +120,6 @@ class DynamicModuli(Result):
         given = (f"{name} {self.columns[name]!r} in {self.units.get(name, '1')}" for name in self.columns)
         rows = [
             SummaryRow("columns", "; ".join(given)),
-            SummaryRow("notes", "; ".join(self.notes) or "no column left aside"),
+            SummaryRow("notes", "; ".join(self.notes) or "no unused column"),
         ]
         return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows

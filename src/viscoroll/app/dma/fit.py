@@ -83,7 +83,7 @@ def fit_prony(
     on : "both", or "storage" to find the shifts from the overlap of the storage modulus alone, where the loss modulus
         is noisy or does not shift alike.
     mode : "tension" (default) or "shear", where the moduli are G' and G''; :meth:`Fit.material` makes E of them.
-    source : of the data, in words; it stays with the material.
+    source : source of the data, in words; it stays with the material.
 
     Returns
     -------
@@ -117,13 +117,15 @@ def fit_prony(
         record = omega
         for name, given in (("storage", storage), ("loss", loss)):
             if given is not None:
-                raise ParameterError(name, "given", "left out: the record has it (modes=, if that is meant)")
+                raise ParameterError(
+                    name, "given", "left out: the record states it (for the number of modes give modes=)"
+                )
         if mode not in (None, record.mode):
             raise ParameterError("mode", repr(mode), f"{record.mode!r}, as of {record.source or 'the record'}")
         omega, storage, loss, mode = record.omega, record.storage, record.loss, _mode(record.mode)
         temperature, source = record.temperature if temperature is None else temperature, source or record.source
     elif storage is None or loss is None:
-        raise ParameterError("storage and loss", None, "given, as columns beside omega, or a record of read_dma alone")
+        raise ParameterError("storage and loss", None, "given: columns beside omega, or only a record of read_dma")
     check_choice("on", on, "both", "storage")
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:
@@ -162,7 +164,7 @@ def fit_relaxation(
     modes, source : as of :func:`fit_prony`.
     misfit : root mean square of the relative errors that E(t) may have.  Rolling resistance is made of E'', which
         follows from the slope of E(t): of the usual slopes 1 % of E(t) leaves 10 to 30 % of E'' open, 0.3 % some 5 %.
-    temperature : of the test, degrees Celsius; it stays with the material.
+    temperature : temperature of the test, degrees Celsius; it stays with the material.
     mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
 
     Returns
@@ -189,8 +191,10 @@ def fit_relaxation(
     curve = data_of(Relaxation, {"t": t, "relaxation": relaxation})
     first, *_, last = curve.relaxation.tolist()
     if last > _RISES * first:
-        found = f"from {first:g} to {last:g} as time goes on"
-        raise ParameterError("relaxation", found, "a modulus, which falls (a creep compliance rises)")
+        found = f"from {first:g} to {last:g} as the time increases"
+        raise ParameterError(
+            "relaxation", found, "a relaxation modulus, which decreases with time (a creep compliance increases)"
+        )
     _, fields, errors = _fit_series(curve, modes, misfit)
     temperature = None if temperature is None else check_celsius("temperature", temperature)
     return RelaxationFit(**fields, misfit=errors[0], mode=_mode(mode), source=source, temperature=temperature)
@@ -210,7 +214,7 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
     Returns (the data that were fitted, the fields of a fit that are of its data and its series, the root mean square
     of the relative errors of each modulus).
     """
-    target = check_number("misfit", misfit, low=0.0, strict=True)
+    target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
     (low, high), data = curve.band, thinned(curve)
     if high > MOST_SPREAD * low:

@@ -27,27 +27,30 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 
 
 def _rows(fit: Any) -> Iterator[SummaryRow]:
-    """Yield the lines of a ``fit``, a :class:`viscoroll.app.dma.fit_results.SeriesFit`."""
+    """Yield the lines of the report below its title.
+
+    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """
     prony, symbol = fit.prony, symbol_of(fit)
-    floor = "" if fit.plateau else "; the least that is allowed: the data do not determine it"
+    floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
     yield SummaryRow(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
     if fit.mode == "shear":
         factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
-        yield SummaryRow("shear", f"the data are of shear: material(nu=) takes E = 2 (1 + nu) G, {factor}")
-    yield SummaryRow("alpha", f"{prony.alpha:.6g} (instantaneous over long-time modulus)")
+        yield SummaryRow("shear", f"shear data: material(nu=) uses E = 2 (1 + nu) G, {factor}")
+    yield SummaryRow("alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)")
     yield SummaryRow("T_ref", f"{fit.T_ref:.6g} s (the longest time)")
     if fit.temperature is not None:
-        yield SummaryRow("temperature", f"{fit.temperature:g} C, at which these times are")
+        yield SummaryRow("temperature", f"{fit.temperature:g} C, the temperature of these times")
     if fit.points > fit.data[0].size:
         yield SummaryRow(
-            "thinned", f"the means of {fit.data[0].size} logarithmic bins stand for the points here and below"
+            "thinned", f"the means of {fit.data[0].size} logarithmic bins replace the points, here and below"
         )
     yield from fit._rows()
     yield SummaryRow("outside", _outside(fit))
-    yield SummaryRow("wider", "with a grid of times wider on either side beside these, two a decade, none left out:")
+    yield SummaryRow("wider", "fits with a wider range of times, two times per decade:")
     for other in fit.wider:
-        ratios = f"{symbol} times {other.E / fit.E:.4g}, alpha times {other.alpha / prony.alpha:.4g}"
-        change = f"M changes by up to {other.M_change:.2%} at speeds inside the data"
+        ratios = f"{symbol} changes by a factor of {other.E / fit.E:.4g}, alpha by {other.alpha / prony.alpha:.4g}"
+        change = f"M changes by up to {other.M_change:.2%} at speeds inside the measured band"
         yield SummaryRow("", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}")
     yield SummaryRow("modes", f"{symbol}_i/{symbol}      tau_i, s")
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
@@ -72,13 +75,16 @@ def of_dynamic(fit: Any) -> list[SummaryRow]:
     factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
     rows.append(SummaryRow("shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"))
     if shifts.distinct > shifts.temperature.size:
-        text = f"{shifts.distinct} temperatures, within 0.5 K of one another, were taken for {shifts.temperature.size}"
+        text = (
+            f"{shifts.distinct} temperatures, within 0.5 K of one another, were combined into {shifts.temperature.size}"
+        )
         rows.append(SummaryRow("", text))
     if np.isfinite(shifts.mismatch).any():
         most = np.nanmax(shifts.mismatch)
         rows.append(SummaryRow("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"))
     open_ones = (
-        f"the overlap does not fix the shift {pair}: the curves are flat there" for pair in undetermined_shifts(shifts)
+        f"the overlap does not determine the shift {pair}: the curves are flat there"
+        for pair in undetermined_shifts(shifts)
     )
     return rows + [SummaryRow("", text) for text in open_ones]
 
@@ -89,30 +95,33 @@ def of_relaxation(fit: Any) -> list[SummaryRow]:
     misfit = f"{fit.misfit:.2%} in {symbol}(t) (rms, relative){_target(fit)}"
     return [
         SummaryRow("misfit", misfit),
-        SummaryRow("", f"{symbol}'' follows from the slope of {symbol}(t), with ten times this error or more"),
+        SummaryRow("", f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more"),
     ]
 
 
 def _target(fit: Any) -> str:
     """Return the words on the misfit that was requested."""
-    return f"; {fit.target:.2%} was asked for{'' if fit.reached else ' and not reached'}"
+    return f"; target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
 
 
 def _kramers_kronig(median: float, symbol: str) -> str:
     """Return a sentence on whether storage and loss modulus go together.
 
-    median : of the Kramers-Kronig ratio.
+    median : median of the Kramers-Kronig ratio.
     symbol : E or G.
     """
     if np.isnan(median):
-        return f"cannot be held against {symbol}': too few different frequencies (Kramers-Kronig)"
-    text = f"is {median:.2f} times what the slope of {symbol}' allows (Kramers-Kronig, median)"
+        return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
+    text = f"is {median:.2f} times the value from the slope of {symbol}' (Kramers-Kronig, median)"
     sound = _CONSISTENT[0] <= median <= _CONSISTENT[1]
-    return text + ("" if sound else ": storage and loss do not go together, or the spectrum is of few narrow modes")
+    return text + ("" if sound else ": storage and loss modulus are inconsistent, or the spectrum has few narrow modes")
 
 
 def _outside(fit: Any) -> str:
-    """Return a sentence on the modes of a ``fit`` whose times lie outside the data."""
+    """Return a sentence on the modes whose times lie outside the data.
+
+    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """
     range_of = "the data's range of times" if fit.data._fields[0] == "t" else "the data's range of 1/omega"
     if not (count := int(fit.outside.sum())):
         return f"no mode lies outside {range_of}"

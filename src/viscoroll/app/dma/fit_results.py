@@ -57,8 +57,8 @@ class SeriesFit(Result):
     points : number of points that were measured; above 1000 the means of 500 logarithmic bins were fitted, and they
         are the data and the misfit here.
     grid : shortest and longest time that the fit was allowed, s.
-    temperature : of the fit, degrees Celsius, None where it is not known.
-    source : of the data, in words.
+    temperature : temperature of the fit, degrees Celsius, None where it is not known.
+    source : source of the data, in words.
     misfit : root mean square of the relative errors, of each modulus.
     """
 
@@ -102,13 +102,13 @@ class SeriesFit(Result):
         """Fits on grids of times one and two decades wider on either side, no time left out.
 
         For each ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose transit times lie within
-        the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.WiderGrid`).  Computed at the
-        first access.
+        the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.ExtendedGridFit`).  They are
+        computed at the first access.
         """
-        from .spectrum_sensitivity import with_wider_grid
+        from .spectrum_sensitivity import fit_on_extended_grid
 
         return tuple(
-            with_wider_grid(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2)
+            fit_on_extended_grid(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2)
         )
 
     @property
@@ -133,6 +133,13 @@ class SeriesFit(Result):
         ------
         ParameterError
             As there.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+        >>> fit.material(nu=0.49).E == fit.E
+        True
         """
         E, measured = self.E, self.measured
         if self.mode == "shear":
@@ -152,9 +159,10 @@ class SeriesFit(Result):
         temperature (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer
         with a shorter transit time: modes faster than the transit act there as far as they go.
 
-        Parameters ----------
-        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any
-        temperature.
+        Parameters
+        ----------
+        cylinder : one cylinder, or a series of cylinders, whose material or base is ``material()`` of this fit, at any
+            temperature.
         V : speed of the axis, m/s, any sign.
 
         Returns
@@ -166,11 +174,19 @@ class SeriesFit(Result):
         ------
         ParameterError
             A cylinder of another series; NaN or infinite V.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+        >>> roller = vr.Cylinder(R=0.1, m=35.5, mu=0.3, material=fit.material(nu=0.49))
+        >>> fit.validity(roller, [0.1, 1.0]).holds
+        array([ True,  True])
         """
         bodies = cylinder.pair.cylinder, cylinder.pair.half_space
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
-            raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
+            raise ParameterError("cylinder", "another", "one whose material or base is material() of this fit")
         speed = check_array("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
         seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
@@ -182,9 +198,9 @@ class SeriesFit(Result):
         x : angular frequencies, rad/s, or times, s, of any shape.
         Returns a row for storage and one for loss, or one for relaxation, each of the shape of x.
         """
-        given = np.asarray(x, np.float64)
-        data = self.data._replace(**{self.data._fields[0]: given.ravel()})
-        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *given.shape)
+        points = np.asarray(x, np.float64)
+        data = self.data._replace(**{self.data._fields[0]: points.ravel()})
+        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 
     def to_xarray(self) -> xr.Dataset:
         """Data and fit over omega or t, the series over ``mode``, and the constants as attributes."""
@@ -193,7 +209,7 @@ class SeriesFit(Result):
         x, *names = self.data._fields
         of_data = zip((*names, *(f"{name}_fit" for name in names)), (*self.data[1:], *self._moduli(self.data[0])))
         data: dict[str, Any] = {name: (x, values, {"units": "unit of the data"}) for name, values in of_data}
-        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
+        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths divided by the long-time modulus"})}
         data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
         about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series", "modulus": self.mode}
         misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]
@@ -211,12 +227,23 @@ class SeriesFit(Result):
 class Fit(SeriesFit):
     """A Prony series fitted to a master curve, with its misfit and the consistency of the data.
 
-    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`; of shear E, storage and loss are G, G' and G''.
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
     misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
     kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
         ``.ratio``, ``.median``.
     shifts : shift factors of curves at several temperatures, else None.
     omega, storage, loss : the data, sorted and shifted; rad/s and the unit given.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+    >>> fit.prony.E.size, fit.misfit.loss < 0.01
+    (4, True)
+    >>> rubber = fit.material(nu=0.49, name="rubber")
     """
 
     misfit: Misfit
@@ -236,6 +263,14 @@ class Fit(SeriesFit):
 
         omega : angular frequencies, rad/s.
         They are E' and E'', or G' and G'' where ``mode`` is "shear".
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+        >>> storage, loss = fit.modulus([1.0, 10.0])
+        >>> storage.shape
+        (2,)
         """
         storage, loss = self._moduli(omega)
         return storage, loss
@@ -247,10 +282,22 @@ class Fit(SeriesFit):
 class RelaxationFit(SeriesFit):
     """A Prony series fitted to a relaxation modulus: the result of :func:`fit_relaxation`.
 
-    E, T_ref, prony, mode, ... : as of :class:`SeriesFit`.
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of ``SeriesFit``, the base class.
     misfit : root mean square of the relative errors.
     t : times of the data, ascending, s.
     relaxation : relaxation modulus of the data, in the unit given.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import viscoroll as vr
+    >>> t = np.geomspace(0.01, 100.0, 30)
+    >>> fit = vr.fit_relaxation(t, 1e6 * (1.0 + 2.0 * np.exp(-t / 0.5)))
+    >>> fit.prony.E.round(6)
+    array([2.])
     """
 
     misfit: float
@@ -266,6 +313,15 @@ class RelaxationFit(SeriesFit):
         """Return the relaxation modulus of the fit, E(t) or of shear G(t), in the unit of the data.
 
         t : times, s, of any shape, which the result has too.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> t = np.geomspace(0.01, 100.0, 30)
+        >>> fit = vr.fit_relaxation(t, 1e6 * (1.0 + 2.0 * np.exp(-t / 0.5)))
+        >>> round(float(fit.modulus(1000.0)))
+        1000000
         """
         return self._moduli(t)[0]
 

@@ -38,7 +38,7 @@ LARGEST_FREEDOM = 1.0
 class Shifts(NamedTuple):
     """Shift factors of the curves.
 
-    temperature : of each curve, ascending, degrees Celsius; the median of those of its points.
+    temperature : temperature of each curve, ascending, degrees Celsius; the median of those of its points.
     a_T : ratio of times at this temperature to those at the reference.
     reference : degrees Celsius; a_T is 1 there.
     mismatch : between each curve and its warmer neighbour, rms of the difference of ln E' and ln E''; NaN where
@@ -89,9 +89,7 @@ def master_curve(
         Curves so flat that their overlap does not fix the shift; temperatures that look like kelvin.
     """
     point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
-    whole = [
-        check_array(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)
-    ]
+    whole = [check_array(name, column, above=0.0) for name, column in zip(Curve._fields, columns, strict=True)]
     sets = sets_of(point_temperatures, first)
     temperatures = sets.temperature
     check_celsius("temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0])
@@ -111,11 +109,16 @@ def master_curve(
         factor = np.exp(logs - np.interp(base, temperatures, logs))
     if shift is not None and factor[-1] > factor[0]:
         ends = f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at {temperatures[-1]:g} C"
-        allowed = "a_T, times over those at the reference, which fall as it gets warmer, in the order of the curves"
+        allowed = (
+            "shift factors a_T (time divided by time at the reference), which decrease with "
+            "temperature, in the order of the curves"
+        )
         raise ParameterError("shift", ends, allowed)
     shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(point_temperatures).size)
     if open_shifts := undetermined_shifts(shifts):
-        text = f"overlap does not fix the shift {'; '.join(open_shifts)}: curves on a plateau; give shift="
+        text = (
+            f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the curves are flat: give shift="
+        )
         warnings.warn(text + (', or try on="storage"' if on == "both" else ""), ModelWarning, stacklevel=caller_level())
     return curve_of(whole[0] * factor[sets.of_point], whole[1], whole[2]), shifts
 
@@ -123,7 +126,7 @@ def master_curve(
 def undetermined_shifts(shifts: Shifts) -> list[str]:
     """Return the pairs of neighbours whose shift the overlap leaves open: both temperatures and the range, in words.
 
-    shifts : of the curves.
+    shifts : shift factors of the curves.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
     return [
@@ -136,15 +139,15 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 
-    curves : from the coldest on.
-    temperatures : of the curves, degrees Celsius.
+    curves : one for each temperature, the coldest first.
+    temperatures : temperatures of the curves, degrees Celsius.
     Returns (ln a_T over the coldest, the mismatch of neighbours,
     their decades of freedom); raises ParameterError for neighbours that do not overlap.
     """
     found = [_align(*pair) for pair in pairwise(curves)]
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
         if not alignment.mismatch <= _LARGEST_MISMATCH:
-            allowed = "those of neighbouring curves that overlap when shifted"
+            allowed = "moduli of neighbouring curves that overlap after the shift"
             raise ParameterError("temperature", "{:g} and {:g}".format(*pair), allowed)
     steps, mismatch, freedom = np.reshape(found, (-1, 3)).T
     return np.append(0.0, np.cumsum(steps)), mismatch, freedom
@@ -179,7 +182,7 @@ class _LogCurve:
 class _Alignment(NamedTuple):
     """The shift that lays the warm curve on the cold one.
 
-    step : of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
+    step : shift of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
     """
 
     step: float

@@ -54,7 +54,7 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
     enough = (start for start in starts if (good(start[0]) if modes is None else start[0].tau.size >= modes))
     spectrum, ends = next(enough, starts[-1])
     for _ in range(spectrum.tau.size - fewest):
-        fewer = _with_one_less(data, spectrum, ends, good if modes is None else None)
+        fewer = _leave_out_mode(data, spectrum, ends, good if modes is None else None)
         if fewer is None or spectrum.tau.size <= fewest:  # one step may leave out several
             break
         spectrum = fewer
@@ -95,7 +95,12 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
 
 
 def _reaches(data: Data, spectrum: Spectrum, target: float) -> bool:
-    """Return whether no row of the data has a misfit above the target."""
+    """Return whether no row of the data has a misfit above the target.
+
+    data : the curve.
+    spectrum : the fit.
+    target : largest misfit of each row, dimensionless.
+    """
     return max(misfits(data, spectrum)) <= target
 
 
@@ -104,18 +109,17 @@ def _size(data: Data, spectrum: Spectrum) -> float:
     return math.hypot(*misfits(data, spectrum))
 
 
-def _with_one_less(
+def _leave_out_mode(
     data: Data, spectrum: Spectrum, ends: tuple[float, float], good: Callable[[Spectrum], bool] | None
 ) -> Spectrum | None:
-    """Return the best spectrum of one mode less.
+    """Return the best spectrum with one mode less, None if none of the best candidates, refined, is acceptable.
 
     data : the curve.
-    spectrum : from which a mode goes.
+    spectrum : the spectrum from which a mode is left out.
     ends : shortest and longest time that is allowed.
     good : whether a spectrum is acceptable; None: any is.
-    Returns None if none of the best candidates, refined, is acceptable.
     """
-    tried = sorted((on_times(data, tau) for tau in _times_with_one_less(spectrum)), key=lambda one: _size(data, one))
+    tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
         return tried[0]
     for candidate in tried[:_CANDIDATES]:
@@ -125,10 +129,10 @@ def _with_one_less(
     return None
 
 
-def _times_with_one_less(spectrum: Spectrum) -> list[Floats]:
+def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
     """Return lists of times with one left out, or with two neighbours at their mean time.
 
-    spectrum : of whose times; the mean is of the logarithms, weighted by strength.
+    spectrum : the spectrum; means are of the logarithms of its times, weighted by strength.
     """
     tau, strength = spectrum.tau, spectrum.strength
     without = [np.delete(tau, n) for n in range(tau.size)]

@@ -30,7 +30,7 @@ _ROUNDED = 0.05
 def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Numbers]) -> tuple[Floats, Floats]:
     """Return storage and loss from a pair of quantities; all others must agree with them.
 
-    table : of which the columns are.
+    table : the table that has the columns.
     pair : a key of :data:`PAIRS`.
     columns : quantity (storage, loss, tan delta, modulus) -> numbers, those that the file has.
     Returns (storage, loss), both of shape (n,); raises FileError where a third column contradicts, or the digits of the
@@ -43,7 +43,7 @@ def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Num
     if pair[1] == "modulus":  # a difference of squares
         other = exact["loss" if pair[0] == "storage" else "storage"]
         rounding = rounding * (exact["modulus"] / other) ** 2
-        table.require(rounding <= _ROUNDED, f"{both} leave the other modulus open: give tan delta too")
+        table.require(rounding <= _ROUNDED, f"{both} do not determine the other modulus: give tan delta too")
     for name in columns.keys() - set(pair):
         values, half = columns[name]
         agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half

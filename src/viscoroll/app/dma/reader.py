@@ -45,11 +45,12 @@ def read_dma(
         are frequency, angular frequency, storage, loss, tan delta, phase angle, modulus (the magnitude), storage
         compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
         file without headings are called "column 0", "column 1" ...; three of them are frequency, storage and loss.
-    units : of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning -> unit,
+    units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
+    -> unit,
         in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in Pa, with a
         warning.
     decimal : "." or ","; default: the one that the numbers have.
-    encoding : of the file; default: by its first bytes.
+    encoding : encoding of the file; default: by its first bytes.
 
     Returns
     -------
@@ -77,15 +78,15 @@ def read_dma(
     """
     named = dict(columns or {})
     check_names("columns", named, UNITS, "a quantity")
-    given, default = _units(units)
+    overruling, defaults = _units(units)
     table = read_table(path, lambda cells: _is_heading_line(cells, named), decimal=decimal, encoding=encoding)
-    if table.bare and not named:
+    if table.without_headings and not named:
         if len(table.headings) != 3:
             count = len(table.headings)
-            problem = f"has {count} columns, and no heading that names frequency, storage and loss modulus"
+            problem = f"has {count} columns, and no headings for frequency, storage and loss modulus"
             raise FileError(path, f"{problem}: give columns=")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
-    found, others = columns_of(table, named, given, default)
+    found, others = columns_of(table, named, overruling, defaults)
     notes = [f"{table.parts} tables"] * (table.parts > 1)
     # as rheometers write; instruments of tension name E
     beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
@@ -98,9 +99,9 @@ def read_dma(
     temperature = numbers.get("temperature")
     if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
         temperature = None
-        others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies are of one temperature"
+        others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies belong to one temperature"
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
-    table.require(omega > 0.0, "the frequency is not > 0: leave out its row")
+    table.require(omega > 0.0, "the frequency is not > 0: remove the row")
     moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
     storage, loss = storage_and_loss(table, pair, moduli)
     taken = [alike[0] for alike in columns_of_quantity.values()]
@@ -113,7 +114,7 @@ def read_dma(
     notes += [f"{name} agrees with them" for name in moduli if name not in pair]
     notes += [f"{column.heading!r} is log10" for column in taken if column.log]
     listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
-    notes += [f"left aside: {listed}"] * bool(others)
+    notes += [f"unused: {listed}"] * bool(others)
     _warn_of_assumed_units(table, taken)
     record = DynamicModuli(
         omega, storage, loss, temperature and temperature.values, mode, Path(path).name,
@@ -153,14 +154,14 @@ def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
         try:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
-            raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is none of {name}") from error
+            raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is not a unit of {name}") from error
     return (pairs, {}) if by_name else ({}, pairs)
 
 
 def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
     """Return whether cells are headings: two of them name quantities, or one was named by the user.
 
-    cells : of a line.
+    cells : cells of a line.
     named : quantity -> heading, of columns that the user named.
     """
     quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
@@ -170,7 +171,7 @@ def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
 def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
     """Choose the columns that are read.
 
-    table : of the columns, for the message.
+    table : the table that has the columns; the message lists its headings.
     found : columns of known quantities.
     others : headings of the other columns, and why they are left out; those of another mode or kind than the pair, and
         measured frequencies beside reduced ones, are added.
@@ -178,7 +179,7 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
     quantities = {column.quantity for column in found}
-    missing = "frequency" + ": a sweep of temperature is none of frequency" * ("temperature" in quantities)
+    missing = "frequency" + ": this is a sweep of temperature, not of frequency" * ("temperature" in quantities)
     if quantities & {"frequency", "reduced frequency"}:
         missing = "two of storage, loss, tan delta and modulus"
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
@@ -197,14 +198,14 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
                     return _Choice(mode, pair, columns)
     problems = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
     headings = ", ".join(map(repr, filter(None, table.headings)))
-    raise FileError(table.path, f"no column is named {missing}{problems}; headings: {headings}; give columns=")
+    raise FileError(table.path, f"no column was found for {missing}{problems}; headings: {headings}; give columns=")
 
 
 def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
     """Return the numbers of the first of several columns of one quantity; the others must agree with it.
 
-    table : of the columns.
-    quantity : of which they are.
+    table : the table that has the columns.
+    quantity : name of their quantity.
     alike : the columns.
     others : headings of columns that are left out, and why; all but the first are added.
     Raises FileError with the line where they contradict each other.
@@ -224,7 +225,7 @@ def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str
 def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
     """Warn of columns whose unit neither the file nor the user gives.
 
-    table : of the columns.
+    table : the table that has the columns.
     taken : the columns.
     Raises FileError for a modulus or frequency without a unit beside one that has it.
     """
@@ -243,20 +244,22 @@ def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     """Raise FileError for rows of one frequency, and for several sweeps without the temperature of each.
 
-    table : of which the record is.
+    table : the table from which the record was read.
     record : the moduli in the order of the rows.
     """
     omega, n = record.omega, record.omega.size
     if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():
-        problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is no frequency sweep"
+        problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a frequency sweep"
         raise FileError(table.path, problem)
     if record.temperature is None and table.parts > 1:
-        raise FileError(table.path, f"has {table.parts} tables, and no column has their temperature: keep one of them")
+        raise FileError(
+            table.path, f"has {table.parts} tables, and no column states their temperature: keep one of them"
+        )
     if record.isothermal:
         order = np.argsort(omega, kind="stable")
         same = np.diff(omega[order]) <= _ONE_FREQUENCY * omega[order][1:]
         repeats = np.abs(np.diff(np.log(np.abs(record.storage[order])))) <= np.log(_REPEATED)
         holds = np.ones(n, bool)
         holds[order[1:]] = repeats | ~same
-        problem = "the same frequency has another modulus in a row before"
-        table.require(holds, f"{problem}: rows of several temperatures or strains need a column of temperature")
+        problem = "an earlier row has the same frequency and another modulus"
+        table.require(holds, f"{problem}: rows at several temperatures or strains need a column of temperature")

@@ -27,7 +27,7 @@ class Spectrum(NamedTuple):
     """A discrete spectrum in the units of the data.
 
     E : long-time modulus.
-    strength : of each mode, shape (modes,).
+    strength : strength of each mode, shape (modes,).
     tau : time of each mode, descending, shape (modes,).
     """
 
@@ -43,7 +43,7 @@ class Spectrum(NamedTuple):
 def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
     """Return the spectrum of a series.
 
-    prony : strengths over the long-time modulus, times over T_ref.
+    prony : strengths divided by the long-time modulus, times over T_ref.
     E : long-time modulus.
     T_ref : time that those of the series are counted in, s.
     """
@@ -177,7 +177,7 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
 def _normal_matrix(slopes: Floats) -> Floats:
     """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads.
 
-    slopes : of the residuals, shape (residuals, unknowns).
+    slopes : slopes of the residuals, shape (residuals, unknowns).
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))

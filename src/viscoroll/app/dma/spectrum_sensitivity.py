@@ -22,7 +22,7 @@ _SPEEDS = 4
 
 
 @dataclass(frozen=True, eq=False)
-class WiderGrid:
+class ExtendedGridFit:
     """Non-negative least squares on the times of a fit and on two a decade that reach further beyond the data.
 
     decades : by which the grid is wider on either side.
@@ -45,9 +45,9 @@ class WiderGrid:
         return float(np.abs(self.M / self.M_fit - 1.0).max()) if self.V.size else float("nan")
 
 
-def with_wider_grid(
+def fit_on_extended_grid(
     data: Data, prony: Prony, E: float, T_ref: float, grid: tuple[float, float], decades: float
-) -> WiderGrid:
+) -> ExtendedGridFit:
     """Fit strengths on the times of a fit and on a wider grid, no time left out.
 
     data : the curve.
@@ -63,7 +63,7 @@ def with_wider_grid(
     other = Prony(found.strength / found.E, found.tau / T_ref)
     V, M_fit = _moments_within_data(prony, *(rate * T_ref for rate in data.band))
     M = _contact_of(other, float(np.sqrt(found.E / E)), V).M
-    return WiderGrid(decades, found.E, other.alpha, other, V, M, M_fit)
+    return ExtendedGridFit(decades, found.E, other.alpha, other, V, M, M_fit)
 
 
 def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats, Floats]:

@@ -22,7 +22,7 @@ _ONE = 1e-9
 class Sets(NamedTuple):
     """Sweeps, each at one temperature.
 
-    temperature : of each set, ascending, degrees Celsius: the median of its points, shape (sets,).
+    temperature : temperature of each set, ascending, degrees Celsius: the median of its points, shape (sets,).
     of_point : index of the set of each point, shape (n,).
     of_curve : index of the set of each curve in the order of the caller, shape (curves,).
     """
@@ -35,7 +35,7 @@ class Sets(NamedTuple):
 def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
     """Return a temperature for each point, and the columns.
 
-    temperature : of all points, of each point, or of each curve; degrees Celsius.
+    temperature : temperature of all points, of each point, or of each curve; degrees Celsius.
     columns : omega, storage and loss, each a column or a list of curves.
     Returns (temperatures, columns, index of the first point of each curve; None where the columns are no lists).
     Raises ParameterError for shapes that do not go together.
@@ -45,24 +45,26 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         sizes, *others = ([np.size(curve) for curve in column] for column in columns)
         if others != [sizes, sizes] or given.shape != (len(sizes),):
-            raise ParameterError("temperature", f"of shape {given.shape}", f"one a curve, here {len(sizes)} curves")
+            raise ParameterError(
+                "temperature", f"of shape {given.shape}", f"one for each curve, here {len(sizes)} curves"
+            )
         first = np.cumsum([0, *sizes[:-1]])
         return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
     flat = [np.asarray(column) for column in columns]
     if given.ndim == 0:
         given = np.full(flat[0].shape, float(given))
     if given.ndim != 1:
-        raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one a curve")
+        raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one for each curve")
     for name, column in zip(Curve._fields, flat, strict=True):
         if column.shape != given.shape:
-            raise ParameterError(name, f"of shape {column.shape}", f"one a temperature, of shape {given.shape}")
+            raise ParameterError(name, f"of shape {column.shape}", f"one for each temperature, of shape {given.shape}")
     return given, flat, None
 
 
 def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     """Divide points into sets; temperatures within :data:`LEAST_DISTANCE` of a neighbour are one set.
 
-    temperature : of each point, degrees Celsius, shape (n,).
+    temperature : temperature of each point, degrees Celsius, shape (n,).
     first : index of the first point of each curve; None: sets are taken in the order in which they come.
     Returns the sets.
 
@@ -92,7 +94,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
 def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
     """Return the reference temperature where none is given.
 
-    temperatures : of the sets, ascending.
+    temperatures : temperatures of the sets, ascending.
     unshifted : temperatures at which the shift is 1; the first within the sets is the reference, else the middle set
     is.
     """
@@ -104,8 +106,8 @@ def nearest(base: float, temperatures: Floats, name: str) -> int:
     """Return the index of the set nearest to a temperature.
 
     base : the temperature, degrees Celsius.
-    temperatures : of the sets, ascending.
-    name : of the argument in the message of the ParameterError outside of all sets.
+    temperatures : temperatures of the sets, ascending.
+    name : name of the argument in the message of the ParameterError outside of all sets.
     """
     low, high = temperatures[0], temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
@@ -117,7 +119,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     """Return factors of the sets, 1 at the reference, and the reference.
 
     shift : factors in the order of the curves.
-    sets : of the points.
+    sets : the sets of the points.
     base : reference, degrees Celsius; None: where a factor is 1, else the middle set.
     Raises ParameterError for factors that do not fit the curves, and for a reference where no factor is given.
     """
@@ -125,12 +127,12 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     if not (factors > 0.0).all():
         raise ParameterError("shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms")
     if factors.shape != sets.of_curve.shape:
-        allowed = f"a factor each of {sets.of_curve.size} temperatures, in the order of the curves"
+        allowed = f"one factor for each of {sets.of_curve.size} temperatures, in the order of the curves"
         raise ParameterError("shift", f"of shape {factors.shape}", allowed)
     found = np.empty(temperatures.size)
     found[sets.of_curve] = factors
     if (found[sets.of_curve] != factors).any():
-        raise ParameterError("shift", "several factors at one temperature", "one factor a temperature")
+        raise ParameterError("shift", "several factors for one temperature", "one factor a temperature")
     if base is None:
         base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
     index = nearest(base, temperatures, "reference")

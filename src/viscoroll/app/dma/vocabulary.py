@@ -86,8 +86,8 @@ _SIGNS = [(re.compile(pattern), words) for pattern, words in (
 class Meaning(NamedTuple):
     """A quantity that a heading may name.
 
-    name : of the quantity, a key of :data:`UNITS`.
-    mode : of the modulus, "tension", "shear", or "" where the heading does not say.
+    name : name of the quantity, a key of :data:`UNITS`.
+    mode : mode of the modulus, "tension", "shear", or "" where the heading does not say.
     unit : in the heading or in the row of units, "" without.
     log : whether the numbers are logarithms to base 10.
     """

@@ -119,8 +119,9 @@ def _contact_length_of_cover(table: LawTable) -> float:
 def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, l0: float) -> dict[str, float]:
     """Return the start value of each variable that can be set, by name, in the variables' units.
 
-    variables: of the model.  given: argument of :func:`build`; of a Cylinder all its numbers, for 1 m of its width.
-    table: its law, which knows T_ref and, of SI materials, E_prime.
+    variables: variables of the model.
+    given: argument of :func:`build`; the numbers of a Cylinder become start values, for 1 m of its width.
+    table: its law, which has T_ref and, of SI materials, E_prime.
     l0: contact length of a cover in m, or 0.0; the load at the start is the one that makes it.
     """
     values: dict[str, Any] = {"T_ref": table.T_ref}
@@ -133,7 +134,9 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
         values |= {"mass": given.m, "inertia": given.j}
     for name, value in values.items():
         if np.ndim(value):
-            raise ParameterError(name, f"an array of shape {np.shape(value)}", "one number: an FMU is of one cylinder")
+            raise ParameterError(
+                name, f"an array of shape {np.shape(value)}", "one number: an FMU contains one cylinder"
+            )
     return {v.name: float(values.get(v.name, v.start)) for v in variables if v.start is not None}
 
 
@@ -162,7 +165,7 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
 def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
     """Return the C text of the variables: their references, names, kinds and start values; reference 0 is time.
 
-    variables: of the model, in the order of their references.  starts: start values by name.
+    variables: variables of the model, in the order of their references.  starts: start values by name.
     Kinds are 0 (cannot be set), 1 (any finite number) and 2 (above 0).
     """
     rows = [("time", 0, 0.0)]

@@ -25,7 +25,7 @@ _TOLERANCE = "1e-5"
 def model_description(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
     """Return the text of modelDescription.xml.
 
-    version: of the standard, 2 or 3.  name: of the model, a key of MODELS.
+    version: version of the standard, 2 or 3.  name: name of the model, a key of MODELS.
     starts: start values of the variables that can be set, by name, in their units.
     token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.  title: title of the law.
     """
@@ -64,7 +64,7 @@ def _as_text(root: Element) -> str:
 def _add_interfaces(root: Element, version: int, name: str, model: Model) -> None:
     """Add ModelExchange and, of a model with states, CoSimulation.
 
-    root: element to add to.  version: 2 or 3.  name: of the model and of its library.  model: its variables.
+    root: element to add to.  version: 2 or 3.  name: name of the model and of its library.  model: its variables.
     """
     steps = {2: {"completedIntegratorStepNotNeeded": "true"}, 3: {"needsCompletedIntegratorStep": "false"}}
     interfaces = {"ModelExchange": steps[version]}
@@ -123,7 +123,7 @@ def _add_structure(parent: Element, version: int, model: Model, references: dict
 def build_description(name: str) -> str:
     """Return the text of sources/buildDescription.xml of FMI 3.0.
 
-    name: of the model and of its library.
+    name: name of the model and of its library.
     """
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = SubElement(root, "BuildConfiguration", modelIdentifier=name)

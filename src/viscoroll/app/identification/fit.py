@@ -37,63 +37,76 @@ class Band(NamedTuple):
 
 
 class Prediction(Values):
-    """Quantities of a record by name, each with ``.value``, ``.low`` and ``.high``, of the shape of its places."""
+    """Quantities of a record by name, each with ``.value``, ``.low`` and ``.high``, arrays over the points of the
+    record.
+    """
 
     def __getattr__(self, name: str) -> Band:
         return Band(*(super(Prediction, self).__getattr__(name + end) for end in ("", "_low", "_high")))
 
 
 class Identification(Result):
-    """Values that fit measurements best, how well they are known, and what the data do not say.
+    """Best values of the unknowns, their standard deviations and intervals, and the limits of the data.
 
     ``print`` shows a report; its intervals are profiles, which take about as long as the fit for each unknown.
 
     Attributes
     ----------
     cylinder : the :class:`Cylinder` of the best values.
-    values : of the unknowns by name, SI.
-    stderr : their standard deviations by the slopes at the best fit, and as far as ranges go; infinite where one does
-        not act.
+    values : values of the unknowns by name, SI.
+    stderr : their standard deviations by the slopes at the best fit, limited by the ranges; infinite for an unknown
+        that changes no residual.
     correlations : (n, n), in the order of ``values``.
-    chi2, dof : sum of the squared residuals over sigma, and what it should be; of robust fits outliers count less.
+    chi2, dof : sum of the squared residuals over sigma, and its expectation, the degrees of freedom; of robust fits
+        outliers count less.
     sigma : standard deviation of each record's quantity, as given or as estimated.
     minima : (chi2, values) of all minima near the best, the best first.
     does_not_act : names of unknowns that do not change what was measured.
-    undetermined : names of those whose interval tells little, wider than a factor of e^2 or than half their range, and
-        of what is correlated with these beyond 0.95; :meth:`products` says what of them is determined.
+    undetermined : names of unknowns whose interval is wider than a factor of e^2 or than half their range, and of
+        those that are correlated with these beyond 0.95; :meth:`products` gives the products that are determined.
     noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation; of
         robust fits both as a tenth of outliers changes them little.
-    misfit : names of those whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or, of robust
+    misfit : names of quantities whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or,
+    of robust
         fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     records : the data by name.
-    planned : whether the records hold no values: standard deviations and intervals are what to expect.
+    planned : whether the records have no values: standard deviations and intervals are those to expect.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> roller = vr.presets.RUBBER_CYLINDER
+    >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+    >>> result = vr.identify(roller, {"mu": (0.1, 1.0)}, [plan])
+    >>> result.planned, result.stderr["mu"] < 1e-3
+    (True, True)
     """
 
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
         """Collect the values and statistics of the best fit.
 
         problem : the least squares.
-        found : minima, the best first.
+        found : minima of chi2, the best first.
         """
         self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
-        self.minima = [(one.chi2, problem.values(one.u)) for one in found]
+        self.minima = [(minimum.chi2, problem.values(minimum.u)) for minimum in found]
         self.dof, self.records = problem.points - u.size, problem.records
-        self.planned = not any(one.measured for one in self.records.values())
-        self.sigma = {str(one): problem.sigma[one.at].copy() for one in problem.columns}
+        self.planned = not any(record.measured for record in self.records.values())
+        self.sigma = {str(column): problem.sigma[column.at].copy() for column in problem.columns}
         self.noise = problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
         self.cylinder = cylinder_of(problem.cylinder, self.values)
         self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.active)
         self.correlations = self._likelihood.correlations
-        sizes = zip(problem.unknowns, self._likelihood.sd.tolist(), strict=True)
-        self.stderr = {one.name: one.slope(self.values[one.name]) * size for one, size in sizes}
+        slopes = np.array([unknown.slope(self.values[unknown.name]) for unknown in problem.unknowns])
+        self.stderr = dict(zip(self.values, (slopes * self._likelihood.sd).tolist(), strict=True))
         self.stderr |= dict.fromkeys(self.does_not_act, math.inf)
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
         """The best fit to each record with its bands, by the name of the record."""
-        return {called: self._predict(record, called, _LEVEL) for called, record in self.records.items()}
+        return {record_name: self._predict(record, record_name, _LEVEL) for record_name, record in self.records.items()}
 
     def _delta_chi2(self, level: float = _LEVEL) -> float:
         """Return the rise of chi2 at the ends of an interval: chi-squared where sigma is given, F where it is
@@ -103,8 +116,8 @@ class Identification(Result):
         """
         from scipy import stats
 
-        level = check_number("level", level, low=0.0, strict=True, high=0.9999)
-        estimated = any(one.estimated for one in self._problem.columns)
+        level = check_number("level", level, above=0.0, high=0.9999)
+        estimated = any(column.estimated for column in self._problem.columns)
         return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
 
     def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
@@ -122,12 +135,21 @@ class Identification(Result):
         ------
         ParameterError
             Another level.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> roller = vr.presets.RUBBER_CYLINDER
+        >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+        >>> low, high = vr.identify(roller, {"mu": (0.1, 1.0)}, [plan]).intervals()["mu"]
+        >>> low < 0.3 < high
+        True
         """
         found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
         for i, sides in self._likelihood.axes(self._delta_chi2(level)).items():
-            one = self._problem.unknowns[i]
-            low, high = (None if end is None else float(one.to_value(end)) for end in sides.ends)
-            found[one.name] = low, high
+            unknown = self._problem.unknowns[i]
+            low, high = (None if end is None else float(unknown.to_value(end)) for end in sides.ends)
+            found[unknown.name] = low, high
         return found
 
     @cached_property
@@ -156,7 +178,7 @@ class Identification(Result):
         draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
             unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
         level : confidence level of the bands, in (0, 0.9999].
-        seed : of the draws, >= 0.
+        seed : seed of the draws, >= 0.
 
         Returns
         -------
@@ -168,27 +190,38 @@ class Identification(Result):
         ------
         ParameterError
             A record without a start, draws, level or seed out of range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> roller = vr.presets.RUBBER_CYLINDER
+        >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+        >>> band = vr.identify(roller, {"mu": (0.1, 1.0)}, [plan]).predict(vr.Traction(V=1.0, delta=[0.1])).Q
+        >>> bool(band.low < band.value < band.high)
+        True
         """
         if not isinstance(record, Record):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
         for name, (_, span) in record.initial_values(self.cylinder.R).items():
             if span is not None:
-                raise ParameterError(name, None, "a number", f"{name} of the record is open: a prediction needs it")
+                raise ParameterError(
+                    name, None, "a number", f"{name} of the record is not given: a prediction needs it"
+                )
         return self._predict(
             record, "", level, check_integer("draws", draws, 0, _DRAWS), check_integer("seed", seed, 0)
         )
 
-    def _predict(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
+    def _predict(self, record: Record, record_name: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         """Predict a record, with bands.
 
         record : the record.
-        called : its name among the data, "" of another record.
+        record_name : its name among the data, by which its own unknowns are found; "" of another record.
         level, draws, seed : as of :meth:`predict`.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
         def predict(u: Floats) -> Floats:
-            values = problem.predicted(record, u, called)
+            values = problem.predicted(record, u, record_name)
             return np.array([values[name] for name in record.QUANTITIES])
 
         value, factor = predict(u), math.sqrt(self._delta_chi2(level))
@@ -208,7 +241,7 @@ class Identification(Result):
         return Prediction(found, coordinates, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
-        """Return residuals over sigma of all records, in their order, and of the prior.
+        """Return residuals over sigma of all records, in their order, and of the prior, shape (residuals,).
 
         values : name -> value of unknowns; others are at their start.
         For optimisers and samplers of other packages; a motion that fails has residuals of 1e6.
@@ -216,15 +249,26 @@ class Identification(Result):
         return self._problem.residuals(self._coordinates(values))
 
     def jacobian(self, values: Mapping[str, float]) -> Floats:
-        """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences."""
+        """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences.
+
+        values : name -> value of unknowns; others are at their start.
+        """
         J = self._problem.jacobian(self._coordinates(values))
-        return J / [one.slope(values.get(one.name, one.start)) for one in self._problem.unknowns]
+        return J / [unknown.slope(values.get(unknown.name, unknown.start)) for unknown in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
-        """Return the coordinates of values by name; raise ParameterError for unknown names and values out of range."""
+        """Return the coordinates of the unknowns, shape (unknowns,), that belong to values.
+
+        values : name -> value of unknowns; others are at their start.
+        Raises ParameterError for unknown names and values out of range.
+        """
         check_names("values", values, self.values, "an unknown")
-        given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
-        return np.array([one.to_u(check_number(one.name, value, **one.bounds(one.name))) for one, value in given])
+        found = []
+        for unknown in self._problem.unknowns:
+            name = unknown.name
+            value = check_number(name, values.get(name, unknown.start), **unknown.bounds(name))
+            found.append(unknown.to_u(value))
+        return np.array(found)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"

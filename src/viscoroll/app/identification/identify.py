@@ -40,25 +40,25 @@ def identify(
     prior: Mapping[str, tuple[float, float]] | None = None, shift: Shift | Mapping[str, Shift] | None = None,
     robust: bool = False, starts: int = 8, seed: int = 0, progress: bool = False,
 ) -> Identification:  # fmt: skip
-    """Fit what is unknown of a cylinder and its bearing to measurements, and say what they do not tell.
+    """Fit unknown parameters of a cylinder and its bearing to measurements, with intervals and limits of the data.
 
     Parameters
     ----------
-    cylinder : what is known, and where the search starts.
-    unknown : range (low, high) of each, SI, by the names of run files: R, m, mu, j, g, load; E, nu, T_ref of the
-        material, E_1, tau_1 of its first, longest mode, over T_ref; the same of another half-space as base_E, base_E_1;
-        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega, both >= 0; V0,
-        omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times:
-        with mu they are the whole job for a material of a DMA.
-    data : :class:`Resistance`, :class:`Traction` and :class:`Coastdown`, all with values, or none: then what would be
-        learnt if the cylinder, without a bearing, were the truth.
-    prior : (value, standard deviation) of what is known beforehand; that of the logarithm, but for brake, drag, nu
-        and unknowns of records.
+    cylinder : the cylinder with all known parameters, and with the start values of the unknown ones.
+    unknown : name -> range (low, high) of each unknown parameter, SI, by the names of run files: R, m, mu, j, g, load;
+        E, nu, T_ref of the material; E_1, tau_1 of its first, longest mode, divided by E and T_ref; the same of another
+        half-space as base_E, base_E_1; brake, a constant torque of the bearing, N m/m, and drag, a torque for each unit
+        of omega, N m s/m, both >= 0; V0, omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole
+        relaxation curve and T_ref all its times: with mu they are all unknowns of a material that a DMA has measured.
+    data : records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.  All have values, or none has: then
+        the result states the standard deviations to expect if the cylinder, without a bearing, is the truth.
+    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand; the standard deviation is
+        that of the logarithm, but for brake, drag, nu and unknowns of records.
     shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function, 1 at the temperature
         of the cylinder; where its bodies differ {"material": ..., "base": ...}.
     robust : let outliers count less, as |r| in place of r^2, of data and prior.
-    starts : searches, the first from the cylinder, the others spread over the ranges.
-    seed : of the latter.
+    starts : number of searches, the first from the cylinder, the others from points spread over the ranges.
+    seed : seed of these points.
     progress : draw a progress bar if it takes longer than a second.
 
     Returns
@@ -68,8 +68,20 @@ def identify(
     Raises
     ------
     ParameterError
-        A name that is none, a range that does not hold the start, more unknowns than points, records without
+        An unknown name, a range that does not contain the start value, more unknowns than points, records without
         standard deviations where values are missing, records with and without values, two records of one name.
+
+    Examples
+    --------
+    The friction of a roller, from its traction at two creep ratios:
+
+    >>> import viscoroll as vr
+    >>> roller = vr.presets.RUBBER_CYLINDER
+    >>> delta = [-0.05, 0.05]
+    >>> measured = vr.Traction(V=1.0, delta=delta, Q=roller.contact(1.0, delta=delta).Q, sigma=0.1)
+    >>> result = vr.identify(roller.replace(mu=0.5), {"mu": (0.1, 1.0)}, [measured])
+    >>> round(result.values["mu"], 6)
+    0.3
     """
     shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else shift or {}
     data, prior = [data] if isinstance(data, Record) else data, prior or {}
@@ -90,7 +102,7 @@ def identify(
     problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
-        allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
+        allowed = f"at most {most} for {problem.points} points: measure more points, give sigma, or reduce the unknowns"
         raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
     planned = not any(record.measured for record in records.values())
     return Identification(
@@ -113,10 +125,12 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
         if name in found:
             raise ParameterError("name", repr(name), "another for each record")
         if not record.sigma:
-            raise ParameterError(f"{name}: sigma", None, "given where there are no values")
+            raise ParameterError(f"{name}: sigma", None, "given for a record without values")
         found[name] = record
     if len({bool(record.measured) for record in found.values()}) != 1:
-        allowed = "some with values, or some without: fit the former first, then plan with its cylinder"
+        allowed = (
+            "all with values or all without: fit the records with values first, then plan with the fitted cylinder"
+        )
         raise ParameterError("data", f"{len(found)} records", allowed)
     return found
 
@@ -126,7 +140,7 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
 
     problem : the least squares.
     count : number of searches, the first from the start of the problem.
-    seed : of the other starts.
+    seed : seed of the other starts.
     progress : whether a progress bar is drawn.
     """
     from tqdm import tqdm
@@ -141,7 +155,7 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
     # of sigma as estimated at the best one
     for found in sorted((Minimum(found.u, problem.cost(found.u)) for found in exact), key=_chi2):
         if found.chi2 - minima[0].chi2 < _ALTERNATIVE:
-            if not any(_in_one_valley(problem, found, other) for other in minima):
+            if not any(_in_same_valley(problem, found, other) for other in minima):
                 minima.append(found)
     return minima
 
@@ -154,7 +168,7 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
 
     problem : the least squares.
     count : number of starts, and one more, from which the first search began.
-    seed : of the hypercube.
+    seed : seed of the hypercube.
     """
     from scipy.stats import qmc
 
@@ -182,17 +196,17 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     return [np.clip(u + step, problem.low, problem.high) for step in (far, -far)]
 
 
-def _in_one_valley(problem: Problem, first: Minimum, second: Minimum) -> bool:
+def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
     """Return whether no ridge lies between two minima.
 
     problem : the least squares.
-    first, second : the minima.
+    first, other : the minima.
     chi2 is minimised at three points between, with the coordinate that differs most fixed and all others free.
     """
-    difference = second.u - first.u
+    difference = other.u - first.u
     largest = int(np.argmax(np.abs(difference)))
     if abs(difference[largest]) < _SAME:
         return True
-    powers, top = np.eye(difference.size)[largest], max(first.chi2, second.chi2) + _RIDGE
+    powers, top = np.eye(difference.size)[largest], max(first.chi2, other.chi2) + _RIDGE
     between = (first.u + part * difference for part in (0.5, 0.25, 0.75))
     return all(problem.minimize(u, powers, _ROUGH, _STEPS).chi2 < top for u in between)

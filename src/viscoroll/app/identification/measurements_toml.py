@@ -36,13 +36,18 @@ _UNKNOWN = "unknown"
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     """Read the arguments of :func:`.identify.identify` from a file: cylinder, unknown, data, prior, shift.
 
-    path : of the TOML file.
+    path : path of the TOML file.
 
     Raises
     ------
     FileError
         A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with its line.
         A file of data that cannot be read, or without a column.
+
+    Examples
+    --------
+    >>> from viscoroll.app.identification.measurements_toml import read_measurements
+    >>> vr.identify(**read_measurements("docs/examples/measured.toml"))  # doctest: +SKIP
     """
     cylinder, content = read_roller(path, tuple(_SECTIONS)), {"prior": {}} | read_toml(path)
     if not isinstance(cylinder, Cylinder):
@@ -53,24 +58,25 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
                 path, "", section, f"section {'[[data]]' if kind is list else f'[{section}]'} is missing"
             )
     data = [_record(Path(path), section) for section in content["data"]]
-    given = {name: content[name] for name in ("unknown", "prior")}
-    return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | given
+    ranges = {name: content[name] for name in ("unknown", "prior")}
+    return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | ranges
 
 
-def _record(path: Path, given: Any) -> Record:
+def _record(path: Path, content: Any) -> Record:
     """Return the record of one [[data]].
 
-    path : of the TOML file, from whose folder files of data are found.
-    given : the section.
+    path : path of the TOML file, from whose folder files of data are found.
+    content : the section.
     Raises FileError for unknown keys, wrong types, and values that make no record.
     """
-    named = given.get("kind") if isinstance(given, dict) else None
+    named = content.get("kind") if isinstance(content, dict) else None
     kind = next((kind for name, kind in _KINDS.items() if name == named), None)
     if kind is None:
         raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
     columns = (*kind.COORDINATES, *kind.QUANTITIES)
-    own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
-    section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
+    fields = (field for field in dataclasses.fields(kind) if field.init and field.name not in columns)
+    own = [(field.name, Any, field.default) for field in fields]
+    section: Any = as_struct(path, "data", content, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
         check_keys(path, f"data.{name}", getattr(section, name), columns)
     values = {name: getattr(section, name) for name, *_ in own}
@@ -84,8 +90,8 @@ def _record(path: Path, given: Any) -> Record:
 def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     """Read coordinates and quantities from a file of data, in SI units.
 
-    path : of the file.
-    kind : of the record, whose names the columns have where the section names none.
+    path : path of the file.
+    kind : class of the record, whose names the columns have where the section names none.
     section : the [[data]], with ``columns``, ``units``, ``decimal`` and ``encoding``.
     Returns name -> values.
 
@@ -112,7 +118,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
         raise FileError(path, f"{problem}; a plan has no other columns")
     if others:
-        text = f"{path.name}: columns that are left aside: {', '.join(others)}"
+        text = f"{path.name}: unused columns: {', '.join(others)}"
         warnings.warn(text, ModelWarning, stacklevel=caller_level())
     found = {}
     for name in present:

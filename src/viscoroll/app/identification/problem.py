@@ -91,7 +91,7 @@ class Problem:
     """The least squares of an identification.
 
     cylinder, unknowns, records, shifts : as given.
-    names : of the unknowns.
+    names : names of the unknowns.
     start, low, high : coordinates of start and bounds, shape (unknowns,).
     y, sigma : all data and their standard deviations, one column after the other, shape (n,); those of a plan are
     the predictions at the start.
@@ -113,20 +113,20 @@ class Problem:
         shifts : body -> shift factor over temperature.
         """
         self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
-        self.robust, self.names = robust, [one.name for one in unknowns]
-        self.start, self.low, self.high = np.array([one.to_u(np.array(one[1:4])) for one in unknowns]).T
-        self._mean, self._sd = np.array([(one.mean, one.sd) for one in unknowns]).T
+        self.robust, self.names = robust, [unknown.name for unknown in unknowns]
+        self.start, self.low, self.high = np.array([unknown.to_u(np.array(unknown[1:4])) for unknown in unknowns]).T
+        self._mean, self._sd = np.array([(unknown.mean, unknown.sd) for unknown in unknowns]).T
         self._has_prior, self._model = np.isfinite(self._sd), lru_cache(16)(self._predict_all)
         self.columns: list[Column] = []
         y, sigma, size = [], [], 0
-        for called, record in records.items():
-            values = vars(record) if record.measured else self.predicted(record, self.start, called)
+        for record_name, record in records.items():
+            values = vars(record) if record.measured else self.predicted(record, self.start, record_name)
             for quantity, given in record.sigma.items():
                 own = np.ravel(values[quantity])
                 spread = max(_FIRST_SIGMA * float(np.std(own)), 1e-300) if given is None else np.ravel(given)
                 y.append(own)
                 sigma.append(np.broadcast_to(spread, own.shape))
-                self.columns.append(Column(called, quantity, slice(size, size + own.size), given is None))
+                self.columns.append(Column(record_name, quantity, slice(size, size + own.size), given is None))
                 size += own.size
         self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._has_prior.sum())
         self.active = self._find_active()
@@ -142,18 +142,21 @@ class Problem:
         return [i for i in range(middle.size) if i not in idle]
 
     def values(self, u: Floats) -> dict[str, float]:
-        """Return the values of the unknowns at coordinates u, by name."""
-        return {one.name: float(one.to_value(x)) for one, x in zip(self.unknowns, u, strict=True)}
+        """Return the values of the unknowns by name, SI.
 
-    def predicted(self, record: Record, u: Floats, called: str = "") -> dict[str, Floats]:
+        u : coordinates of the unknowns.
+        """
+        return {unknown.name: float(unknown.to_value(x)) for unknown, x in zip(self.unknowns, u, strict=True)}
+
+    def predicted(self, record: Record, u: Floats, record_name: str = "") -> dict[str, Floats]:
         """Return the prediction of a record.
 
         record : the record.
         u : coordinates of the unknowns.
-        called : name of the record, by which its own unknowns are found.
+        record_name : name of the record, by which its own unknowns are found.
         """
         values = self.values(u)
-        own = {name.removesuffix(f":{called}"): value for name, value in values.items()}
+        own = {name.removesuffix(f":{record_name}"): value for name, value in values.items()}
         return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
 
     def _predict_all(self, u: bytes) -> Floats:
@@ -164,12 +167,15 @@ class Problem:
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
             warnings.simplefilter("ignore")
-            seen = {called: self.predicted(one, np.frombuffer(u), called) for called, one in self.records.items()}
-            return np.concatenate([np.ravel(seen[one.record][one.quantity]) for one in self.columns])
+            seen = {name: self.predicted(record, np.frombuffer(u), name) for name, record in self.records.items()}
+            return np.concatenate([np.ravel(seen[column.record][column.quantity]) for column in self.columns])
         return np.full(self.y.size, np.nan)
 
     def residuals(self, u: Floats) -> Floats:
-        """Return residuals over sigma of the data, then of the priors; :data:`FAILED` where there is no prediction."""
+        """Return residuals over sigma of the data, then of the priors; :data:`FAILED` where there is no prediction.
+
+        u : coordinates of the unknowns.
+        """
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAILED), -FAILED, FAILED)
         return np.append(r, ((u - self._mean) / self._sd)[self._has_prior])
 
@@ -181,7 +187,7 @@ class Problem:
         function : coordinates -> vector.
         u : coordinates.
         which : indices of coordinates.
-        step : of central differences; any other step than :data:`_STEP` is taken to one side.
+        step : step of central differences; any other step than :data:`_STEP` is taken to one side.
         Returns shape (vector, which).
         """
         columns = []
@@ -194,16 +200,25 @@ class Problem:
         return np.array(columns).T
 
     def jacobian(self, u: Floats) -> Floats:
-        """Return the derivatives of the residuals by all coordinates at u."""
+        """Return the derivatives of the residuals by all coordinates, (residuals, unknowns).
+
+        u : coordinates of the unknowns.
+        """
         return self.slopes(self.residuals, u, range(u.size))
 
     def cost(self, u: Floats) -> float:
-        """Return chi2 at u: the sum of squared residuals, or of a robust fit the sum of a loss that grows as |r|."""
+        """Return chi2: the sum of squared residuals, or of a robust fit the sum of a loss that grows as |r|.
+
+        u : coordinates of the unknowns.
+        """
         z = self.residuals(u) ** 2
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return residuals and their derivatives at u by the weight that each has in chi2."""
+        """Return (residuals, their derivatives), each row times the square root of its weight in chi2.
+
+        u : coordinates of the unknowns.
+        """
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
         return r * weight, J * weight[:, np.newaxis]
@@ -250,25 +265,28 @@ class Problem:
         best : minimum with the standard deviations of today.
         Returns the minimum with the estimated ones.
         """
-        estimated = [one for one in self.columns if one.estimated]
+        estimated = [column for column in self.columns if column.estimated]
         for _ in range(_ROUNDS if estimated else 0):
             r, before = self.residuals(best.u), self.sigma.copy()
             share = 1.0 - min(len(self.active) / r.size, 0.9)
-            for one in estimated:
-                own = r[one.at]
+            for column in estimated:
+                own = r[column.at]
                 size = np.median(np.abs(own)) / _MEDIAN if self.robust else np.sqrt(np.mean(own**2) / share)
-                self.sigma[one.at] *= max(float(size), 1e-12)
+                self.sigma[column.at] *= max(float(size), 1e-12)
             best = self.minimize(best.u)
             if np.abs(self.sigma / before - 1.0).max() < _SIGMA_CHANGE:
                 break
         return best
 
     def noise(self, u: Floats) -> dict[str, Noise]:
-        """Return statistics of the residuals at u of each column, by record and quantity."""
+        """Return statistics of the residuals of each column, by the words "quantity of record".
+
+        u : coordinates of the unknowns.
+        """
         found, r = {}, self.residuals(u)
-        for one in self.columns:
-            record = self.records[one.record]
-            part = r[one.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.COORDINATES)])]
+        for column in self.columns:
+            record = self.records[column.record]
+            part = r[column.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.COORDINATES)])]
             allowed = 3.0 / math.sqrt(part.size)
             if self.robust:
                 rms, most = float(np.median(np.abs(part))) / _MEDIAN, _BY_OUTLIERS + _BY_CHANCE / math.sqrt(part.size)
@@ -276,11 +294,14 @@ class Problem:
             else:
                 rms, most = math.sqrt(np.mean(part**2)), 1.0 + allowed / math.sqrt(2.0)
             lag = float(part[1:] @ part[:-1]) / max(float(part @ part), 1e-300)
-            large = not one.estimated and rms > most
-            found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
+            large = not column.estimated and rms > most
+            found[str(column)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
         return found
 
     def at_bounds(self, u: Floats) -> list[int]:
-        """Return the indices of the unknowns that lie at an end of their range."""
+        """Return the indices of the unknowns that lie at an end of their range.
+
+        u : coordinates of the unknowns.
+        """
         width = self.high - self.low
         return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_BOUND * width).tolist()

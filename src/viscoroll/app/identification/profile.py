@@ -71,7 +71,7 @@ class Product(NamedTuple):
     """A product of powers of unknowns that the data determine where they cannot tell these apart.
 
     powers : exponents by name; those of brake, drag, V0, omega0 and t0 hold near the values found.
-    value : of the product.
+    value : value of the product.
     low, high : ends of its interval, divided by ``value``.
     near : whether this holds by slopes, within about a fifth of the values found, and other exponents farther off.
     """
@@ -90,7 +90,7 @@ class Likelihood:
     best : the best minimum.
     cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
     sd : standard deviations, shape (unknowns,).
-    correlations : of the coordinates, shape (unknowns, unknowns).
+    correlations : correlations of the coordinates, shape (unknowns, unknowns).
     others : other minima and the start, from which branches are sought.
     ends : points at the ends of all intervals, likewise; empty until an interval is open.
     """
@@ -106,14 +106,14 @@ class Likelihood:
         self.cov = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
         self.sd = np.sqrt(np.diag(self.cov))
         self.correlations = self.cov / np.outer(self.sd, self.sd)
-        self.others = [v for v in (*(one.u for one in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
+        self.others = [v for v in (*(minimum.u for minimum in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
         self.ends: list[Floats] = []
         self._profiles = cache(lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile())
 
     def profile(self, powers: Floats, delta_chi2: float) -> Profile:
         """Return the interval of a combination within which chi2 rises by no more than a bound.
 
-        powers : of the coordinates, shape (unknowns,).
+        powers : powers of the coordinates, shape (unknowns,).
         delta_chi2 : the bound.
         Beyond the ends of the interval the search goes on from other minima, the start, and the ends of other unknowns.
         """
@@ -158,9 +158,9 @@ class Likelihood:
             return []
         by_slopes = [*self._by_slopes(which)]
         found = self._narrow(self._by_points(which, delta_chi2), delta_chi2) or self._narrow(by_slopes, delta_chi2)
-        least = min((one.high - one.low for one in found), default=math.inf)
+        least = min((product.high - product.low for product in found), default=math.inf)
         near = self._narrow(by_slopes, delta_chi2, near=True)
-        return found + [one for one in near if one.high - one.low < _SHARPER * least]
+        return found + [product for product in near if product.high - product.low < _SHARPER * least]
 
     def _narrow(self, family: Iterable[Floats], delta_chi2: float, near: bool = False) -> list[Product]:
         """Return products with their intervals, up to the first one that is open or wide.
@@ -176,8 +176,8 @@ class Likelihood:
             if low is None or high is None or high - low > _NARROW:
                 break
             exponents = {
-                one.name: p * (values[one.name] / one.slope(values[one.name]))
-                for one, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
+                unknown.name: p * (values[unknown.name] / unknown.slope(values[unknown.name]))
+                for unknown, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
             }  # fmt: skip
             value = math.prod(values[name] ** p for name, p in exponents.items())
             found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
@@ -209,7 +209,7 @@ class ProfileWalk:
     """A profile of chi2: minima with a combination of coordinates fixed, each from the one before.
 
     likelihood, problem, best : chi2 about the best minimum.
-    powers : of the combination, shape (unknowns,).
+    powers : powers of the combination, shape (unknowns,).
     delta_chi2 : bound of the rise of chi2 above the best.
     sd : standard deviation of the combination by slopes.
     slope : change of the coordinates with the combination, along the covariance.
@@ -232,12 +232,20 @@ class ProfileWalk:
         return u + self.slope * (d - self.distance(u))
 
     def minimum_at(self, d: float, u: Floats) -> Minimum:
-        """Return the minimum of chi2 at a distance d from the best, near u."""
+        """Return the minimum of chi2 with the combination fixed.
+
+        d : distance of the combination from that at the best.
+        u : coordinates from which the search starts, moved to that distance.
+        """
         self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _TOLERANCE, _EVALUATIONS))
         return self.visited[-1]
 
     def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
-        """Return whether the rise of chi2 at a minimum is below a part of the bound."""
+        """Return whether the rise of chi2 at a minimum is below a part of the bound.
+
+        minimum : the minimum.
+        part : factor of the bound.
+        """
         return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
 
     def profile(self) -> Profile:
@@ -253,7 +261,7 @@ class ProfileWalk:
                 d, last = self.find_end(reach, lower[-1])
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
             limits.append([] if d is None else self.limiting_bounds(last.u))
-        within = np.array([one.u for one in self.visited if one.chi2 - self.best.chi2 <= self.delta_chi2])
+        within = np.array([minimum.u for minimum in self.visited if minimum.chi2 - self.best.chi2 <= self.delta_chi2])
         return Profile(ends, limits, pieces, min(self.visited, key=attrgetter("chi2")), within)
 
     def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
@@ -289,10 +297,11 @@ class ProfileWalk:
         return end, found[min(found, key=lambda d: abs(d - end))]
 
     def search_beyond(self, d: float, reach: float) -> list[Minimum]:
-        """Return minima at an end or behind it where chi2 is below the bound, the farthest last.
+        """Search other branches of the fit at an end of the interval and behind it.
 
-        d : distance of the end.
+        d : distance of the end from the best minimum.
         reach : distance of the bound of the ranges.
+        Returns the minima where chi2 is below the bound, the farthest last.
         """
         found, problem = [], self.problem
         starts = [(u, _BEYOND) for u in self.likelihood.others] + [(u, _BEYOND[:1]) for u in self.likelihood.ends]
@@ -302,7 +311,8 @@ class ProfileWalk:
                 cost = problem.cost(np.clip(self.shift_to(target, u), problem.low, problem.high))
                 if self.is_below(Minimum(u, cost), _HOPELESS):
                     found.append(self.minimum_at(target, u))
-        return sorted((one for one in found if self.is_below(one, _LOWER)), key=lambda one: abs(self.distance(one.u)))
+        lower = (minimum for minimum in found if self.is_below(minimum, _LOWER))
+        return sorted(lower, key=lambda minimum: abs(self.distance(minimum.u)))
 
     def limiting_bounds(self, u: Floats) -> list[str]:
         """Return the names of unknowns at a bound beyond which chi2 would fall, with the combination fixed.

@@ -36,7 +36,16 @@ _RTOL_DRIVEN = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """A record: coordinates, values at them, and standard deviations, each one for each coordinate or one for all."""
+    """A record of measurements: coordinates, values at them, and standard deviations, each an array or one number
+    for all.
+
+    COORDINATES : names of the coordinates of the points, as V or t.
+    QUANTITIES : names of what may be measured at the points; a record that has none of them is a plan, about the
+    first.
+    LABEL : kind of record, its name in messages.
+    sigma, load, temperature, name : as of :class:`Resistance`.
+    labels : labels of xarray or pandas of the arrays that were given.
+    """
 
     #: names of places and of what may be measured there, the first what a plan is about
     COORDINATES: ClassVar[tuple[str, ...]] = ()
@@ -63,7 +72,7 @@ class Record:
         arrays = {name: np.atleast_1d(check_array(self.label(name), value)) for name, value in plain.items()}
         for name, value in (sigma := self._sigmas()).items():
             label = f"sigma of {name}"
-            arrays[label] = check_array(self.label(label), value, unit=self.unit(name), low=0.0, strict=True)
+            arrays[label] = check_array(self.label(label), value, unit=self.unit(name), above=0.0)
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
             raise ParameterError(self.label(self.QUANTITIES[0]), f"of shape {shape}", "a value a place")
@@ -75,7 +84,7 @@ class Record:
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
             if value is not None and not (name == "omega0" and isinstance(value, str) and value == ROLLING):
-                vars(self)[name] = check_number(self.label(name), value, unit=self.unit(name), low=low, strict=True)
+                vars(self)[name] = check_number(self.label(name), value, unit=self.unit(name), above=low)
 
     @staticmethod
     def unit(name: str) -> str:
@@ -96,7 +105,7 @@ class Record:
         among, given = self.measured or self.QUANTITIES, {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
             if len(self.measured) > 1:
-                allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
+                allowed = f"one for each quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
                 raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
         check_names(self.label("sigma"), given, among, "a quantity of it")
@@ -123,8 +132,8 @@ class Record:
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Return all :attr:`QUANTITIES` of the record as the model predicts them.
 
-        cylinder : of the values of the unknowns.
-        values : of unknowns of bearing and record, by their names without that of the record.
+        cylinder : the cylinder with the present values of the unknowns.
+        values : name -> value of the unknowns of bearing and record, without the name of the record.
         """
         raise NotImplementedError
 
@@ -136,17 +145,24 @@ class Resistance(Record):
     Parameters
     ----------
     V : speeds, m/s.
-    M : moments that rolling takes, N m per m of length, with that of the bearing: what a drum's shaft bears.
-    F : or the forces that pull, M/R, N/m.  Neither: a plan.
-    sigma : their standard deviation, a number or one a point; default: estimated.
-    load : of this record, N/m, in place of the cylinder's.
-    temperature : of this record, degrees Celsius, see ``shift`` of :func:`viscoroll.identify`.
+    M : rolling moments, N m per m of length, the torque of the bearing included, as on the shaft of a drum.
+    F : pulling forces M/R, N/m, in place of M.  A record without both is a plan.
+    sigma : standard deviation of M or F, a number or one for each point; default: estimated from the residuals.
+    load : load of this record, N/m, in place of the cylinder's.
+    temperature : temperature of this record, degrees Celsius, see ``shift`` of :func:`viscoroll.identify`.
     name : by which the report calls it.
 
     Raises
     ------
     ParameterError
         Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma <= 0.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> drum = vr.Resistance(V=[0.5, 1.0, 2.0], M=[0.31, 0.33, 0.36], sigma=0.01)
+    >>> drum.M
+    array([0.31, 0.33, 0.36])
     """
 
     COORDINATES, QUANTITIES, LABEL = ("V",), ("M", "F"), "resistance"
@@ -157,10 +173,10 @@ class Resistance(Record):
     F: Numbers | None = None
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Return M and F with the torque of the bearing.
+        """Predict rolling moment M, N m/m, and pulling force F, N/m, the torque of the bearing included.
 
-        cylinder : of the values of the unknowns.
-        values : of brake and drag.
+        cylinder : the cylinder with the present values of the unknowns.
+        values : name -> value of brake and drag, 0 where they are missing.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -182,6 +198,13 @@ class Traction(Record):
     ------
     ParameterError
         As there.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> traction = vr.Traction(V=1.0, delta=[-0.02, 0.0, 0.02], Q=[-60.0, 0.0, 60.0])
+    >>> traction.V
+    array([1., 1., 1.])
     """
 
     COORDINATES, QUANTITIES, LABEL = ("V", "delta"), ("Q",), "traction"
@@ -196,25 +219,32 @@ class Traction(Record):
 
 @dataclass(frozen=True, eq=False)
 class Coastdown(Record):
-    """Speeds or way over time of a roller that was thrown or let go.
+    """Speeds or distance over time of a roller that was thrown or released.
 
     Parameters
     ----------
     t : times, s, ascending.
-    V, omega, x : speed of the axis, m/s, angular velocity, rad/s, way since the release, m; at least one, of a plan
-        none.
-    V0 : speed at the release, m/s; default: unknown, about what the first values say.
-    omega0 : angular velocity at the release, rad/s; "rolling" (default): V0/R; None: unknown, likewise.
+    V, omega, x : speed of the axis, m/s, angular velocity, rad/s, distance since the release, m; at least one, of a
+        plan none.
+    V0 : speed at the release, m/s; default: unknown, near the first values.
+    omega0 : angular velocity at the release, rad/s; "rolling" (default): V0/R; None: unknown, near the first values.
     t0 : time of the release, s, before which the roller has its first speeds; (low, high): unknown.
     m : mass with which it rolled, kg/m, in place of the cylinder's.
-    sigma : as of :class:`Resistance`; of several quantities {"V": ..., "omega": ...}, which of a plan says what is
-        measured.
+    sigma : as of :class:`Resistance`; of several quantities {"V": ..., "omega": ...}, whose names are those that a
+        plan measures.
     load, temperature, name : as of :class:`Resistance`.
 
     Raises
     ------
     ParameterError
         As there; times that fall.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.Coastdown(t=[0.0, 1.0, 2.0], V=[2.0, 1.7, 1.5], sigma=0.01, V0=2.0)
+    >>> run.omega0
+    'rolling'
     """
 
     COORDINATES, QUANTITIES, LABEL = ("t",), ("V", "omega", "x"), "run"
@@ -259,22 +289,22 @@ class Coastdown(Record):
         R : radius of the cylinder, m.
         Raises ParameterError where the data do not show it.
         """
-        given: Any = self.V if name == "V0" else self.omega
-        if given is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
-            given = R * np.asarray(self.omega)
-        if given is None and name == "V0" and self.x is not None:
+        data: Any = self.V if name == "V0" else self.omega
+        if data is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
+            data = R * np.asarray(self.omega)
+        if data is None and name == "V0" and self.x is not None:
             some = slice(0, max(3, np.size(self.t) // 10))
-            given = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
-        if given is None:
-            raise ParameterError(self.label(name), None, "a number: the data do not show it")
-        first, most = float(given[0]), float(np.max(np.abs(given)))
+            data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
+        if data is None:
+            raise ParameterError(self.label(name), None, "a number: the data do not determine it")
+        first, most = float(data[0]), float(np.max(np.abs(data)))
         return first, (first - most, first + most)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Return V, omega, x, and for each point whether it is in full slip.
+        """Predict V, omega and x, and for each point whether it is in full slip ("slips").
 
-        cylinder : of the values of the unknowns.
-        values : of brake and drag, and of V0, omega0 and t0 in place of those of the record.
+        cylinder : the cylinder with the present values of the unknowns.
+        values : name -> value of brake and drag, and of V0, omega0 and t0 in place of those of the record.
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

@@ -41,8 +41,8 @@ def _heading(fit: Any) -> str:
     problem = fit._problem
     head = f"{len(fit.values)} unknowns, {problem.y.size} points"
     if fit.planned:
-        return f"{head}, planned: what to expect if the cylinder is the truth"
-    if estimated := [f"{one} {fit.sigma[str(one)][0]:.3g}" for one in problem.columns if one.estimated]:
+        return f"{head}, planned: expected standard deviations, if the cylinder has the true values"
+    if estimated := [f"{column} {fit.sigma[str(column)][0]:.3g}" for column in problem.columns if column.estimated]:
         return f"{head}; standard deviation estimated: {', '.join(estimated)}"
     chance = "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
     return f"{head}; chi2 {fit.chi2:.1f} of {fit.dof} degrees of freedom{chance}"
@@ -54,22 +54,23 @@ def _noise(fit: Any) -> Iterator[str]:
         rms, lag, allowed, _ = fit.noise[name]
         size = f"{rms:.2f} sigma" + " by their median" * fit._problem.robust
         yield (
-            f"residuals of {name} are no noise (lag-1 correlation {lag:.2f}, noise allows {allowed:.2f}; rms {size}): "
-            "the model misses something, and intervals mean nothing"
+            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most {allowed:.2f} "
+            f"for noise; rms {size}): "
+            "the model is inadequate, and the intervals are meaningless"
         )
 
 
 def _limits(fit: Any) -> Iterator[str]:
     """Yield sentences on what the data of a ``fit`` do not determine."""
-    yield from (f"{name} does not act on these data" for name in fit.does_not_act)
+    yield from (f"the data do not depend on {name}" for name in fit.does_not_act)
     *names, last = fit.undetermined or ("",)
     if names:
-        yield f"{', '.join(names)} and {last} cannot be told apart by these data: {_products(fit.products())}"
+        yield f"{', '.join(names)} and {last} cannot be separated by these data: {_products(fit.products())}"
     elif last:
         yield f"{last} is not determined by these data"
     yield from _interval_limits(fit)
     for chi2, values in fit.minima[1:]:
-        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_values_text(values)}"
+        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} higher: {_values_text(values)}"
     yield from _phases(fit)
     loose, names = {*fit.does_not_act, *fit.undetermined}, list(fit.values)
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
@@ -78,42 +79,51 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
-    """Return the words on the products that are determined, ``found``."""
-    sure, near = (" and ".join(_product_text(one) for one in found if one.near is where) for where in (False, True))
+    """Return the words on the products that the data determine.
+
+    found : products, of :meth:`viscoroll.app.identification.Identification.products`.
+    """
+    sure, near = (
+        " and ".join(_product_text(product) for product in found if product.near is by_slopes)
+        for by_slopes in (False, True)
+    )
     if not found:
-        return "no product of their powers is determined"
+        return "the data determine no product of their powers"
     text = f"only {sure or near} {'are' if ' and ' in (sure or near) else 'is'} determined"
-    more = f"; near these values alone, more sharply, {near}" if sure else ", near these values"
+    more = f"; near these values also {near}, more precisely" if sure else ", near these values"
     return text + more * bool(near)
 
 
-def _product_text(one: Any) -> str:
+def _product_text(product: Any) -> str:
     """Return a product with its value and interval."""
-    powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
+    powers = sorted(product.powers.items(), key=lambda item: -abs(item[1]))
     text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
-    low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
-    return f"{text} = {one.value:.4g} (95%: {low} to {high})"
+    low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (product.low, product.high))
+    return f"{text} = {product.value:.4g} (95%: {low} to {high})"
 
 
 def _interval_limits(fit: Any) -> Iterator[str]:
-    """Yield sentences on ends of intervals of a ``fit`` that ranges, not data, make."""
-    made: dict[str, list[str]] = {}
+    """Yield sentences on ends of intervals that are set by ranges, not by the data.
+
+    fit : a :class:`viscoroll.app.identification.Identification`.
+    """
+    limited: dict[str, list[str]] = {}
     problem = fit._problem
     for i, found in fit._likelihood.axes(fit._delta_chi2()).items():
         name = problem.names[i]
         for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by, strict=True):
             if end is None:
-                yield f"{name} is open on its {side} side: chi2 has not risen enough at the end of its range"
+                yield f"the interval of {name} has no {side} end: chi2 does not rise enough within the range"
             for bound in bounds:
-                made.setdefault(bound, []).append(f"the {side} end of {name}")
+                limited.setdefault(bound, []).append(f"the {side} end of {name}")
         if found.pieces:
-            yield f"the interval of {name} joins branches of the fit: one value within it may fit worse than its ends"
+            yield f"the interval of {name} contains several branches of the fit: values inside may fit worse than ends"
         if found.best.chi2 < fit.chi2 - _BETTER:
             listed = _values_text(problem.values(found.best.u))
-            yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
+            yield f"a better fit was found, chi2 {found.best.chi2:.1f}, at {listed}: start there, or use more starts"
     for i in problem.at_bounds(fit._likelihood.best.u):
         yield f"the best fit has {problem.names[i]} at the end of its range"
-    yield from (f"the range of {bound}, not the data, makes {', '.join(ends)}" for bound, ends in made.items())
+    yield from (f"the range of {bound}, not the data, determines {', '.join(ends)}" for bound, ends in limited.items())
 
 
 def _values_text(values: dict[str, float]) -> str:
@@ -123,10 +133,11 @@ def _values_text(values: dict[str, float]) -> str:
 
 def _phases(fit: Any) -> Iterator[str]:
     """Yield a sentence for each motion of a ``fit`` with few points in full slip, on which mu rests."""
-    for called, record in fit.records.items() if "mu" in fit.values else ():
-        slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, called).get("slips", 0)))
+    for record_name, record in fit.records.items() if "mu" in fit.values else ():
+        slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, record_name).get("slips", 0)))
         if 0 < slips < _FEW:
-            yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
+            found = f"{record_name} has only {slips} points in full slip, which determine mu"
+            yield f"{found}: record that phase more densely"
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
@@ -139,32 +150,36 @@ def as_dataset(fit: Any) -> xr.Dataset:
     names, ends = np.array(list(fit.values), object), np.array(list(fit.intervals().values()), float)
     data: dict[str, Any] = {
         "value": ("unknown", list(fit.values.values())), "stderr": ("unknown", list(fit.stderr.values())),
-        "low": ("unknown", ends[:, 0], {"long_name": "lower end of the 95 % interval, NaN where open"}),
-        "high": ("unknown", ends[:, 1], {"long_name": "upper end of the 95 % interval, NaN where open"}),
+        "low": ("unknown", ends[:, 0], {"long_name": "lower end of the 95 % interval, NaN if unbounded"}),
+        "high": ("unknown", ends[:, 1], {"long_name": "upper end of the 95 % interval, NaN if unbounded"}),
         "correlation": (("unknown", "other"), fit.correlations),
     }  # fmt: skip
-    for called, record in fit.records.items():
+    for record_name, record in fit.records.items():
         columns = {name: getattr(record, name) for name in (*record.COORDINATES, *record.measured)}
         for name in record.sigma:
-            fitted = getattr(fit.predicted[called], name).value
-            columns |= {f"{name} fit": fitted, f"{name} sigma": fit.sigma[f"{name} of {called}"]}
+            fitted = getattr(fit.predicted[record_name], name).value
+            columns |= {f"{name} fit": fitted, f"{name} sigma": fit.sigma[f"{name} of {record_name}"]}
         for name, values in columns.items():
-            data[f"{called} {name}"] = (f"{called} point", np.ravel(values), {"units": record.unit(name.split()[0])})
+            data[f"{record_name} {name}"] = (
+                f"{record_name} point",
+                np.ravel(values),
+                {"units": record.unit(name.split()[0])},
+            )
     about = {"title": "Identification", "source": f"viscoroll {__version__}", "report": report(fit)}
     return xr.Dataset(data, {"unknown": names, "other": names}, about | {"chi2": fit.chi2, "dof": fit.dof})
 
 
 def as_json(fit: Any) -> dict[str, Any]:
     """Return the content of the report of a ``fit`` by name; null where a side is open or an unknown does not act."""
-    told = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
+    fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
     unknowns = {
         name: {"value": fit.values[name], "stderr": sd[name], "interval": ends}
         for name, ends in fit.intervals().items()
     }  # fmt: skip
-    return {name: getattr(fit, name) for name in told} | {
+    return {name: getattr(fit, name) for name in fields} | {
         "source": f"viscoroll {__version__}", "unknowns": unknowns, "says": [*_noise(fit), *_limits(fit)],
-        "products": [one._asdict() for one in fit.products()], "correlations": fit.correlations.tolist(),
+        "products": [product._asdict() for product in fit.products()], "correlations": fit.correlations.tolist(),
         "noise": {name: noise._asdict() for name, noise in fit.noise.items()},
         "sigma": {name: float(values[0]) for name, values in fit.sigma.items()},
     }  # fmt: skip

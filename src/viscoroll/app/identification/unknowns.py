@@ -42,10 +42,10 @@ _UNIT = 0.1
 class Unknown(NamedTuple):
     """An unknown, which the search varies by a coordinate u: the logarithm of its value, or its value in a unit.
 
-    name : of the unknown.
+    name : name of the unknown.
     start : value from which the search starts.
     low, high : range of its value.
-    unit : of a linear coordinate; None: the coordinate is the logarithm.
+    unit : unit of a linear coordinate; None: the coordinate is the logarithm.
     mean, sd : mean and standard deviation of the coordinate as known before; sd is infinite without such knowledge.
     """
 
@@ -63,11 +63,8 @@ class Unknown(NamedTuple):
         :func:`.core.checks.check_array`.
         """
         kind = name.split(":")[0]
-        return {
-            "unit": si_unit(kind.removeprefix(_PREFIX["base"])),
-            "low": _LINEAR.get(kind, 0.0),
-            "strict": kind not in _LINEAR,
-        }
+        bound = {"low": _LINEAR[kind]} if kind in _LINEAR else {"above": 0.0}
+        return {"unit": si_unit(kind.removeprefix(_PREFIX["base"]))} | bound
 
     def to_u(self, value: Any) -> Any:
         """Return the coordinate of a value."""
@@ -83,12 +80,12 @@ class Unknown(NamedTuple):
 
 
 def unknowns_of(
-    cylinder: Cylinder, given: Mapping[str, Any], records: Mapping[str, Record], priors: Mapping[str, Any]
+    cylinder: Cylinder, requested: Mapping[str, Any], records: Mapping[str, Record], priors: Mapping[str, Any]
 ) -> list[Unknown]:
     """Return the unknowns that are requested, and those that records leave open.
 
-    cylinder : from whose inputs the search starts.
-    given : name -> range.
+    cylinder : the cylinder from whose inputs the search starts.
+    requested : name -> range.
     records : name -> record.
     priors : name -> (value, standard deviation).
 
@@ -101,12 +98,12 @@ def unknowns_of(
     starts = {name: getattr(cylinder, name) for name in _OF_CYLINDER} | _BEARING
     for section, body in _bodies(cylinder).items():
         starts |= {_PREFIX[section] + name: value for name, value in _inputs(body).items()}
-    starts, ranges = {name: check_number(name, value) for name, value in starts.items()}, dict(given)
-    for called, record in records.items():
+    starts, ranges = {name: check_number(name, value) for name, value in starts.items()}, dict(requested)
+    for record_name, record in records.items():
         for name, (start, span) in record.initial_values(cylinder.R).items():
-            starts[f"{name}:{called}"] = start
+            starts[f"{name}:{record_name}"] = start
             if span is not None:
-                ranges.setdefault(f"{name}:{called}", span)
+                ranges.setdefault(f"{name}:{record_name}", span)
     check_names("unknown", ranges, starts, "an input")
     check_names("prior", priors, ranges, "an unknown")
     return [_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
@@ -115,38 +112,40 @@ def unknowns_of(
 def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     """Return an unknown after checks.
 
-    name, start : of the unknown.
+    name, start : name and start value of the unknown.
     span : (low, high).
     prior : (value, standard deviation), None without.
     Raises ParameterError for a range or a prior that is none.
     """
     low, high = _pair("unknown", name, span)
     if not low <= start <= high:
-        raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", f"a range that holds the start, {start:.6g}")
+        raise ParameterError(
+            f"unknown {name}", f"({low:g}, {high:g})", f"a range that contains the initial guess, {start:.6g}"
+        )
     linear = name.split(":")[0] in _LINEAR
-    one = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
+    unknown = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
     if prior is None:
-        return one
+        return unknown
     mean, sd = _pair("prior", name, prior)
-    sd = check_number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
-    return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
+    sd = check_number(f"standard deviation of prior {name}", sd, above=0.0)
+    return unknown._replace(mean=float(unknown.to_u(mean)), sd=sd / (unknown.unit or 1.0))
 
 
-def _pair(argument: str, name: str, given: Any) -> list[float]:
+def _pair(argument: str, name: str, numbers: Any) -> list[float]:
     """Return two numbers, each a value that the unknown may have.
 
     argument : "unknown" or "prior", of :func:`.identify.identify`.
-    name : of the unknown.
-    given : the pair.
+    name : name of the unknown.
+    numbers : the pair.
     Raises ParameterError for another number of them, and for a range that does not ascend.
     """
     bounds = Unknown.bounds(name)
     if argument == "prior":  # the standard deviation is of a logarithm: one unit is none of both
         del bounds["unit"]
-    pair = check_array(f"{argument} {name}", given, **bounds)
+    pair = check_array(f"{argument} {name}", numbers, **bounds)
     if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):
         allowed = {"unknown": "(low, high), low < high", "prior": "(value, standard deviation)"}[argument]
-        raise ParameterError(f"{argument} {name}", f"{given!r:.60}", allowed)
+        raise ParameterError(f"{argument} {name}", f"{numbers!r:.60}", allowed)
     return pair.tolist()
 
 
@@ -168,14 +167,14 @@ def cylinder_of(
     changes: dict[str, Any] = {name: values[name] for name in _OF_CYLINDER if name in values}
     changes |= {} if record is None else record.overrides
     for section, body in _bodies(cylinder).items():
-        made = _with_values(body, _PREFIX[section], values)
+        changed = _with_values(body, _PREFIX[section], values)
         if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
             if section not in shifts:
                 allowed = f"given with a shift of the {section}, as vr.WLF(T0=20.0)"
                 raise ParameterError(record.label("temperature"), record.temperature, allowed)
-            made = made.at(record.temperature, shifts[section])
-        if made is not body:
-            changes[section] = made
+            changed = changed.at(record.temperature, shifts[section])
+        if changed is not body:
+            changes[section] = changed
     return cylinder.replace(**changes) if changes else cylinder
 
 
@@ -196,7 +195,7 @@ def _with_values(body: Material, prefix: str, values: Mapping[str, float]) -> Ma
     """Return a material with other values.
 
     body : the material.
-    prefix : of its names, "" or "base_".
+    prefix : prefix of the names of its unknowns, "" or "base_".
     values : name -> value of unknowns, of other bodies too.
     With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
     """

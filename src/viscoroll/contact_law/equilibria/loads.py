@@ -97,7 +97,9 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     if not isinstance(value.value, float | np.ndarray):
         raise ParameterError(name, "a feedback on a schedule", "constant in time")
     if value.shape:
-        raise ParameterError(name, f"a feedback with gains of shape {value.shape}", "one with numbers for gains")
+        raise ParameterError(
+            name, f"a Feedback with gains of shape {value.shape}", "a Feedback whose gains are numbers"
+        )
     return value.value, value.V, value.omega
 
 
@@ -110,9 +112,9 @@ def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -
         if isinstance(loads[name], Feedback):
             raise ParameterError(name, "a feedback", "a number or an array where V is given")
     if len(names) == 2:
-        sentence = "V, force and torque are all given: give two of them, the third is found"
+        sentence = "V, force and torque are all given: give two of them, the third is computed"
         raise ParameterError("V, force, torque", "all", "two of them", sentence)
     if not names and slope is None:
-        sentence = "V is given alone: give one of force, torque and slope with it"
+        sentence = "V is given without force, torque or slope: give one of them too"
         raise ParameterError("V", "alone", "with one of force, torque, slope", sentence)
     return names[0] if names else "force"

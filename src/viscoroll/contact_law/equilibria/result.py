@@ -85,15 +85,15 @@ class Diagnosis(NamedTuple):
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 beyond = f"{at} any omega beyond the stick limit is steady"
-                return f"a continuum: Q = {Q:.6g} is all of the friction, and {beyond}"
-            return f"Q = {Q:.6g} is needed {at}, beyond the friction mu = {mu:.6g}"
+                return f"no isolated steady speed: Q = {Q:.6g} equals the friction limit, and {beyond}"
+            return f"Q = {Q:.6g} is needed {at}, which exceeds the friction mu = {mu:.6g}"
         if self.elastic:
             if at_rest == 0.0:
-                return "a continuum: elastic bodies roll without resistance, so that any V is steady"
+                return "no isolated steady speed: elastic bodies roll without resistance, so every V is steady"
             return f"{name} = {total:.6g}{of_load} is not 0, and elastic bodies roll without resistance"
         M, V = (value / kappa for value in self.maximum)
         if np.isnan(M):
-            return f"{name} with its feedback, {total:.6g}{of_load} at rest, meets the rolling moment at no speed"
+            return f"{name} with its feedback, {total:.6g}{of_load} at rest, balances the rolling moment at no speed"
         return (
             f"{name} = {total:.6g}{of_load} exceeds the largest {moment} {M * load:.6g}{of_load}"
             f" (at V = {V * speed:.6g}{of_speed})"
@@ -116,6 +116,13 @@ class Steady(Values):
     force, torque : loads, with slope and feedback; the one to be found where V was given.
     loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
     count : number of equilibria of each load.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.steady(vr.presets.RUBBER_CYLINDER, slope=[0.005, 0.01])
+    >>> bool(found.V[0, 0] > 0.0), [bool(reason) for reason in found.reason]  # the second slope is too steep
+    (True, [False, True])
     """
 
     def __init__(self, values: dict[str, Any], reasons: Diagnosis, scale: Scale, labels: Labels | None) -> None:
@@ -180,7 +187,14 @@ class Steady(Values):
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
+        """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).to_xarray()["V"].attrs["units"]
+        'm s-1'
+        """
         import xarray as xr
 
         shape = np.shape(self.count)

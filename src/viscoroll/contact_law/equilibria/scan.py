@@ -120,10 +120,15 @@ def scan_states(law: LawTable, loads: Loads) -> States:
 
 
 def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
-    """The state of the n-th load with V = 0 and omega other than 0, where friction and force balance to the bit; or
-    no state.
+    """Return the equilibrium with V = 0 and omega other than 0 under the n-th load, if there is one.
 
-    law : rows of the material.  loads : the loads.  n : index of the load.
+    At V = 0 and omega other than 0 the whole contact slips: Q is all of the friction, and must balance the force to
+    the bit.
+
+    law: rows of the material.
+    loads: the loads with their gains.
+    n: index of the load.
+    Returns a list of one :class:`States`, or an empty list.
     """
     gains, total = loads.gains, loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega

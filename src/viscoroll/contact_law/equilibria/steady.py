@@ -138,7 +138,7 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():
-        allowed = f"0, or of a size in [{LEAST_LOAD:g}, {MOST_LOAD:g}]"
+        allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()

@@ -126,18 +126,22 @@ class Validity(NamedTuple):
 UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
     "", "",
     "inertia of the deforming bodies is neglected; give density= to compare the speed with the shear wave speed",
-    "whether the law of steady rolling may drive a motion is not known without gamma: give the scene a gamma",
-    "whether both bodies pass the contact at nearly one speed is not known: give omega=",
-    "Dundurs' constant of the two bodies is not known, and must be 0, as it is for like bodies: use a Cylinder",
-    "the frequencies at which the material was measured are not known: give the Material measured=",
-    "thickness not known: the law is that of a half-space, whose contact length is within 5 % of that on a layer where "
+    "the quasi-steady assumption for motions is not checked: give the scene a gamma",
+    "the surface speeds of the two bodies are not compared: give omega=",
+    "Dundurs' constant must be 0, as for identical materials; a scene does not state it: use a Cylinder",
+    "the transit frequency is not compared with the measured band of the material: give the Material measured=",
+    "no thickness is given: the law is that of a half-space, whose contact length is within 5 % of that on a "
+        "layer where "
     f"it is up to {THICK_LIMIT:.2g} times the thickness",
     "the state must be plane strain (a long cylinder, or one between walls) or plane stress (a thin disc)",
 )))  # fmt: skip
 
 #: The assumption ``steady`` of a cover.
 UNKNOWN_OF_COVERS = Assumption(
-    None, None, "whether the law of steady rolling may drive a motion is not known for a layer of finite thickness"
+    None,
+    None,
+    "the quasi-steady assumption for motions cannot be checked for a layer of finite thickness, whose N is "
+    "not available",
 )
 
 #: The assumption ``creep`` of a cover beside a body that relaxes too.
@@ -219,7 +223,7 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
         f"in full slip the surface speeds of the two bodies differ by {100.0 * most:.2g} % of V; up to "
         f"{100.0 * CREEP_LIMIT:g} % is allowed, since the rolling moment is computed with the speed of the axis"
         if most > 0.0
-        else "both bodies pass the contact at nearly one speed: there is no full slip",
+        else "the surface speeds of both bodies are nearly equal, since the contact is in partial slip",
     )  # fmt: skip
 
 
@@ -249,12 +253,13 @@ def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
     """
     worst = max(long, instant, key=abs)
     if like:
-        return Assumption(True, 0.0, "cylinder and half-space are alike: Dundurs' constant is 0")
+        return Assumption(True, 0.0, "cylinder and half-space have the same material: Dundurs' constant is 0")
     if worst == 0.0:
         return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not change the pressure")
     return Assumption(
         abs(worst) <= DUNDURS_LIMIT, worst,
-        f"Dundurs' constant is {long:.2g} for long times, {instant:.2g} at once; up to {DUNDURS_LIMIT} in size is "
+        f"Dundurs' constant is {long:.2g} for long times and {instant:.2g} for the instant; up to "
+            f"{DUNDURS_LIMIT} in size is "
         "allowed: the theory neglects the part of the pressure that shear causes",
     )  # fmt: skip
 

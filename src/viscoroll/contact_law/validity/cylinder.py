@@ -173,7 +173,7 @@ class BodyData:
         Returns the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
         """
         if density is not None:
-            density = check_number("density", density, unit=SI, low=0.0, strict=True)
+            density = check_number("density", density, unit=SI, above=0.0)
         fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
         pair, length = self.pair, lam * self.l0
         kind = (
@@ -190,7 +190,7 @@ class BodyData:
 
 
 def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
-    """Say whether speeds leave a band of |V|; rest is passed over, since M = 0 there.
+    """Return whether speeds leave a band of |V|; speeds of 0 are allowed, since M = 0 there.
 
     extent: (smallest, largest) of the speeds, signed.
     band: (lowest, highest) |V|, in the same unit.

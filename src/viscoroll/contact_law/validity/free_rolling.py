@@ -106,7 +106,7 @@ class FreeRolling:
     @classmethod
     def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
         """Return the states of a scene at speeds V, dimensionless, any shape; raises ParameterError for a cover."""
-        refuse_cover(scene, "how it rolls freely from rest needs N, which is not known")
+        refuse_cover(scene, "free rolling is not examined, since N is not available")
         materials: Any
         unit: Any
         if scene.material_array is None:

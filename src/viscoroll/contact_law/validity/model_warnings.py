@@ -110,8 +110,8 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
     ends = np.array(rates)
     sentence = assess_measured_band(transit_frequency(ends, data.relative_length(ends)), data.records).sentence
     _warn(
-        f"M and the contact length are extrapolated beyond the measurements: {sentence}; validity(V).measured tells "
-        "which V are inside"
+        f"M and the contact length are extrapolated beyond the measurements: {sentence}; validity(V).measured reports "
+        "which speeds are inside"
     )
 
 
@@ -205,7 +205,7 @@ def _start_faults(
         lower_ends, slow = _slow_starts(material, gamma, j)
         if slow[max(bisect(lower_ends, u) - 1, 0)]:
             faults.append(
-                "it is too slow for the law of steady rolling: the error of V exceeds 10 % over more than a tenth of "
+                "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a tenth of "
                 "the distance"
             )
     return faults

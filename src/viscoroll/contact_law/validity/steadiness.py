@@ -52,7 +52,7 @@ class Steadiness(Assumption):
     def of(cls, free: FreeRolling) -> Assumption:
         """Return the assumption ``steady`` of states from which the cylinder rolls freely."""
         if free.u.size and not free.u.any():
-            return Assumption(None, None, "at rest the assumption is not checked: give a speed")
+            return Assumption(None, None, "the assumption is not checked at rest: give a speed")
         return cls._create(free.unsteadiness, free)
 
     @classmethod
@@ -132,11 +132,11 @@ def _describe_free(free: FreeRolling) -> str:
     text = f"unsteadiness {value:.2g} (up to {STEADY_LIMIT} is allowed): "
     if value > STEADY_LIMIT:
         return text + (
-            "too slow for the law of steady rolling to drive a motion (contact states and constant speeds are valid); "
+            "too slow for the quasi-steady assumption of a motion (contact states and constant speeds are valid); "
             f"the error of V is below 10 % above {most.speed:.2g}{speed}"
         )
     if not np.isfinite(whole):
-        return text + "an elastic cylinder rolls freely for ever"
+        return text + "an elastic cylinder never stops"
     fine, start = free.reach(0.1 * STEADY_LIMIT), free.start()
     text += f"free rolling by the law of steady rolling ends after {whole:.4g}{length}; the error of V is below "
     if fine.time:

@@ -85,6 +85,6 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     if roller.body_data is not None:
         return roller.body_data.extend_validity(report, lengths.lam, given["V"], given.get("omega"), density)
     if density is not None:
-        sentence = "density needs a Cylinder: a Scene has no speed of waves"
+        sentence = "density needs a Cylinder: a Scene has no wave speed"
         raise ParameterError("density", density, "None", sentence)
     return report

@@ -39,5 +39,5 @@ def draw(data: xr.Dataset) -> Figure:
         if applies:
             return figure(data)
     found = ", ".join(f"{name}: {size}" for name, size in data.sizes.items()) or "a single state"
-    sentence = f"there is nothing to draw over: the result holds {found}; compute it at several speeds or creeps"
+    sentence = f"a plot needs several speeds or creepages: the result contains {found}; compute it at more"
     raise ParameterError("plot", found, "a result over an axis", sentence)

@@ -29,7 +29,7 @@ def master_curve(material: Any) -> Figure:
     ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
     t = np.logspace(*ends, _POINTS)
     omega = 1.0 / t[::-1]
-    title = (material.name or "Material") + ("; dashed: beyond what was measured" if material.measured else "")
+    title = (material.name or "Material") + ("; dashed: outside the measured band" if material.measured else "")
     figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
     band = material.measured and (material.measured.low, material.measured.high)
     lines = plot_measured_range(left, omega, material.storage(omega), band, **LINES[0], label="E'")[:1]

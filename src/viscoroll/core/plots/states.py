@@ -54,7 +54,7 @@ def field_curves(data: xr.Dataset) -> Figure:
     first, *others = varied_axes(data)
     title, band = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
     if band is not None:
-        title += "; dashed: beyond what was measured"
+        title += "; dashed: outside the measured band"
     for n, name in enumerate(others[1:]):
         middle = data.sizes[name] // 2
         title += f"{', ' if n else ', at '}{_value_label(data, name, middle)}"

@@ -30,7 +30,7 @@ _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 class Line(NamedTuple):
     """A line that is not blank.
 
-    number : of the line in the file, from 1; text : without the mark of a comment; cells : of the line.
+    number : number of the line in the file, from 1; text : the line without the mark of a comment; cells : its cells.
     comment : whether it has such a mark; numeric : whether it is a row of numbers.
     """
 
@@ -44,7 +44,7 @@ class Line(NamedTuple):
 def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     """Return the lines of a text file.
 
-    path : of the file.
+    path : path of the file.
     encoding : as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and Latin-1 that fits.
     Raises FileError for workbooks and other binary files, ParameterError for an encoding that Python does not know.
     """
@@ -53,7 +53,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error})") from error
     if raw.startswith(_WORKBOOKS):
-        raise FileError(path, "is a workbook or an archive, no text: save its sheet as CSV")
+        raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
     shown = next((name for first, name in _ENCODINGS.items() if re.match(first, raw)), None)
     given = encoding or shown
     for name in (given,) if given else _USUAL:
@@ -65,7 +65,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
             problem = f"cannot be read in {name} ({error})"
             continue
         if "\0" in text:
-            raise FileError(path, "is no text: it has null bytes")
+            raise FileError(path, "is not a text file: it has null bytes")
         first, *others = re.split(r"\r\n|\r|\n", text)
         return ["" if re.fullmatch(r"(?i)sep=.\s*", first) else first, *others]  # Excel's own line on the separator
     raise FileError(path, problem)

@@ -18,7 +18,7 @@ def named_table(
     """Read a table whose headings are the line that has one of the given names, with a unit or without.
 
     path, decimal, encoding : as of :func:`read_table`.
-    names : of columns.
+    names : names of columns.
     Returns the table; raises the errors of :func:`read_table`.
     """
     return read_table(
@@ -64,9 +64,10 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     Parameters
     ----------
     table : a table with headings.
-    name : of the column, with its unit or without.
+    name : name of the column, with its unit or without.
     wanted : unit of the result in pint's spelling, "1" of a ratio.
-    unit : of the numbers in the file, in place of the one that the file gives; "": that of the file, and without one
+    unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the file, and
+    without one
         the numbers are taken to be in ``wanted``.
 
     Returns

@@ -57,7 +57,7 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 
     They may be where both marks occur, or where three digits stand behind each, as in "1,234".
 
-    cells : of a table or a column.
+    cells : cells of a table or a column.
     doubtful : marks of which the second rule is true: the comma where commas separate cells, both beside "567".
     """
     marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]
@@ -74,14 +74,15 @@ def fault_of(cell: str, decimal: str) -> str:
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     """
     if _GAP.fullmatch(cell):
-        return "is a gap: leave out its row"
+        return "is missing: remove its row"
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
         return ""
     if _THOUSANDS.fullmatch(cell) or not decimal:
         return (
-            "may have a separator of thousands, as both marks occur or all have three digits: write decimal marks only"
+            "may contain a separator of thousands, since both marks occur or all groups have three digits: "
+            "write only decimal marks"
         )
-    return f"is no number with a decimal {'comma' if decimal == ',' else 'point'}"
+    return f"is not a number with a decimal {'comma' if decimal == ',' else 'point'}"
 
 
 def numbers_of(cells: list[str]) -> Numbers:

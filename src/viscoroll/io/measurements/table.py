@@ -30,12 +30,12 @@ _QUOTED = 60
 class Table:
     """A table of a text file.
 
-    path : of the file.
+    path : path of the file.
     headings : one a column; "column 0" and so on where the file has none.
     units : the cell of a row of units below each heading, "" without.
     rows : the lines of numbers, of which all cells beyond the headings are empty.
     parts : number of tables of the file that these rows are from.
-    bare : whether the file has no headings.
+    without_headings : whether the file has no headings.
     decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
     """
 
@@ -44,7 +44,7 @@ class Table:
     units: list[str]
     rows: list[Line]
     parts: int
-    bare: bool
+    without_headings: bool
     decimal: str
 
     def has_numbers(self, column: int) -> bool:
@@ -52,8 +52,9 @@ class Table:
         return any(is_number(row.cells[column]) for row in self.rows)
 
     def numbers(self, column: int) -> Numbers:
-        """Return the numbers of the column with an index.
+        """Return the numbers of a column.
 
+        column : index of the column.
         Raises FileError, with its line, for a gap, a text, a separator of thousands, or the other decimal mark.
         """
         cells = [row.cells[column] for row in self.rows]
@@ -112,7 +113,9 @@ def read_table(
     names, units, (first, *_) = parts[0]
     if any(part[:2] != (names, units) for part in parts):
         starts = ", ".join(str(rows[0].number) for *_, rows in parts)
-        raise FileError(path, f"has {len(parts)} tables with unlike headings (from lines {starts}): keep one of them")
+        raise FileError(
+            path, f"has {len(parts)} tables with different headings (from lines {starts}): keep one of them"
+        )
     rows = [row for *_, rows in parts for row in rows]
     mark = decimal or decimal_mark([cell for row in rows for cell in row.cells], "," if separator == "," else "")
     return Table(path, names, units, rows, len(parts), lines[heads[0]].number == first.number, mark)
@@ -122,9 +125,9 @@ def read_table(
 class _Layout:
     """Where the tables of a file are.
 
-    path : of the file.
+    path : path of the file.
     lines : its lines with their cells.
-    separator : of the cells.
+    separator : separator of the cells.
     is_heading_line : as of :func:`read_table`.
     """
 
@@ -146,7 +149,10 @@ class _Layout:
         return FileError(self.path, f"line {line.number} {problem}: {line.text[:_QUOTED]!r}")
 
     def is_row(self, line: Line) -> bool:
-        """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone."""
+        """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone.
+
+        line : the line.
+        """
         return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
 
     def heads(self) -> list[int]:
@@ -162,7 +168,7 @@ class _Layout:
         if heads:
             for line in lines[: heads[0]]:
                 if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
-                    raise self.fault(line, "has numbers above the headings, keep one table of the file")
+                    raise self.fault(line, "has numbers above the headings: keep one table of the file")
             return heads
         first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
         above = [n for n, line in enumerate(lines[:first]) if not (line.comment or line.numeric)]
@@ -170,7 +176,7 @@ class _Layout:
             return above[-1:]
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
-                raise self.fault(line, f"names columns, but is not {self.cut} into {width} as the rows")
+                raise self.fault(line, f"contains column names, but is not {self.cut} into {width} as the rows")
         names = [f"column {n}" for n in range(width)]
         lines[:first] = [Line(lines[first].number, str(names), names, False, False)]
         return [0]
@@ -191,7 +197,7 @@ class _Layout:
             rows.pop()
         for row in rows:
             if not row.numeric:
-                raise self.fault(row, "is no row of numbers, remove it or begin it with #")
+                raise self.fault(row, "is not a row of numbers: remove it or begin it with #")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 problem = f"has {len(row.cells)} columns, but line {line.number} has {len(names)}, {self.cut}"
                 raise self.fault(row, problem)

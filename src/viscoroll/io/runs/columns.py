@@ -22,7 +22,7 @@ _SERIES = {
 def attributes(name: str, si: bool) -> dict[str, Any]:
     """Return the attributes of a column: long_name, units and more, as JSON takes them.
 
-    name: of an input (as base_E, tau_2, drive_torque_time_1) or of a field of a motion.
+    name: name of an input (as base_E, tau_2, drive_torque_time_1) or of a field of a motion.
     si: whether the run is in SI units.
     """
     if name.startswith(PREFIXES["drive"]):

@@ -55,7 +55,7 @@ def run_ensemble(
 
     Parameters
     ----------
-    run : of :func:`read_run`.
+    run : a run of :func:`read_run`.
     path : folder of the results; it is created if it does not exist.
     cluster : None: threads of this process.  "local": processes of this machine.  "tcp://host:port": a running dask
         scheduler, whose workers see ``path`` on a shared disk.
@@ -79,16 +79,19 @@ def run_ensemble(
         At Ctrl-C (a KeyboardInterrupt), within a second: finished blocks are kept, and the message states their
         number.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import read_run, run_ensemble
-    >>> run = read_run("docs/examples/ensemble.toml")  # doctest: +SKIP
-    >>> run_ensemble(run, "results.zarr")  # doctest: +SKIP
-
     Notes
     -----
     The files are the same, byte for byte, for any number of threads or workers and after any number
     of kills (``tests/runs/test_run_store.py``); a motion is as accurate as :func:`viscoroll.ensemble` makes it.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.runs.read_run(vr.datasets.path("run.toml"))
+    >>> vr.runs.run_ensemble(run, "results.zarr", threads=1)
+    1
+    >>> vr.runs.run_ensemble(run, "results.zarr", threads=1)  # the block is there
+    0
     """
     if progress != "lines":
         progress = check_bool("progress", progress)
@@ -105,8 +108,8 @@ def run_ensemble(
                     evaluated += 1
                     advance(motions)
             except KeyboardInterrupt:
-                kept = f"{evaluated} of {run.blocks} blocks were made and are kept in {path}"
-                raise Interrupted(f"interrupted: {kept}; the same call goes on") from None
+                kept = f"{evaluated} of {run.blocks} blocks are complete and are kept in {path}"
+                raise Interrupted(f"interrupted: {kept}; the same call resumes the run") from None
             store.finish()
     return evaluated
 
@@ -116,7 +119,7 @@ def _evaluate_missing(
 ) -> Iterator[int]:
     """Submit the missing blocks, and yield the number of motions of each one that is finished.
 
-    store: of the run.  shared: the store, or dask's reference to it, as tasks take it.
+    store: the store of the run.  shared: the store, or dask's reference to it, as tasks take it.
     pool, workers: executor, and its number of workers.
     advance: function of the progress bar; it is called with the motions of blocks that were on disk.
     """
@@ -178,7 +181,9 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
         raise
     except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
         text = " ".join((str(error) or type(error).__name__).split())
-        raise FileError(cluster, f"the cluster went away ({text:.200}): the same command goes on") from error
+        raise FileError(
+            cluster, f"the connection to the cluster was lost ({text:.200}): the same command resumes the run"
+        ) from error
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:

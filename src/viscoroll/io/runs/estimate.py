@@ -47,6 +47,7 @@ class Estimate:
     law_seconds: float = 0.0
 
     def __str__(self) -> str:
+        """Return size, time, memory and disk space of the run, a line each."""
         run = self.run
         laws = f", {_duration(self.law_seconds)} of it once for the laws of covers" if self.law_seconds else ""
         return (
@@ -66,13 +67,20 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 
     Parameters
     ----------
-    run : of :func:`read_run`.
+    run : a run of :func:`read_run`.
     threads : as of :func:`run_ensemble`.
 
     Returns
     -------
     Estimate
         Printed, it states size, time, memory and disk space.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.runs.estimate(vr.runs.read_run(vr.datasets.path("run.toml")), threads=1)
+    >>> found.trial, found.workers, found.seconds > 0.0
+    (16, 1, True)
     """
     workers = min(thread_count(threads), run.blocks)
     warn_of_materials(run)

@@ -40,7 +40,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
     Parameters
     ----------
-    run : of :func:`read_run`.
+    run : a run of :func:`read_run`.
     values : every uncertain input by name, a number or (n,).
     count : number of motions, if all inputs are numbers.
     threads : as of :func:`viscoroll.ensemble`.
@@ -57,9 +57,10 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
     Examples
     --------
-    >>> from viscoroll.io.runs import read_run, roll_inputs
-    >>> run = read_run("docs/examples/ensemble.toml")  # doctest: +SKIP
-    >>> roll_inputs(run, run.inputs.medians).V  # doctest: +SKIP
+    >>> import viscoroll as vr
+    >>> run = vr.runs.read_run(vr.datasets.path("run.toml"))
+    >>> vr.runs.roll_inputs(run, run.inputs.medians).V.shape
+    (1, 2)
     """
     content, settings = run.inputs.filled(values), run.settings
     start = content["start"]
@@ -84,22 +85,23 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 def warn_of_materials(run: Run) -> None:
     """Warn of the share of motions that start outside the measured bands of the materials, or as their medians do.
 
-    run: in SI units with a start speed, or any other, of which the motion of the medians is rolled and may warn.
+    run: the run.  Where it is in SI units with a start speed, the starts are compared with the bands; in any case
+    the motion of the medians is rolled, which may warn too.
     """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)
     if "V0" in content["start"]:
         bands = measured_bands(run.path, content)
-        if not (bands and warn_of_unmeasured_starts(_share_outside(run), bands)):
+        if not (bands and warn_of_unmeasured_starts(_fraction_outside(run), bands)):
             warn_of_contact(roller_of(run.path, content), run.inputs.largest("V0"))
     settings = msgspec.structs.replace(run.settings, summaries=("V",), keep="summaries", method="integrate")
     roll_inputs(replace(run, settings=settings), medians)
 
 
-def _share_outside(run: Run) -> float:
-    """Return the share of motions whose transit frequency at the start is outside a measured band.
+def _fraction_outside(run: Run) -> float:
+    """Return the fraction of motions whose transit frequency at the start is outside a measured band.
 
-    run: in SI units, whose first motions are looked at.  A start at rest is inside: M is 0 there.
+    run: a run in SI units, whose first motions are examined.  A start at rest is inside: M is 0 there.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))
     roller: Any = roller_of(run.path, content)

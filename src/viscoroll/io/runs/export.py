@@ -41,14 +41,15 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
     FileError
         There is no finished store, or a file in it is damaged; the netCDF file cannot be written, or the disk is full.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import export_netcdf
-    >>> export_netcdf("results.zarr", "results.nc")  # doctest: +SKIP
-
     Notes
     -----
     Values are those of the store, bit for bit (``tests/runs/test_run_store.py``).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+    >>> vr.runs.export_netcdf("results.zarr", "results.nc")
     """
     summaries, verdict = open_run(store).summaries, verify(store)
     if not verdict.ok:
@@ -95,8 +96,9 @@ def _largest_size(array: Any) -> int:
 
 
 def _reserve(path: Path, size: int) -> None:
-    """Lengthen a file by ``size`` bytes, so that HDF5, which may crash on a full disk, does not meet one.
+    """Lengthen a file, so that HDF5, which may crash on a full disk, does not meet one.
 
+    path: path of the file.  size: number of bytes to add.
     HDF5 cuts off at its end what it did not use.  Raises OSError if the disk is full.
     """
     with path.open("r+b") as file:

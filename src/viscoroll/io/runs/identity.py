@@ -62,19 +62,19 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
     """Raise FileError if a store is neither of a run nor of the same run with fewer motions.
 
     root: folder of the store.  run: the run.
-    record: of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
+    record: a record of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
     """
     of_a_block = record.summary is not None
     if record.run == identity(run) and (of_a_block or record.motions == run.settings.n):
         return
     versions = record.about.get("versions", json.dumps(_software()))
     if versions != json.dumps(_software()):
-        raise FileError(root, f"was begun with other versions, {versions}: finish it with those, or {ADVICE}")
+        raise FileError(root, f"was written with other versions, {versions}: finish it with these, or {ADVICE}")
     before = replace(run, settings=msgspec.structs.replace(run.settings, n=max(record.motions, 1)))
     if of_a_block or record.run != identity(before):
-        raise FileError(root, f"holds the results of another run file: {ADVICE}")
+        raise FileError(root, f"contains the results of another run file: {ADVICE}")
     if problem := _no_extension(before, run):
-        raise FileError(root, f"holds {record.motions} motions of this run file, {problem}, or {ADVICE}")
+        raise FileError(root, f"contains {record.motions} motions of this run file, {problem}, or {ADVICE}")
 
 
 def _no_extension(before: Run, run: Run) -> str:
@@ -84,13 +84,13 @@ def _no_extension(before: Run, run: Run) -> str:
     """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:
-        return f"which may become more, not fewer: set n >= {before.settings.n}"
+        return f"and n must not be reduced: set n >= {before.settings.n}"
     if design == "latin":
-        return f"a Latin hypercube, whose strata are of all motions: keep n = {before.settings.n}"
+        return f"a Latin hypercube, whose strata depend on n: keep n = {before.settings.n}"
     if design == "sobol" and n & (n - 1):
-        return f"along Sobol's sequence, which is even where n is a power of two: set n = {1 << n.bit_length()}"
+        return f"along Sobol's sequence, which is balanced only for a power of two: set n = {1 << n.bit_length()}"
     if run.block != before.block:
         return f"in blocks of {before.block}: add block = {before.block} to [run]"
     if run.method != before.method:
-        return f"found by method {before.method!r}: add method = {before.method!r} to [run]"
+        return f"computed by method {before.method!r}: add method = {before.method!r} to [run]"
     return ""

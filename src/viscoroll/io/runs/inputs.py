@@ -27,7 +27,7 @@ class Input:
 
     Attributes
     ----------
-    name : of the input, as in the columns of the results.
+    name : name of the input, as in the columns of the results.
     section, key : where it stands in the file.
     """
 
@@ -52,8 +52,9 @@ class Distribution:
 
     @np.errstate(all="ignore")  # an overflow is infinite, which a motion refuses
     def ppf(self, u: Floats) -> Floats:
-        """Return the values at which the truncated distribution function is ``u``, in (0, 1).
+        """Return the quantiles of the truncated distribution.
 
+        u: probabilities in (0, 1), of any shape.
         An upper tail is inverted from above, by the survival function, so that it keeps its digits.
         """
         law = self.law
@@ -124,7 +125,7 @@ class Inputs:
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
         """Return the smallest and the largest draw of an input, (2,).
 
-        name: of the input.  low, high: shares of the distribution to take as its ends.
+        name: name of the input.  low, high: shares of the distribution to take as its ends.
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
@@ -147,7 +148,10 @@ class Inputs:
         return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())
 
     def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the sections with ``values``, by name, in place of the inputs."""
+        """Return the sections of the run file with values in place of the inputs.
+
+        values: name of an input -> number or (n,).
+        """
         return _filled(self.content, values)
 
 

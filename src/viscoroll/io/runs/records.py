@@ -32,9 +32,9 @@ class Record(msgspec.Struct):
     ----------
     run : identity of the run, whatever its number of motions.
     files : path below the store -> SHA-256.
-    motions : of the block, or, in the records "start" and "end", of the run.
+    motions : number of motions of the block, or, in the records "start" and "end", of the run.
     about : attributes of the run, in the record "start".
-    summary : of the motions, in the record of a block.
+    summary : summary of the motions, in the record of a block.
     """
 
     run: str
@@ -50,7 +50,10 @@ def encoded(record: Record) -> bytes:
 
 
 def read_record(path: Path) -> Record | None:
-    """Return the record in a file, or None if it is missing or damaged in any way."""
+    """Return the record in a file, or None if it is missing or damaged in any way.
+
+    path: path of the record.
+    """
     try:
         stored = path.read_bytes()
         if not seal_matches(stored):
@@ -89,9 +92,11 @@ def _digest(path: Path) -> str | None:
 
 
 def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
-    """Write files below ``root``, each whole or not at all, and return their digests by name.
+    """Write files below a folder, each whole or not at all, and return their digests by name.
 
-    files: path below root -> content.  A file that has this content already is left alone.  Raises FileError.
+    root: the folder.
+    files: path below root -> content.  A file that has this content already is left alone.
+    Returns path below root -> SHA-256.  Raises FileError.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     for name, content in files.items():
@@ -113,4 +118,4 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(path, f"cannot be made a folder ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be created as a folder ({error.strerror or error})") from error

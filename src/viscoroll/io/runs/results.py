@@ -29,6 +29,14 @@ class RunResults(Result):
     ----------
     path : the folder.
     summaries : dataset over t, quantile and the bins of each quantity, as ``xarray.open_zarr(path)``.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+    >>> results = vr.runs.open_run("results.zarr")
+    >>> len(results), results.to_pandas().shape[0]
+    (16, 7)
     """
 
     def __init__(self, path: Path, summaries: xr.Dataset) -> None:
@@ -60,21 +68,46 @@ class RunResults(Result):
         ------
         FileError
             If the run kept summaries alone.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+        >>> try:
+        ...     vr.runs.open_run("results.zarr").motions()
+        ... except vr.FileError as error:
+        ...     print(error.problem)
+        holds no motions, summaries alone: run it with keep = "all"
         """
         import xarray as xr
 
         if not self._motions_folder.is_dir():
-            raise FileError(self.path, 'holds no motions, summaries alone: run it with keep = "all"')
+            raise FileError(self.path, 'contains summaries but no motions: run it with keep = "all"')
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
     def to_xarray(self) -> xr.Dataset:
-        """Return the summaries: moments, quantiles, histograms, and how the motions ended."""
+        """Return the summaries: moments, quantiles, histograms, and how the motions ended.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+        >>> vr.runs.open_run("results.zarr").to_xarray()["V_mean"].dims
+        ('t',)
+        """
         return self.summaries
 
     def to_pandas(self) -> pd.DataFrame:
         """Return a row for each quantity and time: mean, std, min, max, and a column for each quantile.
 
         A unit is part of the name of a quantity, as in "V [m s-1]", the first level of the index.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+        >>> list(vr.runs.open_run("results.zarr").to_pandas().index.names)
+        ['quantity', 't']
         """
         import pandas as pd
 
@@ -131,8 +164,10 @@ def open_run(path: str | PathLike[str]) -> RunResults:
 
     Examples
     --------
-    >>> from viscoroll.io.runs import open_run
-    >>> open_run("results.zarr").to_pandas()  # doctest: +SKIP
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+    >>> vr.runs.open_run("results.zarr").names
+    ('V', 'omega', 'onset_time', 'x')
     """
     import xarray as xr
 
@@ -140,5 +175,5 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     root = Path(path)
     start = start_of(root)
     if faults := problems(root, "end", start.run, start.motions):
-        raise FileError(path, f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
+        raise FileError(path, f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command repairs it")
     return RunResults(root, xr.open_zarr(root, chunks=None))

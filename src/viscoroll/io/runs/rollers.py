@@ -74,7 +74,7 @@ class Rollers(Roller):
 def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
     """Return the roller of the motions of a block: a scene, a cylinder, or a cylinder for each motion.
 
-    path: of the run file, for errors and the files that it names.
+    path: path of the run file, for errors and the files that it names.
     content: its sections, with numbers or arrays (n,) in place of the inputs.
     Raises ParameterError; of a material FileError.
     """
@@ -103,7 +103,7 @@ def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
 def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
     """Return a piecewise linear load; raise ParameterError that names it.
 
-    name: of the load.  times, values: of its corners, each a number or (n,).
+    name: name of the load.  times, values: times and values of its corners, each a number or (n,).
     """
     try:
         return Schedule(*(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values)))
@@ -114,7 +114,7 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
 def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Solid]:
     """Return (the material of the first motion, the material of all motions, which differ if it is a Solid).
 
-    path: of the run file.  name: "material" or "base".  section: its content, or the material if all is certain.
+    path: path of the run file.  name: "material" or "base".  section: its content, or the material if all is certain.
     """
     if isinstance(section, Material):
         return section, section
@@ -127,15 +127,15 @@ def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Sol
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical, typical
     if thickness is not None:
-        thickness = check_array("thickness", thickness, low=0.0, strict=True)
-    E = check_array("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
-    return typical, Solid(E, check_array("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref, thickness)
+        thickness = check_array("thickness", thickness, above=0.0)
+    E = check_array("E", E, above=0.0) if np.ndim(E) else typical.E
+    return typical, Solid(E, check_array("nu", nu, above=-1.0, high=0.5), series, typical.T_ref, thickness)
 
 
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
     """Return the band of angular frequencies that each body was measured in, at the temperature of each motion.
 
-    path : of the run file.
+    path : path of the run file.
     content : its sections with the inputs of some motions.
     Returns the record of a measurement -> (lowest, highest frequency), rad/s, numbers or (n,); bodies without a record
     are left out.

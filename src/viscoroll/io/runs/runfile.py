@@ -73,7 +73,7 @@ class StartSection(msgspec.Struct):
     omega0: float | None = None
 
 
-class CourseSection(msgspec.Struct):
+class ScheduleSection(msgspec.Struct):
     """{ times = [...], values = [...] }: a piecewise linear load."""
 
     times: Numbers
@@ -83,13 +83,13 @@ class CourseSection(msgspec.Struct):
 class DriveSection(msgspec.Struct):
     """[drive]: loads, and prescribed speeds."""
 
-    force: float | CourseSection | None = None
-    torque: float | CourseSection | None = None
-    brake: float | CourseSection | None = None
+    force: float | ScheduleSection | None = None
+    torque: float | ScheduleSection | None = None
+    brake: float | ScheduleSection | None = None
     slope: float | None = None
     drag: float | None = None
-    V: float | CourseSection | None = None
-    omega: float | CourseSection | None = None
+    V: float | ScheduleSection | None = None
+    omega: float | ScheduleSection | None = None
 
 
 class TimesSection(msgspec.Struct):
@@ -138,12 +138,19 @@ class Run:
 
     Attributes
     ----------
-    path, text : of the file.
+    path, text : path and text of the file.
     settings : its section [run].
     inputs : its other sections, and which of their numbers are uncertain.
     t : output times, dimensionless or, with [cylinder], in s, (t,).
     digest : SHA-256 of what the results depend on, apart from the number of motions, the method and the size of
         blocks: other settings, inputs, samples.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.runs.read_run(vr.datasets.path("run.toml"))
+    >>> run.method, run.blocks, run.inputs.uncertain
+    ('integrate', 1, ('mu', 'V0'))
     """
 
     path: Path
@@ -207,7 +214,14 @@ class Run:
         return -(-self.settings.n // self.block)
 
     def edges(self, block: int) -> tuple[int, int]:
-        """Return the first motion of a block and the first of the next."""
+        """Return the first motion of a block and the first of the next.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.runs.read_run(vr.datasets.path("run.toml")).edges(0)
+        (0, 16)
+        """
         return block * self.block, min((block + 1) * self.block, self.settings.n)
 
 
@@ -231,8 +245,9 @@ def read_run(path: str | PathLike[str]) -> Run:
 
     Examples
     --------
-    >>> from viscoroll.io.runs import read_run
-    >>> read_run("docs/examples/ensemble.toml").blocks  # doctest: +SKIP
+    >>> import viscoroll as vr
+    >>> vr.runs.read_run(vr.datasets.path("run.toml")).settings.n
+    16
     """
     path, content = Path(path), read_toml(path)
     inputs = inputs_of(path, content)
@@ -269,7 +284,7 @@ def read_run(path: str | PathLike[str]) -> Run:
 def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
     """Raise a ParameterError within as FileError of the section [run]; a context manager.
 
-    path: of the run file.  key: that is at fault; default: the name of the parameter.
+    path: path of the run file.  key: key that is at fault; default: the name of the parameter.
     """
     try:
         yield
@@ -280,6 +295,7 @@ def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
 def _check_inputs(run: Run) -> None:
     """Raise FileError for inputs that a motion refuses, before anything is drawn.
 
+    run: the run.
     Checked are the medians, the ends of each input beside the medians of the others, and combinations of ends.
     """
     inputs, medians = run.inputs, run.inputs.medians
@@ -302,7 +318,7 @@ def _check_inputs(run: Run) -> None:
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
     """Raise FileError, with its line, for motions that would be refused.
 
-    values: input -> number or (n,).  advice: last words of the message.
+    run: the run.  values: input -> number or (n,).  advice: last words of the message.
     """
     try:
         _begin_motions(run, values)
@@ -314,13 +330,13 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
 def _begin_motions(run: Run, values: dict[str, Any]) -> None:
     """Raise ParameterError, of a material FileError, for motions that would be refused; nothing is rolled.
 
-    values: input -> number or (n,).
+    run: the run.  values: input -> number or (n,).
     """
     content, settings = run.inputs.filled(values), run.settings
     roller = roller_of(run.path, content)
     for name in ("unsteady", "rested"):
         if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
-            raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
+            raise ParameterError(name, str(getattr(settings, name)).lower(), "left out if T_epsilon is uncertain")
     start = tuple(content["start"].get(name) for name in START)
     options = SolverOptions(settings.rtol, settings.rest, 1, None, settings.unsteady, settings.rested)
     drive = Drive(**drive_of(content))

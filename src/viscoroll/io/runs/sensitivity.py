@@ -52,7 +52,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 
     Parameters
     ----------
-    run : of :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
+    run : a run of :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
     n : number of base points in [16, 65536], rounded up to a power of two.
     threads : default ``$VISCOROLL_THREADS`` or the number of cores; the bits do not depend on it.
     progress : whether to draw a progress bar if it takes longer than a second.
@@ -74,16 +74,18 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         input; n out of range, or so many output times that their values would take more than 0.5 GB; no
         quantity left.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import read_run
-    >>> from viscoroll.io.runs.sensitivity import sobol_indices
-    >>> sobol_indices(read_run("docs/examples/sensitivity.toml"), n=256)  # doctest: +SKIP
-
     Notes
     -----
     Variance shares in closed form lie inside the stated intervals (``tests/runs/test_sensitivity.py``).
     The bootstrap treats the points as random ones, which are less even: intervals are rather too wide.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> from viscoroll.io.runs.sensitivity import sobol_indices
+    >>> indices = sobol_indices(vr.runs.read_run(vr.datasets.path("run.toml")), n=16, threads=1)
+    >>> indices["V_ST"].dims, indices["input"].values.tolist()
+    (('t', 'input'), ['mu', 'V0'])
     """
     import xarray as xr
 
@@ -149,7 +151,7 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
 def _points(count: int, base: int, seed: int) -> Floats:
     """Return points of the unit cube, (input, motion): A, B, and A with each row of B in turn.
 
-    count: number of inputs.  base: number of points of A and of B.  seed: of the sequence.
+    count: number of inputs.  base: number of points of A and of B.  seed: seed of the sequence.
     """
     A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
@@ -189,7 +191,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     """Return (indices and half-widths, in rows as ``_INDICES``, over inputs; "") or (NaN, why there are none).
 
     values: outcomes (A, B and mixed points, base point).  noise: part of a value that rtol leaves open.
-    seed: of the bootstrap.
+    seed: seed of the bootstrap.
     """
     from scipy.special import ndtri
 
@@ -215,7 +217,7 @@ def _estimated(values: Floats) -> Floats:
 def table(indices: xr.Dataset) -> pd.DataFrame:
     """Return a row for each quantity, time and input that has indices, the largest total index first at each t.
 
-    indices: of :func:`sobol_indices`.
+    indices: dataset of :func:`sobol_indices`.
     """
     import pandas as pd
 

@@ -97,7 +97,10 @@ class Store:
             raise FileError(path, f"cannot be removed ({error.strerror or error})") from error
 
     def refuse_other(self) -> None:
-        """Raise FileError unless the folder is new, or of the same run, perhaps with fewer motions."""
+        """Raise FileError unless the folder is new, or the store of this run, perhaps with fewer motions.
+
+        A folder with records of another run, with other files, or that cannot be read is refused.
+        """
         root = self.root
         if not root.exists():
             return
@@ -112,7 +115,7 @@ class Store:
             return
         others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
         if others:
-            raise FileError(root, f"is no results store, it holds {', '.join(others[:3])}: {ADVICE}")
+            raise FileError(root, f"is not a results store, it contains {', '.join(others[:3])}: {ADVICE}")
 
     def missing(self) -> Iterator[int]:
         """Yield the blocks that are missing or damaged; the records of all blocks and all their files are read."""
@@ -122,7 +125,11 @@ class Store:
                 yield block
 
     def evaluate(self, block: int) -> int:
-        """Roll the motions of a block, store them, and return their number; raise FileError if writing fails."""
+        """Roll the motions of a block and store them; raise FileError if writing fails.
+
+        block: number of the block.
+        Returns the number of its motions.
+        """
         files, summary, count = block_content(self.run, block)
         self._write_part(block, files, summary=summary)
         return count
@@ -148,7 +155,7 @@ class Store:
         for block in range(self.run.blocks):
             record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
-                raise FileError(self.root, f"block {block} was damaged meanwhile: the same command goes on")
+                raise FileError(self.root, f"block {block} was damaged during the run: the same command repairs it")
             yield record.summary
 
 
@@ -156,7 +163,7 @@ class BlockContent(NamedTuple):
     """What a store holds of a block.
 
     files : path below the store -> content.
-    summary : of its motions.
+    summary : summary of its motions.
     motions : number of its motions.
     """
 
@@ -189,7 +196,9 @@ def metadata(run: Run) -> dict[str, bytes]:
 def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
     """Return the chunks of a block, or without ``block`` the metadata: path below the store -> content.
 
+    run: the run.
     columns: name -> values over (motion,) or (motion, t).
+    block: number of the block; None: return the metadata.
     """
     import xarray as xr
 
@@ -231,8 +240,9 @@ def _record_path(root: Path, name: str | int) -> Path:
 
 @contextmanager
 def locked(root: Path) -> Iterator[None]:
-    """Keep other processes from writing to the store in ``root``; a context manager.
+    """Keep other processes from writing to a store; a context manager.
 
+    root: folder of the store.
     Raises FileError if another process writes to it, or the disk does not allow locks.
     """
     from filelock import FileLock, Timeout

@@ -34,7 +34,7 @@ _KEYS_OF_INPUT = {"distribution", "file", "column"}
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
     """Return the inputs of a run file, without correlations; raise FileError.
 
-    path: of the run file.  content: its sections as read.
+    path: path of the run file.  content: its sections as read.
     """
     reader = _Reader(path, "cylinder" in content)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
@@ -45,7 +45,7 @@ def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
 class _Reader:
     """Collects the uncertain numbers of a run file, and replaces each by an :class:`Input`.
 
-    path, si: of the run file, and whether it is in SI units.
+    path, si: path of the run file, and whether it is in SI units.
     random, joint: as of :class:`Inputs`.
     files: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows.
     """
@@ -59,7 +59,7 @@ class _Reader:
     def section(self, name: str, section: Any) -> Any:
         """Return a section with inputs in place of its uncertain numbers.
 
-        name: of the section.  section: its content, or what stands in its place, which is refused elsewhere.
+        name: name of the section.  section: its content, or what stands in its place, which is refused elsewhere.
         """
         if not isinstance(section, dict):
             return section
@@ -91,24 +91,35 @@ class _Reader:
         return number
 
     def fault(self, number: Input, problem: str) -> FileError:
-        """Return the error of an uncertain number, with its line.  problem: what is wrong."""
+        """Return the error of an uncertain number, with its line.
+
+        number: the uncertain number.  problem: words on what is wrong.
+        """
         return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
 
     @np.errstate(all="ignore")  # scipy may overflow for parameters that are refused here
     def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
-        """Return the distribution of an uncertain number, truncated if its ``table`` states ``truncate``."""
+        """Return the distribution of an uncertain number, truncated if the file says so; raise FileError.
+
+        number: the uncertain number.  table: its table of TOML, with distribution, parameters and perhaps truncate.
+        """
         law = self.frozen_law(number, table)
         low, high = (float(end) for end in law.support())
         cut = table.get("truncate", [-math.inf, math.inf])
         if not (isinstance(cut, list) and len(cut) == 2 and all(_is_number(end) and end == end for end in cut)):
-            raise self.fault(number, f"truncate = {cut!r:.40}: must be [low, high]; inf and -inf leave an end")
+            raise self.fault(
+                number, f"truncate = {cut!r:.40}: must be [low, high]; inf or -inf for an end without limit"
+            )
         low, high = max(low, float(cut[0])), min(high, float(cut[1]))
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
-            raise self.fault(number, f"truncate = {cut!r:.40}: nothing of the distribution is left")
+            raise self.fault(number, f"truncate = {cut!r:.40}: this interval has zero probability")
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
-        """Return the frozen distribution of scipy.stats that a ``table`` names, with its parameters."""
+        """Return the frozen distribution of scipy.stats that a table names, with its parameters; raise FileError.
+
+        number: the uncertain number, for errors.  table: its table of TOML.
+        """
         from scipy import stats
 
         name = table["distribution"]
@@ -117,7 +128,7 @@ class _Reader:
             near = suggestion(
                 str(name), [key for key, value in vars(stats).items() if isinstance(value, stats.rv_continuous)]
             )
-            raise self.fault(number, f"distribution {name!r:.40} is no continuous one of scipy.stats{near}")
+            raise self.fault(number, f"distribution {name!r:.40} is not a continuous distribution of scipy.stats{near}")
         shapes = law.shapes.split(", ") if law.shapes else []
         keys = ("distribution", *shapes, "loc", "scale", "truncate")
         check_keys(self.path, f"{number.section}.{number.key}", table, keys)
@@ -133,7 +144,11 @@ class _Reader:
         return frozen
 
     def add_column(self, number: Input, table: dict[str, Any]) -> None:
-        """Read the column of a CSV, netCDF or Parquet file that the ``table`` of an uncertain number names."""
+        """Read the column of a CSV, netCDF or Parquet file that is the sample of an uncertain number; raise
+        FileError.
+
+        number: the uncertain number.  table: its table of TOML, with file and column.
+        """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
@@ -147,7 +162,7 @@ class _Reader:
             raise self.fault(number, f"{where} cannot be read ({text:.200})") from error
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
         if columns and next(iter(columns.values())).size != values.size:
-            raise self.fault(number, f"{where}: other columns have another length")
+            raise self.fault(number, f"{where}: its length differs from that of the other columns")
         columns[number.name] = values
 
 
@@ -177,14 +192,14 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     else:
         raise ValueError("a sample must be .csv, .nc or .parquet")
     if values.ndim != 1 or values.size == 0 or values.dtype.kind not in "iuf" or not np.isfinite(values).all():
-        raise ValueError("it must hold finite numbers, one a row")
+        raise ValueError("it must contain finite numbers, one in each row")
     return np.ascontiguousarray(values, np.float64)
 
 
 def correlated(path: Path, inputs: Inputs) -> Inputs:
     """Return the inputs with the Gaussian copula of the section [correlation]; raise FileError.
 
-    path: of the run file.  inputs: without correlations.
+    path: path of the run file.  inputs: its inputs without correlations.
     """
     section, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(section, dict):
@@ -215,6 +230,9 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
         mixing: Any = np.linalg.cholesky(matrix) if names else None
     except np.linalg.LinAlgError:
         raise section_error(
-            path, "", "correlation", "[correlation] no joint distribution has these correlations"
+            path,
+            "",
+            "correlation",
+            "[correlation] these correlations contradict each other: their matrix must be positive definite",
         ) from None
     return replace(inputs, correlated=names, mixing=mixing)

@@ -34,13 +34,14 @@ class Verdict:
         return self.finished and not self.missing and not self.damaged
 
     def __str__(self) -> str:
+        """Return the verdict in words: one line if all is well, else a line for each damaged part, and the remedy."""
         if self.ok:
             blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
-            return f"complete: {blocks} and the summaries have the SHA-256 that they were written with"
+            return f"complete: {blocks} and the summaries match their SHA-256"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
-        lines += [f"{len(self.missing)} of {self.blocks} blocks are not there or not whole"] * bool(self.missing)
-        lines += ["the summaries are not there or not whole"] * (not self.finished)
-        return "\n".join([*lines, "the same `viscoroll ensemble` command puts it right"])
+        lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"] * bool(self.missing)
+        lines += ["the summaries are missing or incomplete"] * (not self.finished)
+        return "\n".join([*lines, "the same `viscoroll ensemble` command repairs it"])
 
 
 def verify(path: str | PathLike[str]) -> Verdict:
@@ -60,14 +61,16 @@ def verify(path: str | PathLike[str]) -> Verdict:
     FileError
         If the folder is no results store, or the record of its start is damaged.
 
-    Examples
-    --------
-    >>> from viscoroll.io.runs import verify
-    >>> print(verify("results.zarr"))  # doctest: +SKIP
-
     Notes
     -----
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
+    >>> print(vr.runs.verify("results.zarr"))
+    complete: 1 block and the summaries have the SHA-256 that they were written with
     """
     root, start = Path(path), start_of(path)
     motions, size, blocks = (int(start.about[name]) for name in ("motions", "motions_a_block", "blocks"))
@@ -81,11 +84,16 @@ def verify(path: str | PathLike[str]) -> Verdict:
 
 
 def start_of(path: str | PathLike[str]) -> Record:
-    """Return the record "start" of a store; raise FileError if the folder has none, or a damaged one."""
+    """Return the record "start" of a store; raise FileError if the folder has none, or a damaged one.
+
+    path: folder of the store.
+    """
     if not Path(path).is_dir():
-        raise FileError(path, "is no results store: there is no such folder")
+        raise FileError(path, "is not a results store: the folder does not exist")
     refuse_unreadable(Path(path))
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
-        raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
+        raise FileError(
+            path, "is not a results store, or its record `start` is damaged: run the command that wrote it again"
+        )
     return start

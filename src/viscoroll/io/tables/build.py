@@ -92,10 +92,10 @@ def build(
 
     what = _roller_of(what)
     si = isinstance(what, Cylinder)
-    axes = {"V": increasing("V", V, unit=what.scale, low=0.0, strict=True), "delta": increasing("delta", delta)}
+    axes = {"V": increasing("V", V, unit=what.scale, above=0.0), "delta": increasing("delta", delta)}
     if alpha is not None:
         if isinstance(what, Cylinder) or what.material is not None:
-            raise ParameterError("alpha", "given", "left out: the material has its own")
+            raise ParameterError("alpha", "given", "left out: a material determines alpha")
         axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
     if math.prod(nodes.size for nodes in axes.values()) > MAX_NODES:
         raise ParameterError(", ".join(axes), "their product", f"at most {MAX_NODES} nodes in all")
@@ -137,7 +137,7 @@ def _roller_of(what: Any) -> Scene | Cylinder:
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
     """Return all fields on the nodes of a grid.
 
-    roller: of the grid.  axes: V, delta and perhaps alpha -> nodes.  method: "table" or "direct".
+    roller: roller of the grid.  axes: V, delta and perhaps alpha -> nodes.  method: "table" or "direct".
 
     Returns field -> values over all axes, or over V and alpha for fields that do not depend on the creepage.
     """
@@ -153,8 +153,8 @@ def _evaluate(
 ) -> dict[str, Floats]:
     """Return fields of the contact by name.
 
-    roller: of the grid.  points: V, and perhaps delta (else 0) and alpha (else that of the roller), which broadcast.
-    names: of the fields.  method: "table" or "direct".
+    roller: roller of the grid.  points: V, and perhaps delta (else 0) and alpha (else that of the roller), which
+    broadcast. names: names of the fields.  method: "table" or "direct".
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
     creep = points.get("delta", np.zeros(1))
@@ -164,7 +164,7 @@ def _evaluate(
 def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
     """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields.
 
-    table: the grid.  roller: of the grid, for the exact values at random points.
+    table: the grid.  roller: roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)
     for key, linear in (("spline_error", False), ("linear_error", True)):
@@ -181,8 +181,8 @@ def errors_at(
 ) -> dict[str, Floats]:
     """Return the absolute errors of interpolation in a grid, field -> errors.
 
-    table: the grid.  roller: of the grid.  points: axis -> coordinates, (n,).  linear: whether interpolation is linear,
-    else by splines.
+    table: the grid.  roller: roller of the grid.  points: axis -> coordinates, (n,).  linear: whether interpolation
+    is linear, else by splines.
     """
     exact = _evaluate(roller, points, schema.VOLUME + schema.PLANE)
     found = Interpolant(table, linear)(**points)
@@ -192,7 +192,7 @@ def errors_at(
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid, axis -> coordinates, (count,); of one node always that.
 
-    table: the grid.  count: number of points.  seed: of the generator.
+    table: the grid.  count: number of points.  seed: seed of the generator.
     """
     random = np.random.default_rng(seed)
     points = {}
@@ -209,8 +209,8 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
 def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the law.
 
-    table: the grid.  roller: of the grid.  Differences are relative for :data:`RELATIVE_FIELDS`, else divided by the
-    largest value of the field.
+    table: the grid.  roller: roller of the grid.  Differences are relative for :data:`RELATIVE_FIELDS`, else divided
+    by the largest value of the field.
     """
     rows = _evaluate_nodes(roller, {name: table[name].values for name in schema.axes_of(table)}, "table")
     found = {}

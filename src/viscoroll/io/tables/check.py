@@ -33,8 +33,8 @@ ROUNDING = 2e-15
 class Check(NamedTuple):
     """A largest difference and its bound.
 
-    name : of the check.  measured : largest difference.  allowed : its bound.  meaning : words: of which quantity, in
-    which unit, at which points.
+    name : name of the check.  measured : largest difference.  allowed : its bound.  meaning : words: of which
+    quantity, in which unit, at which points.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Report:
         return all(check.passed for check in self.checks)
 
     def __str__(self) -> str:
+        """Return a line for each check with the measured and the allowed difference, and the verdict."""
         width = max(len(check.name) for check in self.checks)
         lines = [
             f"{c.name:<{width}} {c.measured:9.2e} {c.allowed:9.2e}  {'ok' if c.passed else 'EXCEEDED':<8}  {c.meaning}"
@@ -82,10 +83,11 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
 
     Parameters
     ----------
-    table : of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one relaxation
+    table : dataset of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one
+    relaxation
         time, or of :func:`viscoroll.io.tables.load`.
     count : number of random points, >= 1.
-    seed : of the random points, >= 0.
+    seed : seed of the random points, >= 0.
 
     Returns
     -------
@@ -121,7 +123,7 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
-        raise FileError(source, "is no grid of a scene with an alpha, and states its errors by itself")
+        raise FileError(source, "is not a grid of a scene with an alpha: only such grids can be compared with the law")
     scene = Scene(alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"])
     nodes = differences(table, scene)
     splines = errors_at(table, scene, random_points(table, count, seed))

@@ -33,7 +33,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
     Parameters
     ----------
-    table : of :func:`law`, :func:`build` or :func:`load`.
+    table : dataset of :func:`law`, :func:`build` or :func:`load`.
     path : its suffix is that of the format: of either .nc, or .cdf for readers without HDF5; of a law .h (C99 and C++:
         table and evaluator in one header) or .json; of a grid .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or
         .mat (MATLAB, Simulink).
@@ -84,7 +84,7 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     """Write a grid ``table`` to ``path``: Q over (V, delta) for CombiTable2D, M over V for CombiTable1D blocks."""
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if schema.axes_of(plane) != ("V", "delta"):
-        allowed = "one over (V, delta): a Modelica table has two inputs; table.sel(alpha=...) is at one alpha"
+        allowed = "a grid on (V, delta): a Modelica table has two inputs; table.sel(alpha=...) is at one alpha"
         raise ParameterError("table", f"over {', '.join(schema.axes_of(table))}", allowed)
     V, delta = table["V"].values, table["delta"].values
     matrices = {
@@ -158,7 +158,7 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
     """
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-        raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
+        raise ParameterError("path", path, "a file name that is a valid C identifier, for example rubber.h")
     table = parse_law(dataset_content(dataset), path)
     front = table.record.rows[:8]
     arrays = {f"{name}_coefficients": table.coefficients}

@@ -46,6 +46,10 @@ class Interpolant:
     """
 
     def __init__(self, table: xr.Dataset, linear: bool = False) -> None:
+        """Check a table and choose its axes and bounds; splines are computed at the first use of a field.
+
+        table, linear : as of the class.  Raises FileError if it is not a table.
+        """
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
         # Files of versions before 1.2 state the errors of linear interpolation in V, delta and alpha.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...contact_law.contact_table import evaluate_law
 from ...core.array_types import Floats
-from ...core.errors import ParameterError, exactly_one_error
+from ...core.errors import ParameterError, check_one_given
 from ...cylinder import Cylinder
 from ...materials.law import alpha_axis
 from ...materials.law.cover_rows import solve_at_speed
@@ -70,12 +70,11 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     >>> table.attrs["viscoroll_table"]
     'law'
     """
-    if (alpha is None) == (material is None):
-        raise exactly_one_error("material", "alpha", both=alpha is not None)
+    check_one_given(material=material, alpha=alpha)
     table: LawTable | alpha_axis.LawAxis
     if alpha is not None:
         if base is not None or np.shape(alpha) != (2,):
-            raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
+            raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest value, for example (1, 4096)")
         table = alpha_axis.law_axis(*alpha)
     elif isinstance(material, Cylinder):
         pair = material.pair
@@ -98,7 +97,7 @@ def measured_errors(
     ----------
     table : a law, or that of every alpha, of which random alphas are tested.
     count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave.
-    seed : of the points.
+    seed : seed of the points.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):

@@ -30,7 +30,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     Parameters
     ----------
     low, high : ends.
-    count : of numbers, with the ends.
+    count : number of values, both ends among them.
     spacing : "linear" or "log".
 
     Returns
@@ -49,7 +49,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     array([0.01, 0.1 , 1.  ])
     """
     check_choice("spacing", spacing, "linear", "log")
-    low = check_number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
+    low = check_number("low", low, above=0.0 if spacing == "log" else -np.inf)
     high = check_number("high", high)
     if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
@@ -65,7 +65,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     ----------
     what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`.
     V : speeds of the grid, > 0; of a Cylinder in m/s.
-    count : of nodes, odd, at least 5.
+    count : number of nodes, odd, at least 5.
     alpha : those of the grid, in place of that of a scene without a material.
 
     Returns
@@ -89,7 +89,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
         raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
     roller: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
-    speeds = increasing("V", V, low=0.0, strict=True)
+    speeds = increasing("V", V, above=0.0)
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
     star = np.sort(np.ravel(roller.contact(speeds, delta=0.0, fields="delta_star").delta_star))
     creep = np.linspace(0.0, _END_RATIO * star[-1], _DENSITY_POINTS)
@@ -102,8 +102,8 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     """Return the nodes of an axis as a new vector.
 
-    name: of the axis.  nodes: what a caller gave.  bounds: as of :func:`.checks.check_array`.  Raises ParameterError
-    for nodes that are out of range or do not increase strictly.
+    name: name of the axis.  nodes: what a caller gave.  bounds: as of :func:`.checks.check_array`.  Raises
+    ParameterError for nodes that are out of range or do not increase strictly.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():

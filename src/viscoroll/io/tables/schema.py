@@ -60,7 +60,7 @@ def fields_of(table: xr.Dataset) -> tuple[str, ...]:
 def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
     """Return a variable with long_name, units, symbol, range, equation and reference.
 
-    name: of the quantity.  dims: its axes.  values: array.  si: whether it is in SI units, else dimensionless.
+    name: name of the quantity.  dims: its axes.  values: array.  si: whether it is in SI units, else dimensionless.
     """
     import xarray as xr
 
@@ -72,7 +72,8 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
 def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
     """Return the global attributes of a grid that is computed now.
 
-    title: of the grid.  grid: its axes in words.  command: that computed it; default: the command line of this process.
+    title: title of the grid.  grid: its axes in words.  command: command that computed it; default: the command line
+    of this process.
     """
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {
@@ -96,7 +97,7 @@ def check(table: Any, path: Any) -> None:
     Parameters
     ----------
     table : dataset.
-    path : of its file, for messages.
+    path : path of its file, for messages.
 
     Raises
     ------
@@ -105,17 +106,19 @@ def check(table: Any, path: Any) -> None:
     """
     about = getattr(table, "attrs", {})
     if about.get(KIND) not in KINDS:
-        raise FileError(path, f"is no table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
+        raise FileError(path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
     version, major = about.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
-        problem = f"is a table of schema {version!s:.20}, and this viscoroll ({__version__}) reads {major}.x"
+        problem = f"has the table schema {version!s:.20}, but viscoroll {__version__} reads {major}.x"
         raise FileError(path, f"{problem}: build it again, or install the version that wrote it")
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
-            raise FileError(path, f"is no whole table: variable {name!r} is missing")
+            raise FileError(path, f"is an incomplete table: variable {name!r} is missing")
         if tuple(dim for dim in axes if dim in table[name].dims) != table[name].dims:
-            raise FileError(path, f"variable {name!r} has dimensions {table[name].dims}, out of {axes} in this order")
+            raise FileError(
+                path, f"variable {name!r} has the dimensions {table[name].dims}, out of {axes} in this order"
+            )
         values = table[name].values
         if values.dtype != np.float64 or not np.isfinite(values).all():
             raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")

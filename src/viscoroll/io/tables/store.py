@@ -98,7 +98,7 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
     try:
         table = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False)
     except Exception as error:  # libraries raise errors of many kinds
-        problem = f"is damaged, or no table of viscoroll ({' '.join(str(error).split()):.120}): build it again"
+        problem = f"is damaged or is not a table of viscoroll ({' '.join(str(error).split()):.120}): build it again"
         raise FileError(path, problem) from error
     check(table, path)
     return table

@@ -47,9 +47,12 @@ def _attribute(context, builder, kind, reference, name):
 
 
 def _load(context, builder, kind, at):
-    """Return the value of type ``kind`` at the address ``at``, field by field.
+    """Return instructions that load the value of a type from an address, field by field.
 
-    context, builder : of numba's lowering.  LLVM removes the fields that are not used.
+    context, builder : numba's context of code generation, and builder of LLVM.
+    kind : numba's type of the value.  at : its address, a value of LLVM.
+
+    LLVM removes the fields that are not used.
     """
     if not isinstance(kind, (types.NamedTuple, types.Array)):
         return builder.load(at)

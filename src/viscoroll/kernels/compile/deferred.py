@@ -29,7 +29,8 @@ _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "Wit
 
 @contextmanager
 def _memoized_types(typing):
-    """Keep the types of operations on numbers, which numba resolves again at each sum of two floats.
+    """Keep, within a ``with`` block, the types of operations on numbers, which numba resolves again at each sum of
+    floats.
 
     typing : numba's typing context.
     """
@@ -55,7 +56,10 @@ def _memoized_types(typing):
 
 @contextmanager
 def _without_garbage_collection():
-    """Switch garbage collection off: numba makes millions of objects that live until it ends, and it took a tenth."""
+    """Switch Python's garbage collection off within a ``with`` block.
+
+    numba makes millions of objects that live until the compilation ends; collecting took a tenth of its time.
+    """
     enabled = gc.isenabled()
     gc.disable()
     try:
@@ -103,9 +107,11 @@ class EntryPipeline:
 
 
 def defer(whole, options: dict[str, Any]):
-    """Make other kernels that call this one compile with its part.
+    """Let other kernels that call this one compile against its separately compiled part, instead of compiling it
+    again.
 
-    whole : the dispatcher of the kernel, changed.  options : of numba, for the part.
+    whole : numba's dispatcher of the kernel, changed.
+    options : options of ``numba.njit`` for the part.
     """
     plain = type(whole)
 
@@ -191,7 +197,7 @@ def _pipelines():
 
 
 def _link(library, module):
-    """Link into a module what a library and the parts below it call, each library once.
+    """Add to a module of LLVM the libraries that a library calls, directly or not, each once.
 
     library : numba's library.  module : LLVM's module, changed.
     """

@@ -35,7 +35,9 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def _without_home() -> Path:
-    """Return the folder of a user without a home directory, and warn of it once."""
+    """Return the cache folder of a user without a home directory, in the folder of temporary files, and warn of it
+    once.
+    """
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
     folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
     warnings.warn(

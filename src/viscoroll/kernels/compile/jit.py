@@ -40,7 +40,10 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
 
 
 def _compile_exclusively(dispatcher) -> None:
-    """Let no two processes compile the function of ``dispatcher`` for one signature at the same time."""
+    """Make the compilation of a kernel wait while another process compiles it for the same signature.
+
+    dispatcher : numba's dispatcher of the kernel, changed.
+    """
     plain = dispatcher.compile
 
     def compile_exclusively(signature):

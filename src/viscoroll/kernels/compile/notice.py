@@ -9,7 +9,7 @@ announced = False
 
 
 def announce_compiling() -> None:
-    """Print, once a process, that compiling begins; the first kernel does not know how many follow."""
+    """Print, once a process, that kernels are being compiled; how many will follow is not known."""
     global announced
     if announced or is_quiet():
         return
@@ -28,7 +28,9 @@ def is_quiet() -> bool:
 
 
 def is_worker() -> bool:
-    """Return whether this process computes for another one, which prints the line itself."""
+    """Return whether this process works for another one (multiprocessing or dask), which prints and warns in its
+    place.
+    """
     if multiprocessing.parent_process() is not None:
         return True
     distributed = sys.modules.get("distributed")

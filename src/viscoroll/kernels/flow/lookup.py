@@ -63,11 +63,14 @@ _GAUSS_W = gauss(5)[1]
 
 @inline_kernel
 def full_slip_integrals(V, level, flow):
-    """Time and distance of sliding from rest to V in the mirrored frame.
+    """Return time and distance of sliding from rest to V, and delta_star |V|, in the mirrored frame (omega > V).
 
-    V : speed of the axis.  level : SPEEDS, PATH or LOSS; X is computed from PATH on.  flow : the map.
+    V : speed of the axis.
+    level : SPEEDS, PATH (and distance) or LOSS (and slip loss).
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
-    Returns (T with the sign of V, X, delta_star |V|).
+    Returns (T, X, limit): time gamma t with the sign of V; distance, computed from level PATH on, else 0; delta_star
+    |V|.
     """
     speed = abs(V)
     row, t, _ = locate_octave(flow.kappa * speed, layout.LOW)
@@ -91,9 +94,11 @@ def speed_at_slide_time(T, flow):
 
 @kernel
 def slide_distance(start, tau, flow):
-    """Distance of sliding for the time tau.
+    """Return the distance of sliding for the time tau from a given state of full slip.
 
-    start : (T, X) at the beginning.  tau : time, > 0.  flow : the map.
+    start : (T, X) at the beginning: integrals of time and distance of full slip from rest to the speed there.
+    tau : time, > 0.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     The difference of X, or the integral of V where that difference cancels.
     """
@@ -108,9 +113,11 @@ def slide_distance(start, tau, flow):
 
 @inline_kernel
 def read_onset(I, level, flow):
-    """State at the onset of partial slip of a sliding motion, in the mirrored frame.
+    """Return the state at the onset of partial slip of a sliding motion, in the mirrored frame (omega > V).
 
-    I : V - j omega - 2 mu T, constant while sliding.  level : SPEEDS, PATH or LOSS; X from PATH on.  flow : the map.
+    I : V - j omega - 2 mu T, constant while sliding.
+    level : SPEEDS, PATH (and distance) or LOSS (and slip loss); X from PATH on.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     Returns (V, T, X); V = 0 outside the tables.
     """
@@ -126,12 +133,12 @@ def read_onset(I, level, flow):
 
 @inline_kernel
 def _locate_on_manifold(slow_log):
-    """Locate a slow logarithm in the table of the slow manifold.
+    """Return the position of a slow logarithm in the table of the slow manifold.
 
-    slow_log : slow logarithm of V.
+    slow_log : slow logarithm of V, the coordinate along the slow manifold (:mod:`.layout`).
 
-    Returns (position of the row, t in [-1, 1), factor): below the table all values fall as exp(slow_log), by the
-    factor.
+    Returns (position, t, factor): position of the row in the map's vector; argument in [-1, 1) of its polynomials;
+    factor of the values, 1 inside the table.  Below the table all values fall as exp(slow_log).
     """
     if slow_log >= 0.0:
         row, t, _ = locate_octave(1.0 + slow_log, 0)
@@ -162,10 +169,12 @@ def _remaining_path(slow_log, table):
 
 @kernel
 def manifold_path(start, span, rate, table):
-    """Distance and angle along the slow manifold while the slow logarithm falls by ``span``.
+    """Return distance and angle along the slow manifold while the slow logarithm falls by ``span``.
 
-    start : slow logarithm at the beginning.  span : its decrease.  rate : its decrease in unit time.  table : the
-    map's vector.
+    start : slow logarithm at the beginning.
+    span : its decrease.
+    rate : its decrease in unit time.
+    table : vector with all tables of the map.
 
     Returns (distance, angle): the difference of the remaining path, or the integral of V where that difference
     cancels.
@@ -205,9 +214,12 @@ def asymptote_on_manifold(slow_log):
 
 @inline_kernel
 def read_asymptote(family, v, level, flow):
-    """The asymptote of the motion that enters partial slip at v = kappa V.
+    """Return the asymptote on the slow manifold of the motion that enters partial slip at v = kappa V.
 
-    family : PLUS or MINUS.  v : kappa V at onset.  level : SPEEDS, PATH or LOSS.  flow : the map.
+    family : PLUS or MINUS.
+    v : kappa V at onset.
+    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     Returns an :class:`Asymptote`; quantities beyond ``level`` are 0.
     """
@@ -250,9 +262,11 @@ def _evaluate_in_t(p, t):
 
 @inline_kernel
 def layer_value_and_slopes(table, column, at, t, s):
-    """Value and slopes of one column of a layer.
+    """Return value and slopes of one quantity of the boundary layer behind the onset of partial slip.
 
-    table : the map's vector.  column : LAYER_LN_V to LAYER_LOSS.  at, t, s : position from :func:`locate_in_layer`.
+    table : vector with all tables of the map.
+    column : the quantity, LAYER_LN_V to LAYER_LOSS.
+    at, t, s : position from :func:`locate_in_layer`.
 
     Returns (value, slope in t (speed at onset), slope in s (layer coordinate)).
     """
@@ -278,10 +292,13 @@ def layer_value(table, column, at, t, s):
 
 @kernel
 def layer_state(stick, asymptote, elapsed, level, flow):
-    """State within the boundary layer.
+    """Return the state of a motion within the boundary layer behind the onset of partial slip.
 
-    stick : the :class:`StickOnset`.  asymptote : its :class:`Asymptote`.  elapsed : time since the onset, gamma t.
-    level : SPEEDS, PATH or LOSS.  flow : the map.
+    stick : :class:`StickOnset`: speed, time and path at the onset.
+    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    elapsed : time since the onset, gamma t.
+    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     Returns (V, delta, distance, angle, slip loss); the last three since the onset.
     """
@@ -301,9 +318,10 @@ def layer_state(stick, asymptote, elapsed, level, flow):
 
 @kernel
 def slow_log_at_rest(rest, flow):
-    """Slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold.
+    """Return the slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold.
 
-    rest : threshold, > 0; beyond the tables their highest speed counts.  flow : the map.
+    rest : threshold, > 0; beyond the tables their highest speed counts.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
     """
     rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
     for _ in range(4):

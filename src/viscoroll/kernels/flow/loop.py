@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
-from ..motion.workspace import AT_REST, CAME_TO_REST, COMPLETED, FULL_SLIP, PARTIAL_SLIP
+from ..motion.records import AT_REST, CAME_TO_REST, COMPLETED, FULL_SLIP, PARTIAL_SLIP
 from ..rows.contact_states import element
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .lookup import (
@@ -71,8 +71,11 @@ def _write_rest(at, x, angle, loss, out):
 def _start_in_full_slip(frame, V, omega, start, level, flow):
     """Locate the onset of partial slip of a motion that starts in full slip.
 
-    frame : +1, or -1 where the motion is mirrored.  V, omega : initial speeds in the mirrored frame, omega > V.
-    start : (T, X) of the table of full slip at V.  level : SPEEDS, PATH or LOSS.  flow : the map.
+    frame : +1, or -1 where the motion is mirrored.
+    V, omega : initial speeds in the mirrored frame, omega > V.
+    start : (T, X), time and distance of sliding from rest to V, from the table of full slip.
+    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     Returns (:class:`FullSlipStart`, :class:`StickOnset`, whether the map covers the motion).
     """
@@ -93,7 +96,10 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
 def _start_in_partial_slip(V0, omega0, edge, level, flow):
     """Locate the earlier onset of partial slip of a motion that starts inside the stick zone.
 
-    V0, omega0 : initial speeds.  edge : delta_star at V0.  level : SPEEDS, PATH or LOSS.  flow : the map.
+    V0, omega0 : initial speeds.
+    edge : delta_star at V0.
+    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     Returns (:class:`StickOnset` at a time <= 0, its :class:`Asymptote`, whether the map covers the motion).
     """
@@ -114,8 +120,13 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
 def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     """Write the outputs before the onset of partial slip, and return the next column.
 
-    at : first column to write.  tau_out : output times, gamma t, ascending.  until : time of the onset.
-    slide : the :class:`FullSlipStart`.  level : SPEEDS, PATH or LOSS.  flow : the map.  out : outputs (ROWS, times).
+    at : first column to write.
+    tau_out : output times, gamma t, ascending.
+    until : time of the onset.
+    slide : the :class:`FullSlipStart`.
+    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    out : outputs (ROWS, times).
     """
     mu, per_j = flow.mu, 1.0 / flow.j
     frame, w, T0, X0 = slide
@@ -139,9 +150,13 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
 def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     """Write the outputs in partial slip up to a time, and return the next column.
 
-    at : first column to write.  tau_out : output times, gamma t, ascending.  until : last time.
-    stick : the :class:`StickOnset`.  asymptote : its :class:`Asymptote`.  level : SPEEDS, PATH or LOSS.  flow : the
-    map.
+    at : first column to write.
+    tau_out : output times, gamma t, ascending.
+    until : last time.
+    stick : :class:`StickOnset`: speed, time and path at the onset.
+    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
     out : outputs (ROWS, times).
     """
     frame = stick.frame
@@ -173,9 +188,13 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     """Write all outputs from the onset of partial slip to the end, or to rest.
 
-    at : first column to write.  tau_out : output times, gamma t, ascending.  stick : the :class:`StickOnset`.
-    asymptote : its :class:`Asymptote`.  request : the :class:`Request`.  flow : the map.  out : outputs (ROWS,
-    times).
+    at : first column to write.
+    tau_out : output times, gamma t, ascending.
+    stick : :class:`StickOnset`: speed, time and path at the onset.
+    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    request : :class:`.records.Request`: quantities and rest threshold.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    out : outputs (ROWS, times).
 
     Returns (status, time of rest or NaN), as gamma t.
     """
@@ -203,8 +222,11 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
 def look_up_motion(V0, omega0, tau_out, request, flow, out):
     """Look up one motion.
 
-    V0, omega0 : initial speeds.  tau_out : output times, gamma t, ascending.  request : the :class:`Request`.
-    flow : the map.  out : outputs (ROWS, times), written.
+    V0, omega0 : initial speeds.
+    tau_out : output times, gamma t, ascending.
+    request : :class:`.records.Request`: quantities and rest threshold.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    out : outputs (ROWS, times), written.
 
     Returns (status, time of onset, time of rest), times as gamma t, NaN where there is none.
     """
@@ -245,8 +267,10 @@ def look_up_motions(flow, motions, result, start, stop):
     """Look up the motions start..stop and write them into ``result``; a motion outside the map has the status
     NOT_COVERED.
 
-    flow : the map.  motions : record :class:`.records.Motions`.  result : arrays
-    (:class:`viscoroll.motion.flow.FlowResult`).  start, stop : range of motions.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    motions : record :class:`.records.Motions`.
+    result : arrays (:class:`viscoroll.motion.flow.FlowResult`).
+    start, stop : range of motions.
     """
     gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j

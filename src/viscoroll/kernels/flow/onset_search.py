@@ -27,14 +27,15 @@ _HIGHEST_U = 2.0**layout.LAYER_HIGH * (1.0 - 2.0**-50)
 
 @kernel
 def _initial_u(size, slow, turns):
-    """Initial guess of the layer coordinate u at which |delta| has fallen to a given value, by Carter's elastic law.
+    """Return the first guess of the layer coordinate u at which |delta| has fallen to a given value, by Carter's
+    law.
 
     size : |delta|/delta_star of the start, negative beyond delta = 0.
     slow : the same on the slow manifold at the speed of the start, with the same sign convention.
     turns : whether motions of this family pass delta = 0 (then the layer has a split there).
 
-    Returns u, dimensionless.  With r = 1 - |delta|/delta_star the traction is 1 - r^2, so that dr/dE = (a^2 - r^2)/2
-    where a^2 is 1 minus the traction on the slow manifold.
+    Returns u, dimensionless.  Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction
+    is 1 - r^2, so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
     """
     traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)
     a = np.sqrt(1.0 - traction)
@@ -58,7 +59,10 @@ def _clamp(x, low, high):
 def find_onset(V, delta, edge, flow):
     """Find the onset of partial slip from which a state inside the stick zone would have come.
 
-    V : speed of the axis, > 0.  delta : creepage.  edge : delta_star at V.  flow : the map (:class:`.records.Flow`).
+    V : speed of the axis, > 0.
+    delta : creepage.
+    edge : delta_star at V.
+    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
     Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the
     slow manifold E is infinite and the speed is that of the state.  Newton's iteration in ln V at onset and in u,

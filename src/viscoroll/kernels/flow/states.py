@@ -17,10 +17,13 @@ STIFFNESS = 3
 
 @kernel
 def states(V, delta, kappa, mu, law, out):
-    """Evaluate the law at states inside the stick zone.
+    """Evaluate the law at states inside the stick zone, |delta| < delta_star.
 
-    V : speeds, > 0, (n,).  delta : creepage, |delta| < delta_star, (n,).  kappa, mu : parameters of the scene.
-    law : record of the law's rows.  out : (4, n), written: delta_star, M, Q, dQ/d delta.
+    V : speeds, > 0, (n,).
+    delta : creepage, |delta| < delta_star, (n,).
+    kappa, mu : slenderness R/l0 and coefficient of friction.
+    law : :class:`..rows.record.Law` of the material.
+    out : (4, n), written: delta_star, M, Q, dQ/d delta.
     """
     for i in range(V.size):
         u = kappa * V[i]

@@ -4,9 +4,11 @@
 
 From the equations to the entry from Python:
 
-- :mod:`workspace`: records, codes and array layouts
+- :mod:`records`: records, codes, columns of a segment of the drive; without numba
+- :mod:`workspace`: rows of numbers at the nodes of a step
 - :mod:`drive`: force, torque, brake and prescribed speed at a time
-- :mod:`rhs`: right-hand side in full and in partial slip, with its derivatives
+- :mod:`law`: the contact law at a state: rolling moments, creepage, slip, added mass
+- :mod:`rhs`: right-hand side in full and in partial slip, with its derivatives; the forces that act
 - :mod:`collocation`: Radau IIA nodes, matrices, dense output
 - :mod:`predictor`, :mod:`step`, :mod:`error_estimate`, :mod:`step_control`: one step by Newton's iteration, the values
   that it starts from, its error, its length

@@ -15,20 +15,16 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.by_reference import by_value
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..rows.cover import is_cover
-from ..rows.evaluate import limits_at_rest
 from .collocation import NODE_FRACTIONS, N
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
+from .law import added_inertia, low_speed_limits, rest_limits
 from .output import accept_step, write_column, write_quadrature
-from .rhs import added_inertia, current_rates, low_speed_limits
+from .records import AT_REST, CAME_TO_REST, COMPLETED, N_QUADRATURES, PARTIAL_SLIP, State, Step, StepState
+from .rhs import current_rates
 from .step_control import moderate_speed
 from .workspace import (
-    AT_REST,
-    CAME_TO_REST,
-    COMPLETED,
-    N_QUADRATURES,
-    PARTIAL_SLIP,
     REST_TIME,
     ROW_DENSE_OMEGA_OR_D,
     ROW_DENSE_V,
@@ -37,36 +33,40 @@ from .workspace import (
     ROW_P_DIAGONAL,
     ROW_P_RATE,
     ROW_V,
-    State,
-    Step,
-    StepState,
-    count_step,
+    last_output_tau,
+    set_step_length,
 )
 
-#: relative distance from an equilibrium at which a motion has reached it, divided by rtol: the distance adds nothing to
-#: the errors of the steps before
+#: A motion has reached an equilibrium at this relative distance of V divided by rtol: the distance adds nothing that
+#: counts to the errors of the steps before.
 _NEAR_EQUILIBRIUM = 1e-3
-#: smallest such distance that rounding allows
+#: Smallest such distance that rounding leaves, dimensionless.
 _NEAR_ROUNDING = 1e-14
-#: distance from an equilibrium of V, in units of that above, below which the equilibrium is evaluated
+#: The equilibrium is evaluated only where V is within this multiple of that distance by p' and p at node 0, which are
+#: stored; p is only about dp/dV times V.
 _EQUILIBRIUM_CHECK = 2.0
-#: V below which it decays exponentially, in units of rtol times the moderate speed
+#: V divided by rtol and by the moderate speed, below which V decays exponentially: M/V then differs from its limit at V
+#: = 0 by about 1e-4 rtol, as M is linear in V up to terms of the order kappa V.
 _COASTING_SPEED = 1e-4
-#: |d| below which V decays exponentially, divided by rtol
+#: |d| divided by rtol, below which V decays exponentially: the part j k L d V of p is then below rtol V for j k up to
+#: 100.
 _COASTING_D = 1e-2
 
 
-@kernel(inline=True)
+@inline_kernel
 def equilibrium_tolerance(rtol):
-    """Return the relative distance of V from its equilibrium at which a motion has reached it."""
+    """Return the relative distance of V from its equilibrium at which V has reached it; rtol: tolerance."""
     return max(_NEAR_EQUILIBRIUM * rtol, _NEAR_ROUNDING)
 
 
-@kernel(inline=True)
+@inline_kernel
 def may_be_at_equilibrium(noise, work):
     """Return whether V at node 0 may be at its equilibrium, by the derivative of p' in V alone.
 
-    noise: rounding error of p'.  p is about dp/dV times V.
+    p is about dp/dV times V: so the distance is p' divided by dp'/dp.
+
+    noise: float, rounding error of p', dimensionless.
+    work: Workspace, with node 0.
     """
     nodes, tolerance = work.nodes, equilibrium_tolerance(work.options.rtol)
     return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[ROW_P_DIAGONAL] * abs(nodes[ROW_P])
@@ -74,11 +74,16 @@ def may_be_at_equilibrium(noise, work):
 
 @kernel
 def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
-    """Return (whether V has reached its equilibrium in full slip, State there).
+    """Return the equilibrium of V in full slip, if V has reached it.
 
-    state, rates: State and Rates at the present time; regime: Regime; noise: rounding error of p'; tolerance:
-    relative distance of V at which it has reached its equilibrium. Only where omega does not approach V, nor 0 under
-    a brake, and no feedback of omega acts; else (False, state).
+    It counts only where omega does not approach V, nor 0 under a brake, and no feedback of omega acts.
+
+    state: State, the present one.
+    rates: Rates, at that state.
+    regime: Regime, of full slip.
+    noise: float, rounding error of p', dimensionless.
+    tolerance: float, relative distance of V at which it has reached its equilibrium.
+    Returns (whether it has, State after Newton's step to it); (False, state) where it does not count.
     """
     if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
         return False, state
@@ -92,30 +97,25 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
 def find_equilibrium(state, regime, noise, step_state, work):
     """Return the stable equilibrium of the present drive, if a motion has reached it.
 
-    Parameters
-    ----------
-    state, regime, step_state, work : State, Regime, StepState, Workspace
-        The motion, with V > 0.
-    noise : float
-        Rounding error of p' where that is 0, dimensionless.
+    It has if Newton's step to it is below the tolerance, of V relative to itself and of d, or below rounding.
 
-    Returns
-    -------
-    (bool, State)
-        Whether Newton's step to an equilibrium is below :func:`equilibrium_tolerance`, of V relative to itself and
-        of d, or below rounding, and the equilibrium is stable; the state after that step.  False in partial slip
-        with a speed prescribed.
+    state: State, the present one, with V > 0.
+    regime: Regime, at that state.
+    noise: float, rounding error of p' where that is 0, dimensionless.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    Returns (whether it has, State after that step); (False, state) where the equilibrium is not stable, or in partial
+    slip with a speed prescribed.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
     if regime.full_slip:
         return _equilibrium_full_slip(state, rates, regime, noise, tolerance)
-    if (
-        load.inverse_mass == 0.0 or load.inverse_inertia == 0.0
-    ):  # one speed is prescribed: p' does not depend on the other
+    # Where one speed is prescribed, p' does not depend on the other.
+    if load.inverse_mass == 0.0 or load.inverse_inertia == 0.0:
         return False, state
     gains, p_d = load.gains, rates.dp_dd
-    # p' depends on d by the feedback of omega; Newton's matrix of a step neglects this
+    # p' depends on d by the feedback of omega, which Newton's matrix of a step neglects.
     p_rate_d = rates.dp_rate_dd + load.inverse_inertia * (gains.force_omega + gains.torque_omega) * p_d
     d_rate, d_V, d_d = rates.weighted_rate / V, rates.drate_dV / V, rates.drate_dd / V
     V_rate = (rates.p_rate - p_d * d_rate) / rates.dp_dV
@@ -126,50 +126,50 @@ def find_equilibrium(state, regime, noise, step_state, work):
     V_off, d_off = (V_rate * d_d - d_rate * V_d) / determinant, (d_rate * V_V - V_rate * d_V) / determinant
     rounding = abs(noise / (rates.dp_dV * determinant))
     steady = abs(V_off) <= tolerance * V + rounding * abs(d_d) and abs(d_off) <= tolerance + rounding * abs(d_V)
-    # where force and torque cancel, V = 0 but for rounding
+    # Where force and torque cancel, V is 0 but for rounding.
     return steady, State(max(V - V_off, 0.0), state.omega_or_d - d_off)
 
 
 @kernel
 def continue_at_equilibrium(end, noise, state, regime, step_state, work):
-    """Write the outputs up to the end of a segment if a motion has reached its equilibrium; omega is linear in full
-    slip.
+    """Write the outputs up to the end of a segment if a motion has reached its equilibrium.
 
-    Parameters
-    ----------
-    end : float
-        tau at the end of the segment.
-    noise : float
-        As in :func:`find_equilibrium`.
-    state, regime, step_state, work : State, Regime, StepState, Workspace
-        The motion, with V > 0.
+    V is constant there, and d in partial slip; omega is linear in full slip.
 
-    Returns
-    -------
-    (bool, State, StepState)
-        Whether it has; state and step state at the end of the segment, one step later, or unchanged.
+    end: float, tau at the end of the segment.
+    noise: float, rounding error of p', dimensionless.
+    state: State, the present one, with V > 0.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion; nodes and outputs are written.
+    Returns (whether it has, State, StepState): at the end of the segment, one step later, or unchanged.
     """
-    steady, state_there = find_equilibrium(state, regime, noise, step_state, work)
+    steady, equilibrium = find_equilibrium(state, regime, noise, step_state, work)
     if not steady:
         return False, state, step_state
-    state = state_there
+    state = equilibrium
     rates = current_rates(state, regime, step_state, work)
     omega_change = rates.weighted_rate * (end - step_state.tau) if regime.full_slip else 0.0
     nodes, step = work.nodes, Step(step_state.tau, end - step_state.tau, step_state.segment, True, False)
     for i in range(N + 1):
         nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i] = state.V, state.omega_or_d + omega_change * NODE_FRACTIONS[i]
         nodes[ROW_DENSE_V + i] = nodes[ROW_DENSE_OMEGA_OR_D + i] = 0.0
-    nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # linear in v = 0 ... 2
+    nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # The change is linear in v = 0 ... 2.
     store_drive(step, work)
-    step_state = count_step(0.0, step_state)
+    step_state = set_step_length(0.0, 1, step_state)
     return True, State(state.V, state.omega_or_d + omega_change), accept_step(end, 2.0, step, regime, step_state, work)
 
 
-@kernel(inline=True)
+@inline_kernel
 def is_coasting(state, regime, step_state, work):
-    """Return whether at most feedback drives any more and V decays exponentially up to a fraction of the tolerance.
+    """Return whether V decays exponentially up to a fraction of the tolerance.
 
-    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    It does in slow rolling where no force or torque acts, or only feedback that does not outweigh the resistance.
+
+    state: State, the present one.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
     """
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
@@ -180,18 +180,40 @@ def is_coasting(state, regime, step_state, work):
 
 
 @kernel
+def _energies_of_decay(rate, inertia, torque_difference, work):
+    """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the start.
+
+    rate: float, rate of the decay per unit of tau.
+    inertia: float, factor of V' in the equation of the decay, dimensionless.
+    torque_difference: float, inertia times Q/V, dimensionless.
+    work: Workspace, of the motion.
+    Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the brake), dimensionless.
+    """
+    half_space, cylinder, force, torque = low_speed_limits(work)
+    delta_0, force_work, torque_work = rest_limits(work.scene)[1], force / rate, torque / rate
+    omega_over_V = 1.0 + delta_0
+    if is_cover(by_value(work.scene.law).cover_rows):
+        slip, rolling = delta_0 * torque_difference / (inertia * rate), (half_space + cylinder * omega_over_V) / rate
+        return slip, rolling, force_work, torque_work * omega_over_V, 0.0
+    return 0.0, 1.0 + work.scene.j + force_work + torque_work, force_work, torque_work, 0.0
+
+
+@kernel
 def coast_to_end(state, regime, step_state, work):
     """Write the outputs of the exponential decay (1 + j + gamma N) V' = -rate V with delta/V constant.
 
-    state, regime, step_state: State in partial slip, Regime and StepState at the present time; work: Workspace.
+    state: State, the present one, in partial slip.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion; outputs are written.
     Returns (status COMPLETED or CAME_TO_REST, StepState at the last output).
     """
     scene, direction = work.scene, regime.direction
     half_space, cylinder, force, torque = low_speed_limits(work)
-    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
+    L, delta_0 = rest_limits(scene)
     omega_over_V = 1.0 + delta_0
     inertia = 1.0 + scene.j * omega_over_V + added_inertia(0.0, scene)[0]
-    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments
+    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments.
     rate, stiffness = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
     torque_difference = scene.j * omega_over_V * (half_space - force) - cylinder + torque
     creep = state.V * torque_difference / stiffness * L
@@ -199,12 +221,7 @@ def coast_to_end(state, regime, step_state, work):
     tau, rest_speed, end = work.output_tau, rest_threshold(step_state.segment, work), np.inf
     if rest_speed > 0.0:
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
-    force_work, torque_work = force / rate, torque / rate
-    energies = 0.0, 0.0, 0.0, 1.0 + scene.j + force_work + torque_work, force_work, torque_work, 0.0
-    if is_cover(by_value(scene.law).cover_rows):
-        rolling = (half_space + cylinder * omega_over_V) / rate
-        slipping = delta_0 * torque_difference / (inertia * rate)
-        energies = 0.0, 0.0, slipping, rolling, force_work, torque_work * omega_over_V, 0.0
+    energies = _energies_of_decay(rate, inertia, torque_difference, work)
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
         expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
@@ -215,11 +232,13 @@ def coast_to_end(state, regime, step_state, work):
         write_column(column, speeds, code, (force * direction * V, torque * direction * V), work)
         distance = -direction * state.V * expm1_decay / (rate * scene.gamma)
         energy = 0.5 * state.V * state.V * (-expm1_decay * (1.0 + decay) if moves else 1.0)
-        for n in range(N_QUADRATURES):
-            path = distance * (omega_over_V if n == 1 else 1.0)
-            write_quadrature(column, n, path if n < 2 else energies[n] * energy, work)
-    last = tau[tau.size - 1]
-    step_state = StepState(last, tau.size, step_state.segment, step_state.n_steps, step_state.n_ended, 0.0)
-    if end <= last:
-        work.nodes[REST_TIME] = end / scene.gamma
-    return CAME_TO_REST if end <= last else COMPLETED, step_state
+        write_quadrature(column, 0, distance, work)
+        write_quadrature(column, 1, distance * omega_over_V, work)
+        for n in range(2, N_QUADRATURES):
+            write_quadrature(column, n, energies[n - 2] * energy, work)
+    last = last_output_tau(work)
+    step_state = StepState(last, tau.size, step_state.segment, step_state.n_steps, step_state.n_accepted, 0.0)
+    if end > last:
+        return COMPLETED, step_state
+    work.nodes[REST_TIME] = end / scene.gamma
+    return CAME_TO_REST, step_state

@@ -14,31 +14,21 @@ from .collocation import ROW_LENGTH
 from .drive import n_coefficients
 from .driver import integrate_motion
 from .output import N_OUTPUTS, requested_groups
-from .workspace import (
-    COL_COEFFICIENTS,
-    COL_SCALE,
-    COL_START,
-    DRIVE_RATE,
-    ROW_ONES,
-    WORKSPACE_SIZE,
-    Batch,
-    Drive,
-    Gains,
-    Options,
-    Scene,
-    Workspace,
-)
+from .records import COL_COEFFICIENTS, COL_SCALE, COL_START, DRIVE_RATE, Batch, Drive, Gains, Options, Scene, Workspace
+from .workspace import ROW_ONES, WORKSPACE_SIZE
 
-#: columns of the information on each motion
+#: Columns of the information on each motion.
 INFO_COLUMNS = ("status", "steps", "switches", "onset_time", "rest_time")
+#: Number of these columns.
+N_INFO_COLUMNS = len(INFO_COLUMNS)
 
 
 class Drives(NamedTuple):
     """Drives of many motions.
 
-    segments : (m, k, columns) over t, m = 1 for all motions or one for each
-    gains : (4, 1) or (4, n), in the order of :class:`Gains`
-    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V
+    segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of :mod:`records`
+    gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains`
+    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
     """
 
     segments: Any
@@ -48,15 +38,18 @@ class Drives(NamedTuple):
 
 @kernel
 def _value_of_motion(array, i):
-    """Return the value of motion i of an array of one value for all, or of one for each motion."""
+    """Return the value of motion ``i``; array: one value for all motions, or one for each."""
     return array[min(i, array.size - 1)]
 
 
 @kernel
 def _drive_of_motion(drives, gamma, i, segments):
-    """Write the segments of motion i over tau = gamma t to ``segments`` and return its Gains.
+    """Write the segments of one motion over tau = gamma t and return its Gains.
 
-    drives: Drives over t; gamma: scale of time of the motion; segments: (k, columns), filled.
+    drives: Drives, over t.
+    gamma: float, tau = gamma t, dimensionless.
+    i: int, index of the motion.
+    segments: (k, columns), written.
     """
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
     for k in range(segments.shape[0]):
@@ -74,10 +67,16 @@ def _drive_of_motion(drives, gamma, i, segments):
 def motion_loop(batch, drives, t, options, rows, out, info, notes):
     """Integrate all motions of a batch.
 
-    batch, drives, options: :class:`Batch`, :class:`Drives`, :class:`Options` as plain tuples: numba needs
-    microseconds to find the type of a record.
-    t: output times; rows: requested output quantities; out: [quantity, motion, time], filled; info: [motion,
-    INFO_COLUMNS], filled; notes: (switches, step_ends), filled, of the last motion.
+    Batch, Drives and Options come as plain tuples: numba needs microseconds to find the type of a record.
+
+    batch: :class:`Batch`, parameters and starts.
+    drives: :class:`Drives`, over t.
+    t: (k,), output times, dimensionless, increasing.
+    options: :class:`Options`, of the integration.
+    rows: (q,) int, requested output rows of :mod:`output`.
+    out: (q, n, k), [quantity, motion, time], filled.
+    info: (n, 5), [motion, INFO_COLUMNS], filled.
+    notes: (switches, step_ends), as in :class:`Workspace`, filled with those of the last motion.
     """
     motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
     (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes

@@ -11,30 +11,37 @@ from decimal import Decimal
 import numpy as np
 
 from ..compile.intrinsics import fma
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..numerics.interpolation import Interpolation, radau
 from ..numerics.simd4 import LANES, broadcast, fma4, load, store
 
-#: number of collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
+#: Number of collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N.  With five, errors of
+#: 1e-11 were not reached; with nine, motions took a twentieth to a tenth longer.
 N = 7
-#: length of a row: node 0 and the N collocation nodes
+#: Length of a row: node 0 and the N collocation nodes, two vectors of four numbers.
 ROW_LENGTH = N + 1
 assert ROW_LENGTH == 2 * LANES
 
+#: Interpolation through nodes 1 ... N.
 _INNER = Interpolation(radau(N, 1))
+#: Interpolation through all nodes; node 0 is at -1.
 _ALL = Interpolation((Decimal(-1), *_INNER.exact))
-#: positions t of all nodes on [-1, 1]
+#: Positions t of all nodes on [-1, 1].
 NODES = _ALL.nodes
-#: positions of all nodes as fractions of the step
+#: Positions of all nodes as fractions of the step.
 NODE_FRACTIONS = 0.5 * (1.0 + NODES)
-#: weights of the values at nodes 1 ... N in the integral from -1 to 1
+#: Weights of the values at nodes 1 ... N in the integral from -1 to 1.
 QUADRATURE_WEIGHTS = _INNER.integrals(_INNER.exact)[N - 1].copy()
-#: weights of the values at nodes 1 ... N in the value that their interpolant has at -1
+#: Weights of the values at nodes 1 ... N in the value that their interpolant has at -1.
 EXTRAPOLATION_TO_START = _INNER.values([Decimal(-1)])[0]
 
 
 def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
-    """Divide polynomials that vanish at -1 by 1 + t; powers: coefficients [power, polynomial]."""
+    """Divide polynomials in t that vanish at t = -1 by 1 + t.
+
+    powers: (n, m), coefficients of m polynomials in ascending powers of t.
+    Returns (n - 1, m), coefficients of the quotients.
+    """
     found, quotient = np.zeros_like(powers[1:]), 0.0
     for k in range(len(powers) - 1, 0, -1):
         found[k - 1] = quotient = powers[k] - quotient
@@ -42,27 +49,35 @@ def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
 
 
 def _column_major(matrix: np.ndarray) -> np.ndarray:
+    """Return a matrix as a vector, column after column, as the kernels load it; matrix: (ROW_LENGTH, ROW_LENGTH)."""
     return np.ascontiguousarray(matrix.T).ravel()
 
 
-#: matrix: values at all nodes to slopes of the interpolant there; its row of node 0 is 0, as no slope is needed there
+#: The matrix takes values at all nodes to slopes of the interpolant there; its row of node 0 is 0, as no slope is
+#: needed there.
 DIFFERENTIATION = _column_major(np.vstack([np.zeros(ROW_LENGTH), _ALL.slopes(_INNER.exact)]))
-#: matrix: values at all nodes, less that at node 0, to the coefficients of :func:`evaluate_dense_output`
+#: The matrix takes values at all nodes, less that at node 0, to the coefficients of :func:`evaluate_dense_output`.
 _DENSE_MATRIX = _column_major(np.vstack([_divide_by_linear(_ALL.powers()), np.zeros(ROW_LENGTH)]))
+#: Coefficients [power, node] of the integrals from t = 0 of the polynomials that are 1 at one node and 0 at the others.
 _INTEGRALS = np.vstack([np.zeros(ROW_LENGTH), _ALL.powers() / np.arange(1.0, ROW_LENGTH + 1.0)[:, None]])
-#: matrix: values at all nodes, less that at node 0, to the coefficients of :func:`evaluate_integral`
+#: The matrix takes values at all nodes, less that at node 0, to the coefficients of :func:`evaluate_integral`.
 _INTEGRAL_MATRIX = _column_major(np.vstack([_divide_by_linear(_divide_by_linear(_INTEGRALS)), np.zeros(ROW_LENGTH)]))
-#: the identity matrix
+#: Identity matrix, column by column.
 _IDENTITY = np.eye(ROW_LENGTH).ravel()
-#: 1 off the diagonal, 0 on it
+#: Matrix of 1 off the diagonal and 0 on it, column by column.
 _OFF_DIAGONAL = 1.0 - _IDENTITY
 
 
-@kernel(inline=True)
+@inline_kernel
 def multiply_matrix(matrix, row, offset, values, target, result):
-    """Write the product of a matrix and a row, less ``offset``, to ``result`` from index ``target`` on.
+    """Write the product of a matrix and a row, from whose values ``offset`` is subtracted.
 
-    matrix: by columns; row: index in ``values`` at which the row begins.
+    matrix: ROW_LENGTH^2 numbers, column by column.
+    row: int, index in ``values`` at which the row begins.
+    offset: float, subtracted from each value of the row.
+    values: array or pointer that contains the row.
+    target: int, index in ``result`` from which the product is written.
+    result: array or pointer, ROW_LENGTH numbers of which are written.
     """
     low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
@@ -73,12 +88,15 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     store(result, target + LANES, high)
 
 
-@kernel(inline=True)
+@inline_kernel
 def assemble_newton_matrix(weights, diagonal, nodes, matrix):
-    """Write diag(weights) D - diag(diagonal) to ``matrix``, D the differentiation matrix; row and column of node 0
-    are 0.
+    """Write diag(weights) D - diag(diagonal), the matrix of a linear system of :mod:`step`.
 
-    weights, diagonal: rows of ``nodes``.
+    D is the differentiation matrix.  Row and column of node 0 are 0 or unchanged: node 0 is given.
+
+    weights, diagonal: int, indices in ``nodes`` of the rows with the numbers of either diagonal matrix.
+    nodes: Workspace.nodes.
+    matrix: pointer to ROW_LENGTH^2 numbers, written column by column.
     """
     low, high = load(nodes, weights), load(nodes, weights + LANES)
     for k in range(1, ROW_LENGTH):
@@ -91,11 +109,14 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
         )
 
 
-@kernel(inline=True)
+@inline_kernel
 def _eliminate(i, matrix):
-    """Do step i of the inversion of a matrix in place, by Gauss and Jordan with the pivot on the diagonal.
+    """Do one step of the inversion of a Newton matrix in place, by Gauss and Jordan with the pivot on the diagonal.
 
     Only whole vectors are stored: a vector load behind the store of a single number into it would wait for that store.
+
+    i: int, the step, row and column of its pivot; 1 ... N, as row and column of node 0 are left out.
+    matrix: pointer to ROW_LENGTH^2 numbers, column by column.
     """
     column = ROW_LENGTH * i
     pivot = broadcast(1.0 / matrix[column + i])
@@ -111,42 +132,58 @@ def _eliminate(i, matrix):
     store(matrix, column + LANES, high)
 
 
-@kernel(inline=True)
+@inline_kernel
 def invert_matrix(matrix):
-    """Invert a matrix in place, without pivoting: where that loses digits, Newton's iteration does not converge."""
+    """Invert a Newton matrix in place, by Gauss-Jordan elimination without pivoting.
+
+    Where a small pivot costs digits, Newton's iteration does not converge, and the step is repeated shorter.
+
+    matrix: pointer to ROW_LENGTH^2 numbers, column by column.
+    """
     for i in range(1, ROW_LENGTH):
         _eliminate(i, matrix)
 
 
-@kernel(inline=True)
+@inline_kernel
 def invert_two_matrices(first, second):
-    """Invert two matrices in place, step by step in turn: the processor works on one while the other waits."""
+    """Invert two Newton matrices in place, step by step in turn: the processor works on one while the other waits.
+
+    first, second: pointers to ROW_LENGTH^2 numbers each, column by column, as for :func:`invert_matrix`.
+    """
     for i in range(1, ROW_LENGTH):
         _eliminate(i, first)
         _eliminate(i, second)
 
 
-@kernel(inline=True)
+@inline_kernel
 def fit_dense_output(row, target, nodes):
-    """Store the coefficients of the interpolant of a row, less its value at the left end, for
-    :func:`evaluate_dense_output`.
+    """Store the coefficients of the interpolant of a row, less its value at the left end.
 
-    row, target: indices in ``nodes`` of the values and of the coefficients.
+    row: int, index in ``nodes`` of the values at all nodes.
+    target: int, index in ``nodes`` of the coefficients, for :func:`evaluate_dense_output`.
+    nodes: Workspace.nodes.
     """
     multiply_matrix(_DENSE_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
 @kernel
 def fit_integral(row, target, nodes):
-    """Store the coefficients of the integral of the interpolant of a row for :func:`evaluate_integral`."""
+    """Store the coefficients of the integral of the interpolant of a row.
+
+    row: int, index in ``nodes`` of the values at all nodes.
+    target: int, index in ``nodes`` of the coefficients, for :func:`evaluate_integral`.
+    nodes: Workspace.nodes.
+    """
     multiply_matrix(_INTEGRAL_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_dense_output(v, nodes, row):
-    """Return the value at v of the interpolant whose coefficients are in ``row``, less its value at the left end.
+    """Return the interpolant of a row at a position, less its value at the left end; in the unit of the row.
 
-    v: position in [0, 2]; nodes: array; row: index of the coefficients.
+    v: float, position in [0, 2] on the step.
+    nodes: Workspace.nodes.
+    row: int, index of the coefficients of :func:`fit_dense_output`.
     """
     t, value = v - 1.0, 0.0
     for k in range(ROW_LENGTH - 1, -1, -1):
@@ -154,18 +191,28 @@ def evaluate_dense_output(v, nodes, row):
     return v * value
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_integral(v, first, nodes, row):
-    """Return the integral over t from the left end to v of the interpolant with value ``first`` at the left end.
+    """Return the integral of the interpolant of a row from the left end to a position.
 
-    It is accurate relative to itself as v -> 0.  row: index of the coefficients of :func:`fit_integral`.
+    It is over t in [-1, 1]: times half the length of the step it is the integral over tau.  It is accurate relative to
+    itself as v -> 0.
+
+    v: float, position in [0, 2] on the step.
+    first: float, value of the row at the left end.
+    nodes: Workspace.nodes.
+    row: int, index of the coefficients of :func:`fit_integral`.
     """
     return v * (first + evaluate_dense_output(v, nodes, row))
 
 
 @kernel
 def row_range(row, nodes):
-    """Return (smallest, largest) value of a row."""
+    """Return (smallest, largest) of the values of a row at all nodes.
+
+    row: int, index in ``nodes`` of the row.
+    nodes: Workspace.nodes.
+    """
     smallest = largest = nodes[row]
     for i in range(1, N + 1):
         smallest, largest = min(smallest, nodes[row + i]), max(largest, nodes[row + i])

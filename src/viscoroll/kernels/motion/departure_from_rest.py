@@ -16,75 +16,74 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.by_reference import by_value
-from ..compile.jit import kernel
-from ..rows.evaluate import limits_at_rest
+from ..compile.jit import inline_kernel, kernel
 from .drive import evaluate_load, has_brake, is_constant, segment_end
-from .rhs import added_inertia
-from .workspace import REGIME_AT_REST, Load, Regime
+from .law import added_inertia, rest_limits
+from .records import REGIME_AT_REST, Load, Regime
 
-#: at rest for a time
+#: Code of a departure: the cylinder stays at rest for a time.
 STAYS_AT_REST = 0
-#: departs in partial slip
+#: Code of a departure: the cylinder departs in partial slip.
 ROLLS_OFF = 1
-#: departs in full slip
+#: Code of a departure: the cylinder departs in full slip.
 SLIDES_OFF = 2
-#: the departure is not unique
+#: Code of a departure: two motions satisfy the equations, the departure is not unique.
 AMBIGUOUS = 3
-#: largest number of Newton iterations for d
+#: Largest number of Newton iterations for d: a step outside the bracket bisects it, and 200 bisections of [-1, 1] reach
+#: |d| = 1e-60.
 _MAX_ITERATIONS = 200
-#: relative tolerance of d
+#: Newton's iteration for d ends at this relative change, below the unit of rounding: d changes no more.
 _D_TOLERANCE = 1e-16
-#: time at which the drive is evaluated if nothing moves the cylinder at the start of a segment, divided by its length
+#: The drive is evaluated later by this fraction of the time to the end of its segment, if nothing moves the cylinder at
+#: the start of the segment: its slope then decides.
 _LOOKAHEAD = 1e-6
-#: rounding error of the holding margin, divided by the largest force that holds the cylinder
+#: Rounding error of the holding margin, divided by the largest force that holds the cylinder: some units of rounding,
+#: so that a brake that rises from 0 takes hold.
 _HOLDING_ROUNDING = 4e-15
-#: number of intervals of a segment in which the holding margin is searched for a sign change
+#: Number of intervals of a segment in which the holding margin, which consists of polynomials of up to 14 terms, is
+#: searched for a sign change; two sign changes in one interval are not found.
 _SCAN_INTERVALS = 64
-#: force and torque that count as 0, dimensionless: speeds under them would underflow in the first steps
+#: Force plus torque that counts as 0, dimensionless: speeds under it would underflow in the first steps.
 _NEGLIGIBLE_FORCE = 1e-75
 
 
-@kernel(inline=True)
+@inline_kernel
 def _residual_of_d(d, load, scene):
-    """Return (residual of the equation of d, its slope in d, V') at V = 0; the residual is the left less the right
-    side.
+    """Evaluate the equation of d at V = 0, of the module: its left side less its right side.
 
-    d: delta/delta_star; load: Load at V = 0; scene: Scene.
+    d: float, delta/delta_star.
+    load: Load, at V = 0, with brake and added mass in it.
+    scene: Scene, parameters of Eq. (22).
+    Returns (residual, its slope in d, V'), dimensionless.
     """
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (load.torque - Q) + load.prescribed_omega_rate
-    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
+    L, delta_0 = rest_limits(scene)
     inverse_k = 2.0 * scene.kappa / scene.mu / L
     d_total = d + delta_0 * inverse_k
     slope = -(load.inverse_inertia + load.inverse_mass) * Q_d * inverse_k - V_rate - d_total * load.inverse_mass * Q_d
     return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
 
 
-@kernel(inline=True)
+@inline_kernel
 def _d_at_zero_omega(scene):
-    """Return the d at which omega stays 0 as V grows from 0; above -1 only where mu > 2 kappa."""
-    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
+    """Return the d at which omega stays 0 as V grows from 0, dimensionless; above -1 only where mu > 2 kappa.
+
+    scene: Scene, parameters of Eq. (22).
+    """
+    L, delta_0 = rest_limits(scene)
     return -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
 
 
 @kernel
 def _spin_against_brake(load, scene):
-    """Return the sign of omega under a brake as V grows from 0 in partial slip.
+    """Return how omega starts under a brake as V grows from 0 in partial slip.
 
-    Parameters
-    ----------
-    load : Load
-        At V = 0, with a brake.
-    scene : Scene
-        Of the motion.
-
-    Returns
-    -------
-    (float, bool)
-        The sign of omega, and whether the brake holds it at 0 instead: so it does where mu > 2 kappa and the traction
-        at omega = 0 leaves less torque than the brake can take.
+    load: Load, at V = 0, with a brake.
+    scene: Scene, parameters of Eq. (22).
+    Returns (sign of omega, whether the brake holds omega at 0 instead): so it does where mu > 2 kappa and the traction
+    at omega = 0 leaves less torque than the brake can take.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
@@ -97,7 +96,9 @@ def _spin_against_brake(load, scene):
 def _effective_load(load, spin_sign, scene):
     """Return the Load that contains the torque of the brake and the effect of the added mass on V' and omega'.
 
-    load: Load at V = 0; spin_sign: sign of omega against the brake, 0 without one; scene: Scene with the added mass.
+    load: Load, at V = 0.
+    spin_sign: float, sign of omega against the brake; 0 without one.
+    scene: Scene, with the added mass.
     """
     force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
     half_n = 0.5 * added_inertia(0.0, scene)[0]
@@ -108,9 +109,9 @@ def _effective_load(load, spin_sign, scene):
     return Load(force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _local_maximum_of_residual(load, scene):
-    """Return the d < 0 at which the residual of :func:`_residual_of_d` has its local maximum; it is a cubic in d.
+    """Return the d < 0 at which the residual of the equation of d has its local maximum; it is a cubic in d.
 
     With Q = mu (2 d + d^2), k = mu L/(2 kappa) and W = inverse_inertia + (1 + delta_0) inverse_mass the terms with d
     are
@@ -120,47 +121,42 @@ def _local_maximum_of_residual(load, scene):
     where C = inverse_mass f + V_rate, so that the larger zero of the slope is the maximum.  Of a half-space at rest
     L = 1 and delta_0 = 0.
 
-    Parameters
-    ----------
-    load : Load
-        At V = 0, without brake and added mass.
-    scene : Scene
-        Of the motion.
-
-    Returns
-    -------
-    float
-        d there; -inf where the cubic decreases for all d.
+    load: Load, at V = 0, with brake and added mass in it.
+    scene: Scene, parameters of Eq. (22).
+    Returns d there, dimensionless; -inf where the cubic decreases for all d.
     """
-    L, delta_0 = limits_at_rest(scene.kappa, by_value(scene.law))
+    L, delta_0 = rest_limits(scene)
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
     first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
     second = -stiffness - 2.0 * scene.mu * load.inverse_mass
-    # the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0
+    # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0.
     discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
     return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
 
 
 @kernel
 def solve_d_at_departure(load, spin_sign, scene):
-    """Return (whether the cylinder can roll off in partial slip with V > 0, its d), by a bracketed Newton iteration.
+    """Solve the equation of d at V = 0, of the module, by a bracketed Newton iteration.
 
-    load: Load at V = 0; spin_sign: sign of omega against a brake, 0 without one; scene: Scene.
+    load: Load, at V = 0.
+    spin_sign: float, sign of omega against a brake; 0 without one.
+    scene: Scene, parameters of Eq. (22).
+    Returns (whether the cylinder can roll off in partial slip with V > 0, d); d = 0 where there is no root.
     """
     load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
-    d_zero = _d_at_zero_omega(scene)  # above this d the residual decreases
+    d_zero = _d_at_zero_omega(scene)  # The residual decreases above this d.
     if d_zero > -1.0:
         residual, _, V_rate = _residual_of_d(d_zero, load, scene)
         if load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
             return V_rate > 0.0, d_zero
         if residual > 0.0:
             low = d_zero
-        else:  # below this d the residual may have a maximum
+        else:  # The residual may have a maximum below this d.
             low, high = min(max(low, _local_maximum_of_residual(load, scene)), d_zero), d_zero
     if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
         return False, 0.0
     d, V_rate = 0.5 * (low + high), 0.0
-    for _ in range(_MAX_ITERATIONS):  # Newton's iteration with a bracket
+    for _ in range(_MAX_ITERATIONS):
         residual, slope, V_rate = _residual_of_d(d, load, scene)
         low, high = (d, high) if residual > 0.0 else (low, d)
         d_next = d - residual / slope
@@ -174,9 +170,13 @@ def solve_d_at_departure(load, spin_sign, scene):
 
 @kernel
 def holding_margin(load, mu):
-    """Return the margin by which friction and brake hold the cylinder at V = omega = 0; negative where it moves.
+    """Return the margin by which friction and brake hold the cylinder at V = omega = 0; below 0 where it moves.
 
-    A traction within +-mu must leave V constant, and omega too, which a brake may help with.  load: Load; mu: friction.
+    A traction within +-mu must leave V constant, and omega too, which a brake may help with.
+
+    load: Load, at V = omega = 0.
+    mu: float, coefficient of friction.
+    Returns the margin as a force or torque, dimensionless; -1 where a prescribed speed moves it.
     """
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
         return -1.0
@@ -190,7 +190,12 @@ def holding_margin(load, mu):
 
 @kernel
 def _holding_margin_at(tau, segment, work):
-    """Return the holding margin at a time."""
+    """Return the holding margin at a time, dimensionless.
+
+    tau: float, the time.
+    segment: int, index of the segment that contains it.
+    work: Workspace, of the motion.
+    """
     return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene.mu)
 
 
@@ -198,8 +203,11 @@ def _holding_margin_at(tau, segment, work):
 def find_departure_time(tau, segment, work):
     """Return the first time at which the drive moves a cylinder at rest; the end of the segment if it does not.
 
-    tau: time from which the search starts; segment: index of the segment that holds it; work: Workspace.
     A sign change of the holding margin is searched in _SCAN_INTERVALS intervals, then bisected to rounding.
+
+    tau: float, time from which the search starts.
+    segment: int, index of the segment that contains it.
+    work: Workspace, of the motion.
     """
     end = segment_end(segment, work)
     if is_constant(segment, work.drive):
@@ -222,13 +230,17 @@ def find_departure_time(tau, segment, work):
 
 @kernel
 def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
-    """Return (SLIDES_OFF or STAYS_AT_REST, Regime, 0) of full slip from rest, with the sign of slip that persists.
+    """Return how the cylinder departs in full slip, with the sign of slip that persists.
 
-    tau, segment: time at which the drive is evaluated and its segment; braked: whether a brake acts on the segment;
-    stick_zone_slip: |omega - V|/V that full slip must exceed in the limit V -> 0, divided by L; work: Workspace.
+    tau: float, time at which the drive is evaluated.
+    segment: int, index of its segment.
+    braked: bool, whether a brake acts on the segment.
+    stick_zone_slip: float, |omega - V|/(L V) that full slip must exceed in the limit V -> 0, dimensionless.
+    work: Workspace, of the motion.
+    Returns (SLIDES_OFF or STAYS_AT_REST, Regime, 0); 0 stands for omega.
     """
     scene = work.scene
-    L, free_creep = limits_at_rest(scene.kappa, by_value(scene.law))
+    L, free_creep = rest_limits(scene)
     load = evaluate_load(tau, segment, Regime(True, 1.0, 1.0, 0.0, False), work)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu
@@ -247,16 +259,19 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
 
 @kernel
 def depart_from_rest(tau, segment, work):
-    """Return (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; Regime; d) from V = omega = 0 on.
+    """Decide how a cylinder goes on from V = omega = 0.
 
-    tau: time; segment: index of the segment of the drive; work: Workspace.
+    tau: float, the time.
+    segment: int, index of the segment of the drive.
+    work: Workspace, of the motion.
+    Returns (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; Regime; d of rolling off, or 0).
     """
     scene = work.scene
     tau_drive = tau
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
     if holding_margin(load, scene.mu) >= -rounding and not is_constant(segment, work.drive):
-        # whether the drive moves the cylinder is seen a little later
+        # Whether the drive moves the cylinder is decided by its values a little later.
         tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
         load = evaluate_load(tau_drive, segment, REGIME_AT_REST, work)
     braked = has_brake(segment, work.drive)
@@ -274,7 +289,7 @@ def depart_from_rest(tau, segment, work):
         if sticks and kind == ROLLS_OFF:
             return AMBIGUOUS, REGIME_AT_REST, 0.0
         if sticks:
-            # d at the present time is the limit from which the motion departs
+            # The motion departs from d at the present time.
             load = evaluate_load(tau, segment, regime, work)
             kind, d_start = ROLLS_OFF, solve_d_at_departure(load, spin_sign, scene)[1]
             departure = Regime(False, direction, 1.0 if d >= 0.0 else -1.0, spin_sign, locked)

@@ -1,14 +1,14 @@
 """The drive at a time: force, torque, brake and prescribed speed, polynomials on each segment.
 
-A segment is a row of numbers (COL_* of :mod:`workspace`): its start, the scale of its time and the coefficients of five
+A segment is a row of numbers (COL_* of :mod:`records`): its start, the scale of its time and the coefficients of five
 polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the segment.
 """
 
 from __future__ import annotations
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import ROW_LENGTH, N
-from .workspace import (
+from .records import (
     COL_COEFFICIENTS,
     COL_SCALE,
     COL_START,
@@ -23,31 +23,31 @@ from .workspace import (
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
     ROUNDING,
-    ROW_DRIVE,
     Load,
-    last_output_tau,
-    node_time,
 )
+from .workspace import ROW_DRIVE, last_output_tau, node_time
 
-#: relative jump of a function or of its slope at the end of a segment, up to which it counts as smooth: fits of
-#: callables leave smaller ones
+#: Relative jump of a function or of its slope at the end of a segment, up to which it counts as smooth: the polynomials
+#: fitted to a callable leave smaller ones.
 _SMOOTH_JUMP = 1e-4
-#: units of rounding of a segment's coefficients up to which a prescribed speed counts as 0: a polynomial of up to 14
-#: terms, moved to a part of its segment, is wrong by some of them
+#: A prescribed speed counts as 0 below this number of units of rounding of its coefficients: a polynomial of up to 14
+#: terms, moved to a part of its segment, is wrong by some of them.
 _ZERO_SPEED_ROUNDINGS = 30.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def n_coefficients(row):
-    """Return the number of coefficients of each function of a segment; row: the segment."""
+    """Return the number of coefficients of each function of a segment; row: (columns,), the segment."""
     return (row.size - COL_COEFFICIENTS) // N_DRIVE_FUNCTIONS
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_polynomial(row, function, x):
-    """Return one function of a segment at x.
+    """Return one function of a segment at a position, dimensionless.
 
-    row: the segment; function: DRIVE_*; x: position in [-1, 1].
+    row: (columns,), the segment.
+    function: int, DRIVE_*.
+    x: float, position in [-1, 1] on the segment.
     """
     n_terms = n_coefficients(row)
     first, total = COL_COEFFICIENTS + function * n_terms, 0.0
@@ -56,9 +56,13 @@ def evaluate_polynomial(row, function, x):
     return total
 
 
-@kernel(inline=True)
+@inline_kernel
 def _sum_of_moduli(row, first, last):
-    """Return the sum of the moduli of the coefficients of functions ``first`` up to before ``last`` of a segment."""
+    """Return the sum of the moduli of the coefficients of some functions of a segment, which bounds their sum.
+
+    row: (columns,), the segment.
+    first, last: int, the first of the functions DRIVE_* and the one behind the last.
+    """
     n_terms, total = n_coefficients(row), 0.0
     for n in range(COL_COEFFICIENTS + first * n_terms, COL_COEFFICIENTS + last * n_terms):
         total += abs(row[n])
@@ -67,9 +71,13 @@ def _sum_of_moduli(row, first, last):
 
 @kernel
 def evaluate_drive(tau, segment, drive):
-    """Return (force, torque, slope of the prescribed speed in tau, largest torque of the brake) at tau, not oriented.
+    """Return the drive at one time, not oriented by the regime, dimensionless.
 
-    segment: index of the segment that holds tau; drive: Drive.  The slope is 0 without a prescribed speed.
+    tau: float, the time.
+    segment: int, index of the segment that contains tau.
+    drive: Drive, that of the motion.
+    Returns (force, torque of the motor, slope in tau of the prescribed speed, largest torque of the brake); the slope
+    is 0 without a prescribed speed, the torque of the brake at least 0.
     """
     row = drive.segments[segment]
     x = (tau - row[COL_START]) * row[COL_SCALE] - 1.0
@@ -86,20 +94,11 @@ def evaluate_drive(tau, segment, drive):
 def prescribed_speed(tau, segment, drive):
     """Return the prescribed speed at one time.
 
-    Parameters
-    ----------
-    tau : float
-        The time, within the segment.
-    segment : int
-        Index of the segment of the drive.
-    drive : Drive
-        With a prescribed speed.
-
-    Returns
-    -------
-    float
-        V or omega, dimensionless, not oriented by the regime; 0 where it is rounding relative to the coefficients of
-        its own segment.
+    tau: float, the time.
+    segment: int, index of the segment that contains tau.
+    drive: Drive, with a prescribed speed.
+    Returns V or omega, dimensionless, not oriented by the regime; 0 where it is rounding relative to the coefficients
+    of its segment.
     """
     row = drive.segments[segment]
     speed = evaluate_polynomial(row, DRIVE_SPEED, (tau - row[COL_START]) * row[COL_SCALE] - 1.0)
@@ -107,11 +106,13 @@ def prescribed_speed(tau, segment, drive):
     return speed if abs(speed) > _ZERO_SPEED_ROUNDINGS * ROUNDING * size else 0.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def load_from_values(values, regime, work):
-    """Return the Load with these values of the drive, oriented by the regime, without feedback.
+    """Return the Load for given values of the drive, oriented by the regime, without feedback.
 
-    values: as :func:`evaluate_drive` returns them; regime: Regime; work: Workspace.
+    values: (force, torque, slope of the prescribed speed, torque of the brake), as :func:`evaluate_drive` returns them.
+    regime: Regime, whose direction orients them and which may hold omega at 0.
+    work: Workspace, with the Drive and j.
     """
     force, torque, rate, brake = values
     drive, direction = work.drive, regime.direction
@@ -130,23 +131,36 @@ def load_from_values(values, regime, work):
 
 @kernel
 def evaluate_load(tau, segment, regime, work):
-    """Return the Load at tau, oriented by the regime, without feedback; segment: index of the segment that holds
-    tau.
+    """Return the Load at one time, oriented by the regime, without feedback.
+
+    tau: float, the time.
+    segment: int, index of the segment that contains tau.
+    regime: Regime, at that time.
+    work: Workspace, of the motion.
     """
     return load_from_values(evaluate_drive(tau, segment, work.drive), regime, work)
 
 
 @kernel
 def current_load(regime, step_state, work):
-    """Return the Load at the time of the step state, oriented by the regime, without feedback."""
+    """Return the Load at the time reached, oriented by the regime, without feedback.
+
+    regime: Regime, the present one.
+    step_state: StepState, with that time and its segment.
+    work: Workspace, of the motion.
+    """
     return evaluate_load(step_state.tau, step_state.segment, regime, work)
 
 
 @kernel
 def store_drive(step, work):
-    """Store the functions of the drive at all nodes of a step; work: Workspace."""
+    """Store the functions of the drive at all nodes of a step.
+
+    step: Step, within one segment.
+    work: Workspace; the rows from ROW_DRIVE on are written.
+    """
     nodes = work.nodes
-    if step.undriven and step.segment == 0:  # the rows are 0 from the start of the motion
+    if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.
         return
     values = evaluate_drive(step.tau, step.segment, work.drive)
     changes = not is_constant(step.segment, work.drive)
@@ -157,11 +171,13 @@ def store_drive(step, work):
             nodes[ROW_DRIVE + ROW_LENGTH * n + i] = values[n]
 
 
-@kernel(inline=True)
+@inline_kernel
 def load_at_node(i, regime, work):
-    """Return the Load at node i of the step whose drive is stored, oriented by the regime.
+    """Return the Load at a node of the step whose drive is stored, oriented by the regime, without feedback.
 
-    regime: Regime; work: Workspace.
+    i: int, the node.
+    regime: Regime, that of the step.
+    work: Workspace, with the drive at the nodes.
     """
     nodes = work.nodes
     values = (
@@ -175,7 +191,11 @@ def load_at_node(i, regime, work):
 
 @kernel
 def segment_end(segment, work):
-    """Return tau at the end of a segment of the drive or of the motion, whichever comes first."""
+    """Return tau at the end of a segment of the drive or of the motion, whichever comes first.
+
+    segment: int, index of the segment.
+    work: Workspace, of the motion.
+    """
     end = last_output_tau(work)
     return min(work.drive.segments[segment + 1, COL_START], end) if segment + 1 < work.drive.segments.shape[0] else end
 
@@ -185,6 +205,9 @@ def drive_rounding(segment, drive):
     """Return the rounding error of force, torque and slope of the prescribed speed on a segment, dimensionless.
 
     They are sums of terms that may nearly cancel: the error is relative to the sum of the coefficients' moduli.
+
+    segment: int, index of the segment.
+    drive: Drive, that of the motion.
     """
     return ROUNDING * _sum_of_moduli(drive.segments[segment], DRIVE_FORCE, DRIVE_RATE + 1)
 
@@ -194,6 +217,9 @@ def continues_smoothly(segment, drive):
     """Return whether no function of the drive jumps or has a kink at the end of a segment.
 
     A jump or kink below _SMOOTH_JUMP does not count: the length of the last step is then a good one for the next.
+
+    segment: int, index of a segment that another one follows.
+    drive: Drive, that of the motion.
     """
     row, next_row = drive.segments[segment], drive.segments[segment + 1]
     terms = n_coefficients(row)
@@ -215,24 +241,31 @@ def continues_smoothly(segment, drive):
 
 @kernel
 def is_constant(segment, drive):
-    """Return whether all functions of the drive are constant on a segment."""
+    """Return whether all functions of the drive but the prescribed speed itself are constant on a segment.
+
+    segment: int, index of the segment.
+    drive: Drive, that of the motion.
+    """
     row, variation = drive.segments[segment], 0.0
     terms = n_coefficients(row)
-    for function in range(N_NODE_FUNCTIONS):
-        for n in range(1, terms):
-            variation += abs(row[COL_COEFFICIENTS + function * terms + n])
+    for n in range(N_NODE_FUNCTIONS * terms):
+        variation += abs(row[COL_COEFFICIENTS + n]) if n % terms > 0 else 0.0
     return variation == 0.0
 
 
 @kernel
 def has_brake(segment, drive):
-    """Return whether a brake acts anywhere on a segment."""
+    """Return whether a brake acts anywhere on a segment; segment: int, its index; drive: Drive, that of the motion."""
     return _sum_of_moduli(drive.segments[segment], DRIVE_BRAKE, DRIVE_BRAKE + 1) > 0.0
 
 
 @kernel
 def is_unloaded(segment, drive):
-    """Return whether from this segment on there is no force, torque, brake or prescribed speed; feedback may act."""
+    """Return whether from a segment on there is no force, torque, brake or prescribed speed; feedback may act.
+
+    segment: int, index of the segment.
+    drive: Drive, that of the motion.
+    """
     for row in drive.segments[segment:]:
         if _sum_of_moduli(row, DRIVE_FORCE, N_DRIVE_FUNCTIONS) > 0.0:
             return False
@@ -241,7 +274,11 @@ def is_unloaded(segment, drive):
 
 @kernel
 def is_undriven(segment, drive):
-    """Return whether from this segment on nothing drives, feedback included."""
+    """Return whether from a segment on nothing drives, feedback included.
+
+    segment: int, index of the segment.
+    drive: Drive, that of the motion.
+    """
     gains = drive.gains
     size = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)
     return size == 0.0 and is_unloaded(segment, drive)
@@ -249,34 +286,9 @@ def is_undriven(segment, drive):
 
 @kernel
 def rest_threshold(segment, work):
-    """Return the speed below which the motion ends at rest from this segment on; 0 while something drives or will."""
+    """Return the speed below which the motion ends at rest, dimensionless; 0 while something drives or will.
+
+    segment: int, index of the present segment of the drive.
+    work: Workspace, of the motion.
+    """
     return work.options.rest_speed if work.options.rest_speed > 0.0 and is_undriven(segment, work.drive) else 0.0
-
-
-@kernel(inline=True)
-def applied_forces(V, omega, load, regime):
-    """Return (force, torque of the motor, torque of motor and brake) where both are given, oriented by the regime.
-
-    V, omega: speeds; load: Load; regime: Regime.  Feedback is included.
-    """
-    gains = load.gains
-    force = load.force + gains.force_V * V + gains.force_omega * omega
-    torque = load.torque + gains.torque_V * V + gains.torque_omega * omega
-    return force, torque, torque - load.brake * regime.spin_sign
-
-
-@kernel(inline=True)
-def required_forces(V, omega, rates, load, regime, j):
-    """Return (force, torque of the motor, torque of the brake): the given ones, or those that hold a prescribed speed.
-
-    V, omega: speeds; rates: Rates there; load: Load; regime: Regime; j: moment of inertia.
-    """
-    force, torque, _ = applied_forces(V, omega, load, regime)
-    brake = -load.brake * regime.spin_sign
-    if regime.locked:
-        brake = rates.Q + rates.M_cylinder - torque
-    elif load.inverse_inertia == 0.0:
-        torque = j * load.prescribed_omega_rate + rates.Q + rates.M_cylinder - brake
-    if load.inverse_mass == 0.0:
-        force = load.prescribed_V_rate - rates.Q + rates.M_half_space
-    return force, torque, brake

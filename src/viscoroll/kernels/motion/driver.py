@@ -12,42 +12,47 @@ from ..compile.jit import kernel
 from .asymptotics import coast_to_end, is_coasting
 from .departure_from_rest import AMBIGUOUS, ROLLS_OFF, SLIDES_OFF, STAYS_AT_REST, depart_from_rest, find_departure_time
 from .drive import continues_smoothly, current_load, is_undriven, rest_threshold, segment_end
+from .law import added_inertia, added_mass_margin, creepage, omega_and_delta
 from .output import record_switch, write_due_outputs, write_outputs_at_rest
-from .regime_solver import integrate_regime
-from .regimes import ZERO_V_RATIO, apply_event, enter_segment, initial_regime, regime_code, rest_code
-from .rhs import added_inertia, added_mass_margin, creepage, current_rates, omega_and_delta
-from .workspace import (
+from .records import (
     ADDED_MASS_EXHAUSTED,
     AT_REST,
-    BELOW_REST_SPEED,
     CAME_TO_REST,
     COMPLETED,
-    DELTA_ZERO,
     DIRECTION_REVERSED,
-    N_SWITCHES,
-    NO_EVENT,
     NOT_UNIQUE,
-    ONSET_TIME,
-    QUADRATURE_TOTALS,
     REGIME_AT_REST,
-    REST_TIME,
     ROLLING_LOSS,
-    STEP_FAILED,
     STEP_LIMIT,
     STEP_TOO_SMALL,
-    STICK_EDGE,
     State,
     StepState,
+)
+from .regime_solver import integrate_regime
+from .regimes import ZERO_V_RATIO, apply_event, enter_segment, initial_regime, regime_code, rest_code
+from .rhs import current_rates
+from .workspace import (
+    BELOW_REST_SPEED,
+    DELTA_ZERO,
+    N_SWITCHES,
+    NO_EVENT,
+    ONSET_TIME,
+    QUADRATURE_TOTALS,
+    REST_TIME,
+    STEP_FAILED,
+    STICK_EDGE,
     change_slip,
     last_output_tau,
-    with_step_length,
+    set_step_length,
 )
 
-#: relaxation time of d, or time to V = 0, divided by the time so far, that no step can resolve
+#: Relaxation time of d, or time to V = 0, divided by the time so far, that no step can resolve: 450 units of rounding.
 _TIME_ROUNDING = 1e-13
-#: speeds that count as 0 where something drives, or will
+#: Speeds that count as 0 where something drives or will, dimensionless: as _NEGLIGIBLE_FORCE in
+#: :mod:`departure_from_rest`.
 _NEGLIGIBLE_SPEED = 1e-75
-#: length of the step after a relaxation of d within rounding, divided by the time so far
+#: Length of the step after a relaxation of d within rounding, divided by the time so far: a hundred times the time that
+#: no step can resolve.
 _STEP_AFTER_RELAXATION = 1e-11
 
 
@@ -55,12 +60,13 @@ _STEP_AFTER_RELAXATION = 1e-11
 def _advance_at_rest(step_state, work):
     """Advance a cylinder at V = omega = 0 until it departs or the segment ends, and write the outputs on the way.
 
-    step_state: StepState at the present time; work: Workspace.
+    step_state: StepState, at the time reached.
+    work: Workspace, of the motion; outputs are written.
     Returns (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; State; Regime; StepState) then.
     """
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
     if kind == ROLLS_OFF or kind == SLIDES_OFF:
-        return kind, State(0.0, d), regime, with_step_length(0.0, step_state)
+        return kind, State(0.0, d), regime, set_step_length(0.0, 0, step_state)
     end = find_departure_time(step_state.tau, step_state.segment, work) if kind == STAYS_AT_REST else step_state.tau
     closed = kind == AMBIGUOUS or end == last_output_tau(work)
     step_state = write_outputs_at_rest(end, closed, rest_code(step_state, work), step_state, work)
@@ -69,7 +75,14 @@ def _advance_at_rest(step_state, work):
 
 @kernel
 def _is_below_rest_speed(moving, state, regime, step_state, work):
-    """Return whether nothing drives any more and both speeds are below the rest threshold."""
+    """Return whether nothing drives any more and both speeds are below the rest threshold.
+
+    moving: bool, whether the cylinder moves.
+    state: State, the present one.
+    regime: Regime, at that state.
+    step_state: StepState, with the segment.
+    work: Workspace, of the motion.
+    """
     rest_speed = rest_threshold(step_state.segment, work)
     if rest_speed == 0.0 or not moving:
         return rest_speed > 0.0
@@ -78,7 +91,13 @@ def _is_below_rest_speed(moving, state, regime, step_state, work):
 
 @kernel
 def added_mass_exhausted(event, state, regime, work):
-    """Return whether the added mass has left its range, or ``event`` is that it reaches the end of it."""
+    """Return whether the added mass has left its range in partial slip, or ends it by an event.
+
+    event: int, the last event, or NO_EVENT.
+    state: State, the present one.
+    regime: Regime, at that state.
+    work: Workspace, of the motion.
+    """
     margin = added_mass_margin(added_inertia(state.V, work.scene)[0], work.scene.j)
     at_end = event == STICK_EDGE and margin < 1.0 - regime.sigma * state.omega_or_d
     return not regime.full_slip and (margin <= 0.0 or at_end)
@@ -86,7 +105,12 @@ def added_mass_exhausted(event, state, regime, work):
 
 @kernel
 def _relaxes_within_rounding(state, regime, step_state, work):
-    """Return whether d relaxes within the rounding of time, in partial slip."""
+    """Return whether d relaxes within the rounding of time, in partial slip.
+
+    state, regime: State and Regime, the present ones.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    """
     if regime.full_slip:
         return False
     rates = current_rates(state, regime, step_state, work)
@@ -95,7 +119,12 @@ def _relaxes_within_rounding(state, regime, step_state, work):
 
 @kernel
 def _vanishes_within_rounding(state, regime, step_state, work):
-    """Return whether V falls to 0 within the rounding of time, or counts as 0 where something drives."""
+    """Return whether V falls to 0 within the rounding of time, or counts as 0 where something drives.
+
+    state, regime: State and Regime, the present ones.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    """
     if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
         return True
     return state.V < -_TIME_ROUNDING * step_state.tau * current_rates(state, regime, step_state, work).V_rate
@@ -105,7 +134,10 @@ def _vanishes_within_rounding(state, regime, step_state, work):
 def relax_creep(state, regime, step_state, work):
     """Relax d to its equilibrium at a fixed time and fixed p, by bisection.
 
-    state, regime, step_state: State, Regime and StepState at the present time, in partial slip; work: Workspace.
+    state: State, the present one, in partial slip.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
     Returns (whether the cylinder still moves, State, Regime, StepState); full slip if |d| would exceed 1.
     """
     if _vanishes_within_rounding(state, regime, step_state, work):
@@ -123,7 +155,7 @@ def relax_creep(state, regime, step_state, work):
         else:
             high = d
         d = 0.5 * (low + high)
-    step_state = with_step_length(_STEP_AFTER_RELAXATION * step_state.tau, step_state)
+    step_state = set_step_length(_STEP_AFTER_RELAXATION * step_state.tau, 0, step_state)
     if low > -1.0 and high < 1.0:
         return True, state, regime, step_state
     omega = state.V * (1.0 + creepage(state.V, regime.sigma, work.scene))
@@ -132,20 +164,26 @@ def relax_creep(state, regime, step_state, work):
 
 @kernel
 def _advance_segment(moving, state, regime, step_state, work):
-    """Enter the next segment of the drive if one ends at the present time and there is a next one.
+    """Enter the next segment of the drive if one ends at the time reached and there is a next one.
 
-    moving: whether the cylinder moves; state, regime, step_state: at the present time; work: Workspace.
+    moving: bool, whether the cylinder moves.
+    state, regime: State and Regime, the present ones.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion; a change of direction is recorded.
     Returns (whether the cylinder moves, State, Regime, StepState), unchanged where no segment ends.
     """
     drive = work.drive
     if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:
         return moving, state, regime, step_state
     h = step_state.h if continues_smoothly(step_state.segment, drive) else 0.0
-    tau, next_output, segment, n_steps, n_ended, _ = step_state
-    step_state = StepState(tau, next_output, segment + 1, n_steps, n_ended, h)
+    tau, next_output, segment, n_steps, n_accepted, _ = step_state
+    step_state = StepState(tau, next_output, segment + 1, n_steps, n_accepted, h)
     if moving:
+        direction = regime.direction
         state, regime = enter_segment(state, regime, step_state, work)
-        # in partial slip omega = 0 where V = 0
+        if regime.direction != direction:
+            record_switch(DIRECTION_REVERSED, step_state, work)
+        # In partial slip omega is 0 where V is 0.
         moving = state.V != 0.0 or (regime.full_slip and state.omega_or_d != 0.0)
     return moving, state, regime, step_state
 
@@ -154,9 +192,12 @@ def _advance_segment(moving, state, regime, step_state, work):
 def _come_to_rest(code, state, regime, step_state, work):
     """Write the outputs of a motion that comes below the rest threshold now; return the StepState at its end.
 
-    code: regime in the outputs before, -1 before the first one; state, regime, step_state: at the present time;
-    work: Workspace.
     The kinetic energy that is left is added to the loss in rolling.
+
+    code: int, regime in the outputs before; -1 before the first one.
+    state, regime: State and Regime, the present ones.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion; outputs are written.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
     if code >= 0 and code != AT_REST:
@@ -167,20 +208,40 @@ def _come_to_rest(code, state, regime, step_state, work):
 
 
 @kernel
-def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
-    """Integrate regime after regime until the last output time; return (status, StepState).
+def _record_regime(code, new_code, stick_formed, step_state, work):
+    """Record a regime that differs from the one before, and when stick first forms; return the new code.
 
-    moving: whether the cylinder moves; stick_formed: whether the stick zone has just formed; state, regime,
-    step_state: at the start; work: Workspace.
+    code: int, regime in the outputs before; -1 before the first one, which is no change.
+    new_code: int, regime in the outputs from now on.
+    stick_formed: bool, whether the stick zone has just formed.
+    step_state: StepState, with the time of the change.
+    work: Workspace, of the motion.
     """
-    event, relaxed_at, nodes, code = NO_EVENT, -1.0, work.nodes, regime_code(regime) if moving else -1
+    if new_code != code:
+        if code >= 0:
+            record_switch(new_code, step_state, work)
+        if stick_formed and np.isnan(work.nodes[ONSET_TIME]):
+            work.nodes[ONSET_TIME] = step_state.tau / work.scene.gamma
+    return new_code
+
+
+@kernel
+def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
+    """Integrate regime after regime until the last output time.
+
+    moving: bool, whether the cylinder moves.
+    stick_formed: bool, whether the stick zone has just formed.
+    state: State, at the start.
+    regime: Regime, at that state.
+    step_state: StepState, at the start.
+    work: Workspace, of the motion; outputs are written.
+    Returns (status of the motion, StepState at its end).
+    """
+    event, relaxed_at, code = NO_EVENT, -1.0, regime_code(regime) if moving else -1
     while step_state.next_output < work.output_tau.size:
         if step_state.n_steps >= work.options.max_steps:
             return STEP_LIMIT, step_state
-        direction = regime.direction
         moving, state, regime, step_state = _advance_segment(moving, state, regime, step_state, work)
-        if regime.direction != direction:
-            record_switch(DIRECTION_REVERSED, step_state, work)
         if moving and added_mass_exhausted(event, state, regime, work):
             return ADDED_MASS_EXHAUSTED, write_due_outputs(state, regime, step_state, work)
         event, direction, last_state = NO_EVENT, regime.direction, step_state
@@ -208,26 +269,23 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             continue
         if event != NO_EVENT and not added_mass_exhausted(event, state, regime, work):
             moving, state, regime = apply_event(event, state, regime, step_state, work)
-            step_state = with_step_length(step_state.h if event == DELTA_ZERO else 0.0, step_state)
+            step_state = set_step_length(step_state.h if event == DELTA_ZERO else 0.0, 0, step_state)
         if moving and code >= 0 and regime.direction != direction:
             record_switch(DIRECTION_REVERSED, step_state, work)
-        new_code = regime_code(regime) if moving else rest_code(step_state, work)
-        if new_code != code and (moving or event == NO_EVENT):
-            if code >= 0:
-                record_switch(new_code, step_state if moving else last_state, work)
-            if stick_formed and np.isnan(nodes[ONSET_TIME]):
-                nodes[ONSET_TIME] = step_state.tau / work.scene.gamma
-            code = new_code
+        if moving or event == NO_EVENT:
+            new_code = regime_code(regime) if moving else rest_code(step_state, work)
+            code = _record_regime(code, new_code, stick_formed, step_state if moving else last_state, work)
     return COMPLETED, step_state
 
 
 @kernel
 def integrate_motion(V0, omega0, record):
-    """Integrate one motion from t = 0 to its last output time.
+    """Integrate one motion of Eq. (22) with its drive from t = 0 to its last output time.
 
-    V0, omega0: initial speeds; record: Workspace by value.
-    Returns (status, trial steps, regime changes, onset time t of stick, t of coming to rest); times are NaN without
-    them.
+    V0, omega0: float, initial speeds, dimensionless.
+    record: Workspace, by value; outputs are written.
+    Returns (status, trial steps, regime changes, time t of the onset of stick, t of coming to rest); the times are NaN
+    without them.
     """
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from ..compile.by_reference import by_value
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import NODES, ROW_LENGTH, N, evaluate_dense_output, fit_dense_output, row_range
 from .drive import load_at_node
-from .rhs import creepage, omega_and_delta, rhs_and_forces_at_node, stick_edge_function
+from .law import creepage, omega_and_delta, stick_edge_function
+from .records import DRIVE_BRAKE, PRESCRIBED_V, State
+from .rhs import rhs_and_forces_at_node
 from .workspace import (
     BELOW_REST_SPEED,
     BRAKE_RELEASE,
     DELTA_ZERO,
-    DRIVE_BRAKE,
     NO_EVENT,
     OMEGA_ZERO,
-    PRESCRIBED_V,
     ROW_DENSE_EVENT,
     ROW_DRIVE,
     ROW_OMEGA_OR_D,
@@ -22,43 +22,52 @@ from .workspace import (
     ROW_V,
     STICK_EDGE,
     V_ZERO,
-    State,
     dense_state,
 )
 
-#: an event ends a step where its function is below this times rtol, relative to the scale of the function
+#: A step ends at an event where the function of the event is below this times rtol, relative to the scale of the
+#: function: a hundredth of the tolerance.
 _EVENT_TOLERANCE = 1e-2
-#: smallest such tolerance that rounding allows, relative to the scale of the function
+#: Smallest such tolerance that rounding allows, relative to the scale of the function: some units of rounding.
 _EVENT_ROUNDING = 4e-15
-#: largest number of evaluations of an interpolant in search of its zero: 8 to 10 are usual
+#: Largest number of evaluations of an interpolant in search of its zero: 8 to 10 are usual.
 _ZERO_SEARCH_STEPS = 60
-#: width in v of a bracket that is a zero to rounding
+#: Width in v of a bracket that is a zero to rounding.
 _ZERO_WIDTH = 1e-15
-#: steps of the ternary search for the minimum of an interpolant
+#: Number of steps of the ternary search for the minimum of an interpolant: 40 leave 1e-7 of the interval, at which the
+#: value differs from the minimum by 1e-14 of its variation.
 _TERNARY_STEPS = 40
-#: relative size of an event function at the start of a step up to which it counts as 0: the step begins on the event
+#: Value of an event function at the left end of a step, divided by its largest value on the step, up to which it counts
+#: as 0: the step begins on the event.
 _START_ROUNDING = 1e-14
-#: rounding error of the function of the stick edge, relative to the speeds
+#: Rounding error of the function of the stick edge, relative to the speeds of which it is the difference: without it
+#: steps under slight friction could not end.
 _EDGE_ROUNDING = 1e-13
-#: v up to which an interpolant is extrapolated beyond the step in search of a zero
+#: Position v up to which an interpolant is extrapolated beyond the step in search of a zero: half a step beyond its
+#: end.
 _EXTRAPOLATION_END = 3.0
-#: v from which on no zero was found on the extrapolation
+#: Position v from which on no zero was found on the extrapolation, whose search then ends at 3.
 NOT_FOUND = 2.99
-#: offset in v of the difference quotient by which a zero is refined
+#: Offset in v of the difference quotient by which a zero is refined; the function itself is evaluated there, as it is
+#: no polynomial of the unknowns.
 _SECANT_OFFSET = 1e-3
-#: number of refinements
+#: Number of refinements with the same difference quotient, which converge linearly.
 _SECANT_STEPS = 5
-#: largest correction of v in a refinement
+#: Largest correction of v in a refinement; a larger one ends the refinement.
 _MAX_SECANT_MOVE = 0.1
-#: |d| up to which either branch of the law serves, as they differ by d^2: the branch ends this far beyond d = 0
+#: |d| up to which either branch of the law serves, as they differ by d^2: the branch ends this far beyond d = 0.
+#: Without it rounding makes endless events on the slow manifold, where d falls like V.
 BRANCH_OVERLAP = 1e-8
 
 
-@kernel(inline=True)
+@inline_kernel
 def is_event_active(event, step, regime, work):
-    """Return whether an event may end the regime on this step.
+    """Return whether an event may end the regime on a step.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; step: Step; regime: Regime; work: Workspace.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    step: Step, the trial step.
+    regime: Regime, that of the step.
+    work: Workspace, of the motion.
     """
     if event == DELTA_ZERO:
         return not regime.full_slip
@@ -69,11 +78,13 @@ def is_event_active(event, step, regime, work):
     return event != BELOW_REST_SPEED or (step.undriven and work.options.rest_speed > 0.0)
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_event_functions(step, regime, work):
     """Store the event functions at all nodes of a solved step: positive within the regime, 0 at its end.
 
-    step: Step; regime: Regime; work: Workspace with the unknowns at the nodes.
+    step: Step, the solved one.
+    regime: Regime, that of the step.
+    work: Workspace, with the unknowns at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written.
     """
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):
@@ -84,21 +95,22 @@ def evaluate_event_functions(step, regime, work):
             nodes[DELTA_ZERO + i] = regime.sigma * omega_or_d + BRANCH_OVERLAP
         if regime.spin_sign != 0.0 or (step.undriven and rest > 0.0):
             omega, delta = omega_and_delta(State(V, omega_or_d), regime, scene)
-            # in partial slip omega = V (1 + delta): V = 0 is another event, delta = -1 is this one
+            # In partial slip omega = V (1 + delta): V = 0 is another event, delta = -1 is this one.
             spin_function = omega if regime.full_slip else 1.0 + delta if V > 0.0 else 1.0
             nodes[OMEGA_ZERO + i] = regime.spin_sign * spin_function
             nodes[BELOW_REST_SPEED + i] = max(abs(V), abs(omega)) - rest
-        if regime.locked:  # squares: smooth where the torque of the brake changes its sign
+        if regime.locked:  # Squares are smooth where the torque of the brake changes its sign.
             limit, torque = load_at_node(i, regime, work).brake, rhs_and_forces_at_node(i, regime, work)[1][2]
             nodes[BRAKE_RELEASE + i] = limit * limit - torque * torque
 
 
 @kernel
 def _first_negative_node(event, last, nodes):
-    """Return the first node, up to ``last``, at which an event function has fallen below 0; 0 for none.
+    """Return the first node at which an event function has fallen below 0, having been positive before; 0 for none.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
-    A function that begins at 0, to rounding, must have been positive before.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    last: int, the last node that is considered.
+    nodes: Workspace.nodes, with the event functions.
     """
     smallest, largest = row_range(event, nodes)
     if not smallest < 0.0:
@@ -114,10 +126,12 @@ def _first_negative_node(event, last, nodes):
 
 @kernel
 def locate_zero(event, node, nodes):
-    """Return the v at which the interpolant of an event function is 0, before ``node``, or beyond the step if that
-    is 0.
+    """Return the position at which the interpolant of an event function is 0.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    node: int, first node at which the function is negative; 0: the zero is sought beyond the right end of the step.
+    nodes: Workspace.nodes, with the event functions; ROW_DENSE_EVENT is written.
+    Returns v in [0, 3], at least NOT_FOUND if beyond the step no zero is found.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
@@ -126,11 +140,14 @@ def locate_zero(event, node, nodes):
 
 @kernel
 def _find_interpolant_zero(start, low, high, nodes):
-    """Return the v in [low, high] at which the stored interpolant of an event function falls through 0.
+    """Return the v at which the stored interpolant of an event function falls through 0, by false position.
 
-    start: value of the function at v = 0; low, high: ends of the bracket; nodes: Workspace.nodes with the interpolant.
-    The bracket is cut by false position with the weights of Anderson and Bjorck (BIT 13, 1973), which needs a sixth of
-    the evaluations of a bisection.  Without a zero in between the end is returned that a bisection would converge to.
+    The weights of Anderson and Bjorck (BIT 13, 1973) move both ends of the bracket: that needs a sixth of the
+    evaluations of a bisection.  Without a zero in between the end is returned that a bisection would converge to.
+
+    start: float, value of the function at v = 0, in its unit.
+    low, high: float, ends of the bracket in v, positive and negative values of the function there.
+    nodes: Workspace.nodes, with the interpolant.
     """
     f_low = start + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT)
     f_high = start + evaluate_dense_output(high, nodes, ROW_DENSE_EVENT)
@@ -144,7 +161,7 @@ def _find_interpolant_zero(start, low, high, nodes):
             break
         f = start + evaluate_dense_output(v, nodes, ROW_DENSE_EVENT)
         if f > 0.0:
-            # the end that stays counts less, so that it moves too
+            # The end that stays counts less, so that it moves too.
             f_high *= 1.0 - f / f_low if f < f_low else 0.5
             low, f_low = v, f
         else:
@@ -157,7 +174,10 @@ def _find_interpolant_zero(start, low, high, nodes):
 def _locate_double_crossing(event, nodes):
     """Return the v at which an event function falls through 0 between nodes at which it is positive; 0 for none.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions.
+    The minimum of the interpolant next to a node with a local minimum is located by a ternary search.
+
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    nodes: Workspace.nodes, with the event functions; ROW_DENSE_EVENT is written.
     """
     for i in range(1, N):
         if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
@@ -176,12 +196,16 @@ def _locate_double_crossing(event, nodes):
     return 0.0
 
 
-@kernel(inline=True)
+@inline_kernel
 def find_first_event(step, regime, work):
-    """Return (event whose function falls below 0 first, v there); (NO_EVENT, 2) for none.
+    """Return the event whose function falls below 0 first on a solved step, and its position by the interpolant.
 
-    step: Step; regime: Regime; work: Workspace with the event functions.
-    Between the same two nodes the interpolants tell which event is first.
+    Between the same two nodes the zeros of the interpolants decide which event is first.
+
+    step: Step, the solved one.
+    regime: Regime, that of the step.
+    work: Workspace, with the event functions.
+    Returns (event, v in [0, 2]); (NO_EVENT, 2) for none.
     """
     event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
@@ -198,21 +222,24 @@ def find_first_event(step, regime, work):
     return event, v
 
 
-@kernel(inline=True)
+@inline_kernel
 def find_missed_event(step, regime, work):
     """Return the event whose function begins at 0 and is negative at all nodes; NO_EVENT for none.
 
-    step: Step; regime: Regime; work: Workspace with the event functions.
     The regime has then ended before the first node.
+
+    step: Step, the solved one.
+    regime: Regime, that of the step.
+    work: Workspace, with the event functions.
     """
     nodes = work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
-        # the equations of partial slip continue into full slip: a missed edge does no harm there
+        # The equations of partial slip continue into full slip: a missed edge does no harm there.
         excluded = candidate == BELOW_REST_SPEED or (candidate == STICK_EDGE and not regime.full_slip)
         if excluded or not nodes[candidate + N] < 0.0 or not is_event_active(candidate, step, regime, work):
             continue
         (_, largest), scale = row_range(candidate, nodes), _event_scale(candidate, nodes)
-        # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself
+        # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself.
         if candidate == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
             scale = max(scale, nodes[ROW_SPEED + N])
         if largest <= _START_ROUNDING * scale and nodes[candidate + N] < -_event_tolerance(work.options.rtol) * scale:
@@ -222,9 +249,12 @@ def find_missed_event(step, regime, work):
 
 @kernel
 def _event_function(event, v, regime, work):
-    """Evaluate an event function at v from the dense output of the unknowns, not from its own interpolant.
+    """Return an event function at a position of a step, by the dense output of the unknowns.
 
-    event: STICK_EDGE, OMEGA_ZERO or BELOW_REST_SPEED; regime: Regime; work: Workspace with the dense output.
+    event: int, STICK_EDGE, BELOW_REST_SPEED or OMEGA_ZERO.
+    v: float, position in [0, 2].
+    regime: Regime, that of the step.
+    work: Workspace, with the dense output.
     """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:
@@ -236,12 +266,16 @@ def _event_function(event, v, regime, work):
 
 @kernel
 def refine_event(event, v, regime, work):
-    """Return the refined v of an event whose function is no polynomial of the unknowns, by the difference quotient
-    of it.
+    """Refine the position of an event whose function is no polynomial of the unknowns, by the function itself.
 
-    event, v: the event and its position by the interpolant; regime: Regime; work: Workspace with the dense output.
-    Such functions are the stick edge and the larger speed in full slip, and omega in partial slip; else v is
-    unchanged.
+    Such functions are the stick edge and the larger speed in full slip, and omega in partial slip.  The iteration is
+    Newton's, with a difference quotient in place of the slope.
+
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    v: float, position of the event by the interpolant.
+    regime: Regime, that of the step.
+    work: Workspace, with the dense output.
+    Returns the position v in [0, 2]; unchanged for other functions.
     """
     if event not in ((STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)):
         return v
@@ -257,10 +291,12 @@ def refine_event(event, v, regime, work):
 
 @kernel
 def _event_scale(event, nodes):
-    """Return the scale of an event function on a step: the largest modulus of the quantities of which it is a
-    difference.
+    """Return the scale of an event function on a step, in the unit of the function.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with event functions, speeds and drive.
+    It is the largest modulus of the quantities of which the function is a difference.
+
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    nodes: Workspace.nodes, with event functions, speeds and drive.
     """
     smallest, largest = row_range(event, nodes)
     largest = max(largest, -smallest)
@@ -271,17 +307,19 @@ def _event_scale(event, nodes):
     return largest
 
 
-@kernel(inline=True)
+@inline_kernel
 def _event_tolerance(rtol):
-    """Return the value of an event function, divided by its scale, up to which it counts as 0."""
+    """Return the value of an event function divided by its scale up to which it counts as 0; rtol: tolerance."""
     return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)
 
 
 @kernel
 def ends_at_event(event, nodes, rtol):
-    """Return whether the step ends at an event: its function has fallen to 0, and has not only started there.
+    """Return whether a step ends at an event: its function has fallen to 0 at the right end.
 
-    event: STICK_EDGE ... BRAKE_RELEASE; nodes: Workspace.nodes with the event functions; rtol: relative tolerance.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    nodes: Workspace.nodes, with the event functions.
+    rtol: float, relative tolerance, dimensionless.
     """
     scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
     return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

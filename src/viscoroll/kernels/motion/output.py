@@ -9,44 +9,44 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.by_reference import by_value
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
-from .drive import evaluate_load, load_at_node, required_forces
+from .drive import evaluate_load, load_at_node
+from .law import omega_and_delta
+from .records import DIRECTION_REVERSED, N_FREE_QUADRATURES, N_QUADRATURES, REGIME_AT_REST, StepState
 from .regimes import regime_code
-from .rhs import evaluate_rhs, evaluate_rhs_inline, omega_and_delta
+from .rhs import evaluate_rhs, evaluate_rhs_inline, required_forces
 from .workspace import (
-    DIRECTION_REVERSED,
-    N_FREE_QUADRATURES,
-    N_QUADRATURES,
     N_RECORDED,
     N_SWITCHES,
     QUADRATURE_TOTALS,
-    REGIME_AT_REST,
     ROW_DENSE_QUADRATURES,
     ROW_INTEGRANDS,
     ROW_OMEGA_OR_D,
     ROW_V,
-    StepState,
     dense_position,
     dense_state,
     last_output_tau,
 )
 
-#: number of output quantities
+#: Number of output quantities.
 N_OUTPUTS = 13
-#: output row of x; that of the angle follows
+#: Output row of x; that of the angle follows.
 OUT_X = 2
-#: output row of the force; that of the torque follows
+#: Output row of the force; that of the torque follows.
 OUT_FORCE = 6
-#: output row of the first energy; four others follow
+#: Output row of the first energy; four others follow.
 OUT_WORK = 8
-#: output row of each quadrature
+#: Output row of each quadrature.
 _OUT_QUADRATURES = np.array([OUT_X, OUT_X + 1, OUT_WORK + 3, OUT_WORK + 4, OUT_WORK, OUT_WORK + 1, OUT_WORK + 2])
 
 
 @kernel
 def requested_groups(rows):
-    """Return (whether a quadrature is among the requested output rows, whether force or torque is)."""
+    """Return (whether a quadrature is among the requested outputs, whether force or torque is).
+
+    rows: (k,) int, the requested output rows of the module.
+    """
     quadratures = forces = False
     for row in rows:
         quadratures = quadratures or OUT_X <= row < OUT_X + 2 or row >= OUT_WORK
@@ -56,7 +56,14 @@ def requested_groups(rows):
 
 @kernel
 def write_column(column, speeds, code, forces, work):
-    """Write (V, omega, delta), the code of the regime, and (force, torque) to one output column."""
+    """Write speeds, regime and forces to one output column.
+
+    column: int, index of the output time.
+    speeds: (V, omega, delta), dimensionless, not oriented.
+    code: int, regime in the outputs.
+    forces: (force, torque), dimensionless, not oriented.
+    work: Workspace, whose outputs are written.
+    """
     out, (V, omega, delta), (force, torque) = work.outputs, speeds, forces
     out[0, column], out[1, column], out[4, column], out[5, column] = V, omega, delta, code
     out[OUT_FORCE, column], out[OUT_FORCE + 1, column] = force, torque
@@ -64,22 +71,30 @@ def write_column(column, speeds, code, forces, work):
 
 @kernel
 def write_quadrature(column, n, increase, work):
-    """Write quadrature ``n``, its total so far plus ``increase``, to one output column."""
+    """Write one quadrature to one output column: its total up to the last accepted step plus an increase.
+
+    column: int, index of the output time.
+    n: int, the quadrature: 0 distance, 1 angle, 2 ... 6 energies in the order of :mod:`records`.
+    increase: float, since the last accepted step, dimensionless.
+    work: Workspace, with the totals; its outputs are written.
+    """
     work.outputs[_OUT_QUADRATURES[n], column] = work.nodes[QUADRATURE_TOTALS + n] + increase
 
 
 @kernel
 def _write_totals(column, work):
-    """Write the totals of all quadratures to one output column."""
+    """Write the totals of all quadratures to one output column; column: int, its index; work: Workspace."""
     for n in range(N_QUADRATURES):
         write_quadrature(column, n, 0.0, work)
 
 
 @kernel
 def record_switch(code, step_state, work):
-    """Record a change of regime, or of the sign of V, at the time of the step state.
+    """Record a change of regime, or of the sign of V, at the time reached.
 
-    code: regime behind it, or DIRECTION_REVERSED; step_state: StepState; work: Workspace.
+    code: int, regime behind it, or DIRECTION_REVERSED.
+    step_state: StepState, with that time.
+    work: Workspace, whose ``switches`` and counts are written.
     """
     nodes, switches = work.nodes, work.switches
     n = int(nodes[N_RECORDED])
@@ -91,10 +106,13 @@ def record_switch(code, step_state, work):
 
 @kernel
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
-    """Write the outputs before a time of a cylinder at rest; return the StepState then.
+    """Write the outputs of a cylinder at rest up to a time; return the StepState then, one step later.
 
-    end: tau of that time; inclusive: whether an output at ``end`` itself is written too; code: regime in the
-    outputs; step_state: StepState at the present time; work: Workspace.
+    end: float, that time in tau.
+    inclusive: bool, whether an output at ``end`` itself is written too.
+    code: int, regime in the outputs.
+    step_state: StepState, at the present time.
+    work: Workspace, of the motion; outputs are written.
     """
     column, tau = step_state.next_output, work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
@@ -102,15 +120,18 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
         write_column(column, (0.0, 0.0, 0.0), code, (load.force, load.torque), work)
         _write_totals(column, work)
         column += 1
-    return StepState(end, column, step_state.segment, step_state.n_steps + 1, step_state.n_ended, 0.0)
+    return StepState(end, column, step_state.segment, step_state.n_steps + 1, step_state.n_accepted, 0.0)
 
 
 @kernel
 def _write_state(column, state, segment, regime, work):
     """Write one output column but for the quadratures.
 
-    column: index of the output time; state: State then; segment: index of the segment of the drive; regime: Regime;
-    work: Workspace.
+    column: int, index of the output time.
+    state: State, at that time.
+    segment: int, index of the segment of the drive.
+    regime: Regime, at that time.
+    work: Workspace, of the motion; outputs are written.
     """
     direction, force, torque = regime.direction, 0.0, 0.0
     omega, delta = omega_and_delta(state, regime, work.scene)
@@ -124,37 +145,48 @@ def _write_state(column, state, segment, regime, work):
 
 @kernel
 def write_due_outputs(state, regime, step_state, work):
-    """Write the outputs due at the present time, to the tolerance; return the StepState.
+    """Write the outputs due at the time reached, to the tolerance; return the StepState behind them.
 
-    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    state: State, at that time.
+    regime: Regime, at that state.
+    step_state: StepState, with that time and the next output.
+    work: Workspace, of the motion; outputs are written.
     """
     column = step_state.next_output
     while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (1.0 + work.options.rtol):
         _write_state(column, state, step_state.segment, regime, work)
         _write_totals(column, work)
         column += 1
-    return StepState(step_state.tau, column, step_state.segment, step_state.n_steps, step_state.n_ended, 0.0)
+    return StepState(step_state.tau, column, step_state.segment, step_state.n_steps, step_state.n_accepted, 0.0)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _quadrature_at(n, v, step, nodes):
-    """Return the increase of quadrature ``n`` from the left end of a step to v."""
+    """Return the increase of a quadrature from the left end of a step to a position, dimensionless.
+
+    n: int, the quadrature.
+    v: float, position in [0, 2].
+    step: Step, the accepted one.
+    nodes: Workspace.nodes, with the integrands and their dense output.
+    """
     first = nodes[ROW_INTEGRANDS + ROW_LENGTH * n]
     return 0.5 * step.h * evaluate_integral(v, first, nodes, ROW_DENSE_QUADRATURES + ROW_LENGTH * n)
 
 
-@kernel(inline=True)
+@inline_kernel
 def _evaluate_integrands(regime, work):
-    """Store the integrands of the quadratures at all nodes of an accepted step.
+    """Store the integrands of the quadratures at all nodes of an accepted step (docs/theory_motion.md, Energy).
 
-    regime: Regime; work: Workspace with the unknowns at the nodes.
     Distance and angle are integrals over t, the energies over tau.
+
+    regime: Regime, that of the step.
+    work: Workspace, with unknowns and drive at the nodes; rows from ROW_INTEGRANDS on are written.
     """
     nodes, values = work.nodes, by_value(work)
     direction_over_gamma = regime.direction / values.scene.gamma
     for i in range(N + 1):
         load, V = load_at_node(i, regime, values), nodes[ROW_V + i]
-        # inlined: the compiler leaves out the derivatives, half of the work of a right-hand side
+        # The right-hand side is inlined: the compiler leaves out its derivatives, half of the work.
         rates = evaluate_rhs_inline(V, nodes[ROW_OMEGA_OR_D + i], load, regime, values.scene)
         omega = rates.omega
         force, torque, brake = required_forces(V, omega, rates, load, regime, values.scene.j)
@@ -169,21 +201,31 @@ def _evaluate_integrands(regime, work):
 
 @kernel
 def _integral_over_step(row, step, nodes):
-    """Return the integral over tau of a row along a whole step."""
+    """Return the integral over tau of a row along a whole step, by Radau quadrature.
+
+    row: int, index in ``nodes`` of the values.
+    step: Step, the accepted one.
+    nodes: Workspace.nodes.
+    """
     total = 0.0
     for i in range(N):
         total += QUADRATURE_WEIGHTS[i] * nodes[row + i + 1]
     return 0.5 * step.h * total
 
 
-@kernel(inline=True)
+@inline_kernel
 def accept_step(end, v, step, regime, step_state, work):
-    """Accept a step up to the position v: write the outputs before its end and add up the quadratures.
+    """Accept a step up to a position on it: write the outputs before its end and add up the quadratures.
 
-    end: tau at v; step: Step; regime: Regime; step_state: StepState at its left end; work: Workspace with the solved
-    step.
-    Returns the StepState at ``end``.  An output at ``end`` itself is written with the next step, as the drive
-    may jump there, but for the last one.
+    An output at the end itself is written with the next step, as the drive may jump there, but for the last one.
+
+    end: float, tau at that position.
+    v: float, the position in [0, 2]; 2: the whole step.
+    step: Step, the solved one.
+    regime: Regime, that of the step.
+    step_state: StepState, at its left end.
+    work: Workspace, with the solution and its dense output; outputs and totals are written.
+    Returns the StepState at ``end``.
     """
     tau, column = work.output_tau, step_state.next_output
     is_last = end == last_output_tau(work)
@@ -202,12 +244,12 @@ def accept_step(end, v, step, regime, step_state, work):
             increase = _quadrature_at(n, v_output, step, work.nodes) if n < n_quadratures else 0.0
             write_quadrature(column, n, increase, work)
         column += 1
-    if step_state.n_ended < work.step_ends.size:
-        work.step_ends[step_state.n_ended] = end / work.scene.gamma
+    if step_state.n_accepted < work.step_ends.size:
+        work.step_ends[step_state.n_accepted] = end / work.scene.gamma
     for n in range(n_quadratures):
         if v < 2.0:
             work.nodes[QUADRATURE_TOTALS + n] += _quadrature_at(n, v, step, work.nodes)
         else:
             row = ROW_INTEGRANDS + ROW_LENGTH * n
             work.nodes[QUADRATURE_TOTALS + n] += _integral_over_step(row, step, work.nodes)
-    return StepState(end, column, step_state.segment, step_state.n_steps, step_state.n_ended + 1, step_state.h)
+    return StepState(end, column, step_state.segment, step_state.n_steps, step_state.n_accepted + 1, step_state.h)

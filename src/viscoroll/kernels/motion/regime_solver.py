@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from .asymptotics import continue_at_equilibrium, is_coasting, may_be_at_equilibrium
 from .collocation import N, row_range
 from .drive import drive_rounding, is_constant, is_undriven, is_unloaded, segment_end
@@ -19,14 +19,13 @@ from .events import (
     refine_event,
 )
 from .output import accept_step
+from .records import PRESCRIBED_V, ROUNDING, ZERO_SPEED, State, Step
 from .rhs import current_rates
 from .step import solve_step, store_rhs
 from .step_control import first_step_length, next_step_length, step_length_after_relaxation, time_to_V_zero
 from .workspace import (
     BELOW_REST_SPEED,
     NO_EVENT,
-    PRESCRIBED_V,
-    ROUNDING,
     ROW_OMEGA_OR_D,
     ROW_P_DIAGONAL,
     ROW_RELAXATION,
@@ -35,70 +34,116 @@ from .workspace import (
     STEP_FAILED,
     STICK_EDGE,
     V_ZERO,
-    ZERO_SPEED,
-    State,
-    Step,
     change_slip,
-    count_step,
     dense_state,
+    set_step_length,
     shorten_step,
 )
 
-#: largest number of successive rejections
+#: Largest number of successive rejections: as each shortens the step to 0.7 or 0.4 of its length at most, the step is
+#: then below 1e-23 of the first.
 _MAX_REJECTIONS = 60
-#: error divided by its tolerance up to which a step is accepted where it cannot be shortened: the error of a motion
-#: grows by 2 to 3 rtol at most
+#: Error divided by its tolerance up to which a step is accepted where it cannot be shortened: the error of a motion
+#: grows by 2 to 3 rtol at most.
 _ACCEPTED_AT_SHORTEST = 10.0
-#: V at the right end of a step divided by V at its left end, below which the step is ended at V = 0 if it was aimed
-#: at it
+#: V at the right end of a step divided by V at its left end, below which V = 0 is taken for the event of a step that
+#: was aimed at it and on which no event function changes its sign.
 _V_ZERO_DROP = 0.2
-#: error divided by its tolerance up to which a step shows where its regime ends
+#: Error divided by its tolerance up to which a step shows where its regime ends; a step with a larger one is repeated.
 _MAX_ERROR_FOR_EVENTS = 1e6
-#: largest number of trials until a step ends at the event
+#: Largest number of trials until a step ends at the event.
 _MAX_TRIALS = 8
-#: error divided by its tolerance that is assigned to a step that did not end at its event
+#: Error divided by its tolerance that is assigned to a step that did not end at its event: the next step is then
+#: shorter, as behind any rejection.
 _ERROR_OF_FAILED_TRIAL = 10.0
-#: v of an event in full slip in the first quarter of a step, up to which the step is solved again with an end behind
-#: it: early on the interpolants are less accurate relative to the time so far
+#: Position v of an event in full slip, up to which the step is solved again with an end behind it: early on a step the
+#: interpolants are less accurate relative to the time so far; the onset was wrong by 7e-12 of it.
 _EARLY_EVENT = 0.5
-#: length of that step divided by the time to the event
+#: Length of that step divided by the time to the event: above 1, so that the event lies on the step.
 _BEYOND_EARLY_EVENT = 1.1
-#: shortest step divided by the time so far: a regime that ends where it begins
+#: Shortest step divided by the time so far and to come: a regime that is over at all nodes of such a step ends there.
 SHORTEST_STEP = 1e-14
-#: fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next segment
+#: Fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next segment: 1 but for
+#: rounding of the time.
 BEFORE_SEGMENT_END = 1.0 - 1e-13
 
 
-@kernel(inline=True)
+@inline_kernel
 def _start_step(state, regime, step_state, work):
-    """Store the right-hand side at node 0; return the Regime, at d = 0 that of the branch of the law to which d
-    moves.
+    """Store the right-hand side at node 0 of the next step.
 
-    state, regime, step_state: State, Regime and StepState at the present time; work: Workspace.
+    state: State, at the time reached.
+    regime: Regime, at that state.
+    step_state: StepState, with that time and its segment.
+    work: Workspace; node 0 is written.
+    Returns the Regime; at d = 0 that of the branch of the law to which d moves.
     """
     nodes = work.nodes
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
     rates = current_rates(state, regime, step_state, work)
     store_rhs(0, rates, nodes)
-    # at V = 0 d has its relaxed value and Q is a rounding error of it: V' then follows from p'
+    # At V = 0 d has its relaxed value and the rounding of d changes Q: V' then follows from p'.
     nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
     nodes[ROW_RELAXATION], nodes[ROW_P_DIAGONAL] = rates.drate_dd / rates.weight, rates.dp_rate_dV / rates.dp_dV
     if not regime.full_slip and state.omega_or_d == 0.0 and regime.sigma * rates.weighted_rate < 0.0:
-        # both branches agree at d = 0
+        # Both branches agree at d = 0.
         return change_slip(regime, False, -regime.sigma)
     return regime
 
 
-@kernel(inline=True)
-def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
+@inline_kernel
+def _end_at_V_zero(step, remaining, state, regime, work):
+    """Shorten a trial step to the time at which V is expected to be 0, if that lies on it.
+
+    A prescribed V that comes to 0 at the end of the segment does not count.
+
+    step: Step, the trial step.
+    remaining: float, time in tau to the end of the segment.
+    state: State, at the left end.
+    regime: Regime, at that state.
+    work: Workspace, with node 0.
+    Returns (Step, whether it ends at that time).
+    """
+    time = time_to_V_zero(step, state, regime, work)
+    if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
+        return step, False
+    return shorten_step(step, min(time, step.h)), time <= step.h
+
+
+@inline_kernel
+def _find_crossed_event(step, remaining, regime, work):
+    """Return the event whose function falls below 0 first on a solved step, and its position.
+
+    A prescribed V that is 0 at the end of its segment does not count: the next segment decides its direction.
+
+    step: Step, the solved one.
+    remaining: float, time in tau to the end of the segment.
+    regime: Regime, that of the step.
+    work: Workspace, with the event functions.
+    Returns (event, v in [0, 2]); NO_EVENT for none.
+    """
+    event, v = find_first_event(step, regime, work)
+    at_segment_end = step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
+    if event == V_ZERO and at_segment_end and work.drive.prescribed == PRESCRIBED_V:
+        return NO_EVENT, v
+    return event, v
+
+
+@inline_kernel
+def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 
-    step: Step; remaining: time to the end of the segment; aimed: whether its length was chosen to reach V = 0;
-    dense_step: Step whose dense output is stored; regime: Regime; work: Workspace with node 0.
+    A step with too large an error, on which the regime ends, contains a kink of the law: a step that ends at it may be
+    accurate.
 
+    step: Step, the trial step.
+    remaining: float, time in tau to the end of the segment.
+    targets_V_zero: bool, whether the length was chosen to reach V = 0.
+    dense_step: Step, whose dense output is stored.
+    regime: Regime, that of the step.
+    work: Workspace, with node 0; nodes and dense output are written.
     Returns (event, v at which the regime ends, Step, its error divided by its tolerance, Step of the stored dense
-    output).  A step with too large an error, on which the regime ends, contains a kink of the law: a step that ends
-    at it may be accurate.
+    output).
     """
     nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
     for _ in range(_MAX_TRIALS):
@@ -108,54 +153,57 @@ def solve_trial_step(step, remaining, aimed, dense_step, regime, work):
         if not error <= _MAX_ERROR_FOR_EVENTS:
             break
         evaluate_event_functions(step, regime, work)
-        crossed, v = find_first_event(step, regime, work)
-        V_given, at_end = work.drive.prescribed == PRESCRIBED_V, step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
-        if V_given and at_end and crossed == V_ZERO:
-            crossed = NO_EVENT
-        # in partial slip the motion ends at V = 0: the equations have no continuation
+        first_event, v = _find_crossed_event(step, remaining, regime, work)
+        # In partial slip the motion ends at V = 0: the equations have no continuation.
         V_negative = row_range(ROW_V, nodes)[0] < 0.0
-        missed = find_missed_event(step, regime, work)
-        if missed != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
-            return missed, 2.0, step, min(error, 1.0), dense_step
-        if missed != NO_EVENT or (crossed == NO_EVENT and V_negative and not regime.full_slip):
+        missed_event = find_missed_event(step, regime, work)
+        if missed_event != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
+            return missed_event, 2.0, step, min(error, 1.0), dense_step
+        if missed_event != NO_EVENT or (first_event == NO_EVENT and V_negative and not regime.full_slip):
             break
-        if crossed != NO_EVENT:
-            event = crossed
-        elif event == NO_EVENT and aimed and error <= 1.0 and nodes[ROW_V + N] < _V_ZERO_DROP * nodes[ROW_V]:
+        if first_event != NO_EVENT:
+            event = first_event
+        elif event == NO_EVENT and targets_V_zero and error <= 1.0 and nodes[ROW_V + N] < _V_ZERO_DROP * nodes[ROW_V]:
             event = V_ZERO
-        if event == NO_EVENT or (crossed == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)):
+        if event == NO_EVENT or (first_event == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)):
             return event, 2.0, step, error, dense_step
-        # partial slip ends at V = 0, and |V| in two event functions of full slip has a kink there
-        kinked = V_negative and (not regime.full_slip or crossed == STICK_EDGE or crossed == BELOW_REST_SPEED)
-        if crossed != NO_EVENT and error <= 1.0 and not kinked and crossed != V_ZERO:
+        # Partial slip ends at V = 0, and |V| in two event functions of full slip has a kink there.
+        has_kink = V_negative and (not regime.full_slip or first_event == STICK_EDGE or first_event == BELOW_REST_SPEED)
+        if first_event != NO_EVENT and error <= 1.0 and not has_kink and first_event != V_ZERO:
             if v > _EARLY_EVENT or not regime.full_slip:
                 return event, refine_event(event, v, regime, work), step, error, dense_step
             v *= _BEYOND_EARLY_EVENT
-        if crossed == NO_EVENT:
+        if first_event == NO_EVENT:
             v = locate_zero(event, 0, nodes)
-            if v >= NOT_FOUND:  # the event is not near the step
+            if v >= NOT_FOUND:  # The event is not near the step.
                 return NO_EVENT, 2.0, step, error, dense_step
         h = min(step.h * 0.5 * v, upper)
         if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
             break
-        upper = step.h if crossed != NO_EVENT else upper
+        upper = step.h if first_event != NO_EVENT else upper
         step = shorten_step(step, h)
     return NO_EVENT, 2.0, step, max(error, _ERROR_OF_FAILED_TRIAL), dense_step
 
 
 @kernel
 def integrate_regime(stick_formed, state, regime, step_state, work):
-    """Integrate one regime and return (event, State, Regime, StepState) at its end.
+    """Integrate one regime, step after step, to an event or to the end of the segment.
 
-    stick_formed: whether the stick zone has just formed; state, regime, step_state: at the start; work: Workspace.
-    The event is NO_EVENT at the end of the segment, or if the steps are used up or the rest is closed-form.
+    stick_formed: bool, whether the stick zone has just formed.
+    state: State, at the start.
+    regime: Regime, to integrate.
+    step_state: StepState, at the start.
+    work: Workspace, of the motion; outputs are written.
+    Returns (event, State, Regime, StepState) at its end; the event is NO_EVENT at the end of the segment, if the
+    allowed steps are used up, or if the rest of the motion is known in closed form, and STEP_FAILED if no step was
+    short enough.
     """
     nodes, segment, drive = work.nodes, step_state.segment, work.drive
     end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0
     h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
     undriven = is_undriven(segment, drive)
     constant = is_constant(segment, drive) and not is_unloaded(segment, drive)
-    # rounding error of p', which contains Q = mu in full slip
+    # The rounding error of p' contains that of Q = mu in full slip.
     noise = drive_rounding(segment, drive) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
     dense_step = Step(step_state.tau, 0.0, segment, False, undriven)
     while step_state.tau < end and step_state.n_steps < work.options.max_steps:
@@ -171,16 +219,12 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
         remaining = end - step_state.tau
         slope_known = regime.full_slip or state.V > ZERO_SPEED
         step = Step(step_state.tau, min(h, remaining), segment, slope_known, undriven)
-        V_zero_time = time_to_V_zero(step, state, regime, work)
-        if V_zero_time > BEFORE_SEGMENT_END * remaining and drive.prescribed == PRESCRIBED_V:
-            V_zero_time = np.inf
-        aimed = V_zero_time <= step.h and n_rejected == 0
-        if V_zero_time < step.h:
-            step = shorten_step(step, V_zero_time)
-        event, v, step, error, dense_step = solve_trial_step(step, remaining, aimed, dense_step, regime, work)
+        step, targets_V_zero = _end_at_V_zero(step, remaining, state, regime, work)
+        targets_V_zero = targets_V_zero and n_rejected == 0
+        event, v, step, error, dense_step = solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work)
         h_tried, h = h, next_step_length(step, error, n_rejected, last_h, last_error)
         h = max(h, h_tried) if error <= 1.0 and step.h == remaining else h
-        step_state = count_step(h, step_state)
+        step_state = set_step_length(h, 1, step_state)
         n_rejected += 1
         if not error <= 1.0:
             if n_rejected <= _MAX_REJECTIONS and step_state.tau + h > step_state.tau:

@@ -6,93 +6,113 @@ import numpy as np
 
 from ..compile.jit import kernel
 from .collocation import row_range
-from .drive import applied_forces, current_load, has_brake, is_undriven, prescribed_speed
-from .rhs import critical_creepage, current_rates, excess_slip
-from .workspace import (
+from .drive import current_load, has_brake, is_undriven, prescribed_speed
+from .law import critical_creepage, excess_slip
+from .records import (
     AT_REST,
-    DELTA_ZERO,
     FULL_SLIP,
     HELD_AT_REST,
     NOT_PRESCRIBED,
     OMEGA_LOCKED,
-    OMEGA_ZERO,
     PARTIAL_SLIP,
     PRESCRIBED_OMEGA,
-    ROW_V,
-    STICK_EDGE,
-    V_ZERO,
     Regime,
     State,
-    change_slip,
 )
+from .rhs import applied_forces, current_rates
+from .workspace import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip
 
-#: V at the event divided by V at the left end of the step, below which V is 0: the stick zone closes at rest
+#: V at the event divided by V at the left end of the step, below which V is 0, as rounding leaves it: the stick zone
+#: closes at rest.
 _STICK_ZONE_CLOSED = 1e-14
-#: omega/V in partial slip above which V follows a prescribed omega at fixed d
+#: omega/V in partial slip above which V follows a prescribed omega at fixed d; below it, under strong friction, V
+#: stays.
 _OMEGA_FOLLOWED = 0.5
-#: error of the position of an event, divided by rtol
+#: Error of V at an event divided by rtol times the largest V of the step: with omega = 0, slip ends at V = 0 within it.
 _EVENT_ERROR = 10.0
-#: V divided by the larger speed, below which it counts as 0 at the start
+#: V divided by the larger speed, below which it counts as 0 at the start: its square is near the smallest double.
 ZERO_V_RATIO = 1e-150
-#: rounding error of a start on the edge of the stick zone, relative to the speeds
+#: Distance of a start from the edge of the stick zone, relative to the speeds, that is rounding: about a hundred units.
 _START_ON_EDGE = 2e-14
 
 
 @kernel
 def _torque_at_locked_wheel(state, regime, step_state, work):
-    """Return (torque that accelerates a wheel held at omega = 0, largest torque of the brake)."""
+    """Return the torque that would accelerate a wheel with omega = 0, and the limit of the brake, dimensionless.
+
+    state: State, with omega = 0.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    Returns (torque of the motor less that of the contact, largest torque of the brake).
+    """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     _, torque, _ = applied_forces(state.V, 0.0, load, regime)
     return torque - rates.Q - rates.M_cylinder, load.brake
 
 
 @kernel
-def lock_wheel(regime):
-    """Return the Regime with omega held at 0 by the brake."""
-    return Regime(regime.full_slip, regime.direction, regime.sigma, regime.spin_sign, True)
+def change_brake(regime, spin_sign, locked):
+    """Return the Regime with another state of its brake; slip and direction stay.
 
-
-@kernel
-def free_wheel(regime, spin_sign):
-    """Return the Regime with omega not held, and its sign where a brake acts (0 where none does)."""
-    return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, False)
+    regime: Regime, the present one.
+    spin_sign: float, sign of omega where a brake acts, 0 where none does.
+    locked: bool, whether the brake holds omega at 0.
+    """
+    return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, locked)
 
 
 @kernel
 def brake_holds_omega(state, regime, step_state, work):
-    """Return whether the brake holds omega at 0, at a state with omega = 0."""
+    """Return whether the brake holds omega at 0.
+
+    state: State, with omega = 0.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    """
     torque, limit = _torque_at_locked_wheel(state, regime, step_state, work)
     return abs(torque) <= limit
 
 
 @kernel
 def release_brake(state, regime, step_state, work):
-    """Return the regime after a brake has let go, or after omega has changed its sign under it."""
+    """Return the Regime after a brake has let go, or after omega has changed its sign under it.
+
+    state: State, with omega = 0.
+    regime: Regime, the one before.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    """
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
-    return free_wheel(regime, spin_sign)
+    return change_brake(regime, spin_sign, False)
 
 
 @kernel
 def comes_to_rest(state, regime, step_state, work):
     """Return whether full slip ends at rest: V = 0 at the stick edge, where omega is 0 too.
 
-    state, regime, step_state: State, Regime and StepState at the event; work: Workspace with the step that ends
-    there.
+    state: State, at the event.
+    regime: Regime, of full slip.
+    step_state: StepState, at the event.
+    work: Workspace, with V at the nodes of the step that ends there.
     """
     prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
     omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
     if not (regime.locked or omega_zero):
         return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
-    # with omega = 0 slip ends at V = 0, to the tolerance of the step
+    # With omega = 0 slip ends at V = 0, to the tolerance of the step.
     return state.V <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol) * row_range(ROW_V, work.nodes)[1]
 
 
 @kernel
-def reverse_direction(state, regime):
-    """Return (state, regime) of full slip at V = 0 in the opposite direction."""
-    full_slip, direction, sigma, spin_sign, locked = regime
-    return State(0.0, -state.omega_or_d), Regime(full_slip, -direction, -sigma, -spin_sign, locked)
+def reverse_direction(regime):
+    """Return the Regime with the opposite direction, in which the signs of slip and omega are opposite too.
+
+    regime: Regime, the present one.
+    """
+    return Regime(regime.full_slip, -regime.direction, -regime.sigma, -regime.spin_sign, regime.locked)
 
 
 @kernel
@@ -100,27 +120,20 @@ def impose_prescribed_speed(state, regime, step_state, work):
     """Set the prescribed speed to its given value, where a segment begins or the stick zone forms.
 
     The error of the integration so far is small relative to the speeds so far, but may be large relative to the speed
-    prescribed from here on.
+    prescribed from here on.  In partial slip V follows a prescribed omega at fixed d, except where friction is so
+    strong that omega is far below V.
 
-    Parameters
-    ----------
-    state, regime : State, Regime
-        As integrated, with V >= 0.
-    step_state : StepState
-        At that time.
-    work : Workspace
-        Of the motion.
-
-    Returns
-    -------
-    (State, Regime)
-        With the prescribed speed, the direction reversed where V < 0 in full slip; in partial slip V is at least 0.
-        There V follows a prescribed omega at fixed d, except where friction is so strong that omega is far below V.
+    state: State, as integrated, with V >= 0.
+    regime: Regime, at that state.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion.
+    Returns (State, Regime) with the prescribed speed; the direction is reversed where V < 0 is prescribed in full slip,
+    in partial slip V is at least 0.
     """
-    drive, (full_slip, direction, sigma, spin_sign, locked) = work.drive, regime
+    drive, full_slip = work.drive, regime.full_slip
     if drive.prescribed == NOT_PRESCRIBED:
         return state, regime
-    speed = direction * prescribed_speed(step_state.tau, step_state.segment, drive)
+    speed = regime.direction * prescribed_speed(step_state.tau, step_state.segment, drive)
     if drive.prescribed == PRESCRIBED_OMEGA and full_slip:
         return State(state.V, speed), regime
     if drive.prescribed == PRESCRIBED_OMEGA:
@@ -128,15 +141,20 @@ def impose_prescribed_speed(state, regime, step_state, work):
         factor = max(speed / omega, 0.0) if omega > _OMEGA_FOLLOWED * state.V else 1.0
         return State(state.V * factor, state.omega_or_d), regime
     if full_slip and speed < 0.0:
-        return State(-speed, -state.omega_or_d), Regime(full_slip, -direction, -sigma, -spin_sign, locked)
+        return State(-speed, -state.omega_or_d), reverse_direction(regime)
     return State(speed if full_slip else max(speed, 0.0), state.omega_or_d), regime
 
 
 @kernel
 def apply_event(event, state, regime, step_state, work):
-    """Return (whether the cylinder moves, State, Regime) behind an event.
+    """Return the motion behind an event.
 
-    event: the event; state, regime, step_state: State, Regime and StepState at the event; work: Workspace.
+    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    state: State, at the event.
+    regime: Regime, the one that ends.
+    step_state: StepState, at the event.
+    work: Workspace, with the step that ends there.
+    Returns (whether the cylinder moves, State, Regime).
     """
     full_slip, sigma = regime.full_slip, regime.sigma
     if event == STICK_EDGE and full_slip:
@@ -145,7 +163,7 @@ def apply_event(event, state, regime, step_state, work):
         rates = current_rates(state, regime, step_state, work)
         state, regime = State(state.V, sigma), change_slip(regime, False, sigma)
         if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(rates.weighted_rate):
-            # of both speeds at the event, whose time has an error, the one that changes more slowly is more accurate
+            # The time of the event has an error, so that the speed that changes more slowly is more accurate.
             state, regime = impose_prescribed_speed(state, regime, step_state, work)
         return state.V > 0.0, state, regime
     if event == STICK_EDGE:
@@ -156,43 +174,48 @@ def apply_event(event, state, regime, step_state, work):
     if event == V_ZERO:
         if not full_slip or state.omega_or_d == 0.0:
             return False, state, regime
-        state, regime = reverse_direction(state, regime)
-        return True, state, regime
+        return True, State(0.0, -state.omega_or_d), reverse_direction(regime)
     if event == OMEGA_ZERO:
         still = State(state.V, 0.0) if full_slip else state
         if brake_holds_omega(still, regime, step_state, work):
-            return True, still, lock_wheel(regime)
+            return True, still, change_brake(regime, regime.spin_sign, True)
         return True, still, release_brake(still, regime, step_state, work)
     return True, state, release_brake(state, regime, step_state, work)
 
 
 @kernel
 def enter_segment(state, regime, step_state, work):
-    """Return (State, Regime) at the start of a segment of the drive: brakes take hold or let go, V may reverse.
+    """Return (State, Regime) at the start of a segment of the drive: a brake takes hold or lets go, V may reverse.
 
-    state, regime, step_state: State, Regime and StepState there, with the index of the new segment; work: Workspace.
+    state: State, at the end of the segment before, or the start of the motion.
+    regime: Regime, at that state.
+    step_state: StepState, with the index of the new segment.
+    work: Workspace, of the motion.
     """
-    if step_state.segment > 0:  # a start keeps its given speeds
+    if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
     if regime.full_slip and state.V == 0.0 and current_rates(state, regime, step_state, work).V_rate < 0.0:
-        state, regime = reverse_direction(state, regime)
+        state, regime = State(0.0, -state.omega_or_d), reverse_direction(regime)
     braked = has_brake(step_state.segment, work.drive)
     omega = current_rates(state, regime, step_state, work).omega
     if regime.locked or omega == 0.0:
         if braked and brake_holds_omega(state, regime, step_state, work):
-            return state, lock_wheel(regime)
+            return state, change_brake(regime, regime.spin_sign, True)
         return state, release_brake(state, regime, step_state, work)
-    return state, free_wheel(regime, np.sign(omega) if braked else 0.0)
+    return state, change_brake(regime, np.sign(omega) if braked else 0.0, False)
 
 
 @kernel
 def initial_regime(V, omega, step_state, work):
-    """Return (State, Regime, whether the stick zone just forms) of a start with V or omega not 0, without its brake.
+    """Return the regime of a start with V or omega not 0, without its brake: Condition (9) tells stick from slip.
 
-    V, omega: initial speeds; step_state: StepState at the start; work: Workspace.
+    V, omega: float, initial speeds, dimensionless.
+    step_state: StepState, at the start.
+    work: Workspace, of the motion.
+    Returns (State, Regime, whether the stick zone just forms).
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
-        # sliding ends within a time of that order, at constant V + j omega
+        # Sliding ends within a time of that order, at constant V + j omega.
         V = omega = (V + work.scene.j * omega) / (1.0 + work.scene.j)
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
@@ -213,12 +236,16 @@ def initial_regime(V, omega, step_state, work):
 
 @kernel
 def regime_code(regime):
-    """Return the code of the regime in the outputs."""
+    """Return the code of a moving cylinder's regime in the outputs; regime: Regime, the present one."""
     return OMEGA_LOCKED if regime.locked else FULL_SLIP if regime.full_slip else PARTIAL_SLIP
 
 
 @kernel
 def rest_code(step_state, work):
-    """Return the code of V = omega = 0 in the outputs: held by brake or prescribed speed, or at rest."""
+    """Return the code of V = omega = 0 in the outputs: held by brake or prescribed speed, or at rest.
+
+    step_state: StepState, with the segment.
+    work: Workspace, of the motion.
+    """
     braked = has_brake(step_state.segment, work.drive)
     return HELD_AT_REST if braked or work.drive.prescribed != NOT_PRESCRIBED else AT_REST

@@ -2,7 +2,7 @@
 
 In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a direction with V >= 0.  On rows
 of the law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w = (1 - |d|) L, s = sign d and
-H(v) the function :func:`..rows.evaluate.press`,
+H(v) the function :func:`..rows.evaluate.H_over_F2`,
 
     omega = V (1 + k L d)      Q = s mu [1 - w^2 H(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
 
@@ -28,39 +28,38 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from ..compile.by_reference import by_value
 from ..compile.intrinsics import unlikely
-from ..compile.jit import kernel
-from ..rows.added_mass import added_mass
+from ..compile.jit import inline_kernel, kernel
 from ..rows.cover import free_kinematics
-from ..rows.evaluate import (
-    H_over_F2,
-    H_over_F2_secants,
-    body_moments,
-    free_creep_and_slopes,
-    length_and_moment,
-    limits_at_rest,
-    locate_row,
-)
-from .drive import applied_forces, current_load, load_at_node, required_forces
-from .workspace import ROW_OMEGA_OR_D, ROW_V, State
+from ..rows.evaluate import H_over_F2, H_over_F2_secants, locate_row
+from .drive import current_load, load_at_node
+from .law import added_inertia, evaluate_moments
+from .records import State
+from .workspace import ROW_OMEGA_OR_D, ROW_V
 
-#: k relative to the smallest k at which dp/dV may vanish at d = -1; above it V is collocated, dimensionless
+#: k relative to the smallest k at which dp/dV may vanish at d = -1, above which V is collocated, dimensionless: below
+#: it dp/dV at rest is at least a fifth of its value at d = 0.
 _STRONG_FRICTION = 0.8
-#: |d| below which Q is evaluated by differences of the law: 1 - w^2 H would lose its digits
+#: |d| below which Q is evaluated by mean slopes of the law: 1 - w^2 H, about 2 |d|, would have lost four digits there.
 _SMALL_D = 1e-4
 
 
 class Rates(NamedTuple):
-    """The right-hand side at a state, with its derivatives in V and in the second unknown (_dd: in d or omega).
+    """The right-hand side at a state and its derivatives in V and the second unknown (_dd), dimensionless.
 
-    omega, Q, M_half_space, M_cylinder : spin, traction and moments
+    omega : angular velocity
+    Q : traction, Eq. (17)
+    M_half_space, M_cylinder : the parts of the rolling moment, Eq. (18), that half-space and cylinder take
     V_rate : V'
-    p, p_rate : the collocated unknown and p'; p is V in full slip and under strong friction
+    p : the collocated unknown; V in full slip and under strong friction
+    p_rate : p'
     weighted_rate : ``weight`` times the slope of the second unknown
     weight : V in partial slip, 1 in full slip
+    dp_dV, dp_dd : derivatives of p
+    dp_rate_dV, dp_rate_dd : derivatives of p'
+    drate_dV, drate_dd : derivatives of ``weighted_rate``
+    dweight_dV : derivative of ``weight``
     """
 
     omega: float
@@ -81,116 +80,68 @@ class Rates(NamedTuple):
     dweight_dV: float
 
 
-@kernel(inline=True)
-def evaluate_moments(u, scene):
-    """Evaluate the critical creepage and the moments of the law.
+@inline_kernel
+def applied_forces(V, omega, load, regime):
+    """Return the applied force and torques, feedback included, oriented by the regime, dimensionless.
 
-    u: kappa |V|, dimensionless; scene: Scene.
-    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV).
+    V, omega: float, speeds in the direction of the regime, dimensionless.
+    load: Load, the drive.
+    regime: Regime, with the sign of omega under a brake.
+    Returns (force, torque of the motor, torque of motor and brake together).
     """
-    law = by_value(scene.law)
-    index = locate_row(u, law)
-    law_at_u = length_and_moment(index, u, law)
-    m, slope = law_at_u.scale * law_at_u.m, law_at_u.d_um
-    if not scene.moments_differ:
-        return law_at_u.L, law_at_u.dL, law_at_u.ddL, 0.5 * m, 0.5 * m, 0.5 * slope, 0.5 * slope
-    half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
-    scale = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or less in the fast limit
-    return law_at_u.L, law_at_u.dL, law_at_u.ddL, scale * half_space, scale * cylinder, half_space_slope, cylinder_slope
+    gains = load.gains
+    force = load.force + gains.force_V * V + gains.force_omega * omega
+    torque = load.torque + gains.torque_V * V + gains.torque_omega * omega
+    return force, torque, torque - load.brake * regime.spin_sign
 
 
-@kernel
-def low_speed_limits(work):
-    """Return (M_half_space, M_cylinder, force and torque of feedback), each divided by V, for V -> 0 in free
-    rolling.
+@inline_kernel
+def required_forces(V, omega, rates, load, regime, j):
+    """Return the forces and torques that act: the applied ones, or those that hold a prescribed speed by Eq. (22).
 
-    work: Workspace of the motion.
+    V, omega: float, speeds in the direction of the regime, dimensionless.
+    rates: Rates, at these speeds.
+    load: Load, the drive.
+    regime: Regime, at that state.
+    j: float, moment of inertia, dimensionless.
+    Returns (force, torque of the motor, torque of the brake), oriented by the regime, dimensionless.
     """
-    _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
-    gains = work.drive.gains
-    delta_0 = limits_at_rest(work.scene.kappa, by_value(work.scene.law))[1]
-    omega_over_V = 1.0 + delta_0
-    force, torque = gains.force_V + gains.force_omega * omega_over_V, gains.torque_V + gains.torque_omega * omega_over_V
-    return half_space, cylinder, force, torque
+    force, torque, _ = applied_forces(V, omega, load, regime)
+    brake = -load.brake * regime.spin_sign
+    if regime.locked:
+        brake = rates.Q + rates.M_cylinder - torque
+    elif load.inverse_inertia == 0.0:
+        torque = j * load.prescribed_omega_rate + rates.Q + rates.M_cylinder - brake
+    if load.inverse_mass == 0.0:
+        force = load.prescribed_V_rate - rates.Q + rates.M_half_space
+    return force, torque, brake
 
 
-@kernel(inline=True)
-def critical_creepage(V, scene):
-    """Return the critical creepage delta_star at the speed V; scene: Scene."""
-    u, law = scene.kappa * abs(V), by_value(scene.law)
-    return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
-
-
-@kernel(inline=True)
-def creepage(V, d, scene):
-    """Return the creepage delta at V and d = delta/delta_star, |d| <= 1; of a cover it includes that of free
-    rolling.
-    """
-    u, law = scene.kappa * abs(V), by_value(scene.law)
-    delta = critical_creepage(V, scene) * d
-    return delta if law.cover_rows is None else delta + 0.5 / scene.kappa * free_creep_and_slopes(u, law)[0]
-
-
-@kernel(inline=True)
-def excess_slip(slip, V, scene):
-    """Return the slip omega - V, given as ``slip``, less that of free rolling at V."""
-    law = by_value(scene.law)
-    if law.cover_rows is None:
-        return slip
-    return slip - V * (0.5 / scene.kappa * free_creep_and_slopes(scene.kappa * abs(V), law)[0])
-
-
-@kernel(inline=True)
-def added_inertia(V, scene):
-    """Return (gamma N, its derivative in V, its integral over V) at V, dimensionless."""
-    return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
-
-
-@kernel(inline=True)
-def omega_and_delta(state, regime, scene):
-    """Return (omega, delta) of a state in a regime; delta is infinite at V = 0 in full slip."""
-    if not regime.full_slip:
-        delta = creepage(state.V, state.omega_or_d, scene)
-        return state.V * (1.0 + delta), delta
-    slip = state.omega_or_d - state.V
-    return state.omega_or_d, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
-
-
-@kernel(inline=True)
-def added_mass_margin(n, j):
-    """Return the margin of the added mass: positive while n = gamma N leaves the equations regular; 1 without added
-    mass.
-
-    n is below 1 + j and leaves half of that, and of the 1 + n/2 in front of V'.  j: moment of inertia.
-    """
-    return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
-
-
-@kernel(inline=True)
-def stick_edge_function(V, omega_or_d, regime, scene):
-    """Return the event function of the edge of the stick zone at (V, omega_or_d): positive within the regime."""
-    if not regime.full_slip:
-        n, _, _ = added_inertia(V, scene)
-        return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
-    return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(V, scene) * abs(V)
-
-
-@kernel(inline=True)
+@inline_kernel
 def has_strong_friction(load, regime, scene):
-    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate."""
+    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate.
+
+    load: Load, with the inverse masses.
+    regime: Regime; only d < 0 in partial slip is concerned.
+    scene: Scene, parameters of Eq. (22).
+    """
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
     strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
     return strong and regime.sigma < 0.0 and not regime.full_slip
 
 
-@kernel(inline=True)
+@inline_kernel
 def partial_slip_rates(V, d, load, regime, scene):
-    """Evaluate the right-hand side in partial slip: Rates.
+    """Evaluate the right-hand side in partial slip, with all derivatives: Rates, by the equations of the module.
 
-    V, d: unknowns; load: Load; regime: Regime; scene: Scene.
-    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
-    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives
-    of x in V and d.
+    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L, dVdelta_star = d(V
+    delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives of x in V and d.
+
+    V: float, speed of the axis in the direction of the regime, dimensionless.
+    d: float, delta/delta_star, dimensionless.
+    load: Load, the drive.
+    regime: Regime, of partial slip.
+    scene: Scene, parameters of Eq. (22), by value.
     """
     law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
     u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
@@ -204,7 +155,7 @@ def partial_slip_rates(V, d, load, regime, scene):
         value, slope = H_over_F2(index, v, law)
         A = value - 0.5 * v * slope
         Q *= 1.0 - w * w * value
-        if unlikely(abs(d) < _SMALL_D):  # Q by a secant of H, without cancellation
+        if unlikely(abs(d) < _SMALL_D):  # A mean slope of H gives Q without cancellation.
             D = abs(d) * L
             value, _, secant, _ = H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)
@@ -235,7 +186,7 @@ def partial_slip_rates(V, d, load, regime, scene):
         torque_V, torque_d = torque_V - 0.5 * (n_V * V_rate + n * V_V), torque_d - 0.5 * n * V_d
         p, p_V = p + inverse_product * n_integral, p_V + inverse_product * n
     omega_rate = inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
-    # products with reciprocals: the processor takes longer for a division than for five of them
+    # Reciprocals are formed once: the processor takes longer for a division than for five products.
     inverse_k, inverse_L = 1.0 / k, 1.0 / L
     rate = inverse_L * (inverse_k * (omega_rate - V_rate) - d_total * dVdelta_star * V_rate)
     omega_rate_V, omega_rate_d = inverse_inertia * (torque_V - Q_V - cylinder_slope), inverse_inertia * (torque_d - Q_d)
@@ -249,11 +200,14 @@ def partial_slip_rates(V, d, load, regime, scene):
     )  # fmt: skip
 
 
-@kernel(inline=True)
+@inline_kernel
 def full_slip_rates(V, omega, load, regime, scene):
-    """Evaluate the right-hand side in full slip: Rates.
+    """Evaluate the right-hand side in full slip, with all derivatives: Rates with Q = +-mu, Eqs. (17), (22).
 
-    V, omega: unknowns; load: Load; regime: Regime; scene: Scene.
+    V, omega: float, the speeds in the direction of the regime, dimensionless.
+    load: Load, the drive.
+    regime: Regime, of full slip.
+    scene: Scene, parameters of Eq. (22), by value.
     """
     u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
@@ -268,9 +222,16 @@ def full_slip_rates(V, omega, load, regime, scene):
     )  # fmt: skip
 
 
-@kernel(inline=True)
+@inline_kernel
 def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
-    """Evaluate the right-hand side of the regime, inlined where Newton's iteration needs it: Rates."""
+    """Evaluate the right-hand side of the regime, inlined where Newton's iteration needs it: Rates.
+
+    V: float, speed of the axis, dimensionless.
+    omega_or_d: float, second unknown, dimensionless.
+    load: Load, the drive.
+    regime: Regime, the present one.
+    scene: Scene, parameters of Eq. (22), by value.
+    """
     if regime.full_slip:
         return full_slip_rates(V, omega_or_d, load, regime, scene)
     return partial_slip_rates(V, omega_or_d, load, regime, scene)
@@ -278,19 +239,36 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
 
 @kernel
 def evaluate_rhs(state, load, regime, scene):
-    """Evaluate the right-hand side of the regime at a State, outside the innermost loop: compiled once, not inlined."""
+    """Evaluate the right-hand side of the regime outside the innermost loop, compiled once and called: Rates.
+
+    state: State, the unknowns.
+    load: Load, the drive.
+    regime: Regime, the present one.
+    scene: Scene, parameters of Eq. (22).
+    """
     return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
 
 
 @kernel
 def current_rates(state, regime, step_state, work):
-    """Return the Rates at a state and the time of the step state."""
+    """Return the Rates at a state and the time reached.
+
+    state: State, the unknowns.
+    regime: Regime, the present one.
+    step_state: StepState, with that time and its segment.
+    work: Workspace, of the motion.
+    """
     return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
 
 
 @kernel
 def rhs_and_forces_at_node(i, regime, work):
-    """Return (Rates, (force, torque, torque of the brake)) at node i, evaluated from the unknowns stored there."""
+    """Return (Rates, (force, torque of the motor, torque of the brake)) at a node, dimensionless.
+
+    i: int, the node.
+    regime: Regime, that of the step.
+    work: Workspace, with unknowns and drive at the nodes.
+    """
     state, load = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i]), load_at_node(i, regime, work)
     rates = evaluate_rhs(state, load, regime, work.scene)
     return rates, required_forces(state.V, rates.omega, rates, load, regime, work.scene.j)

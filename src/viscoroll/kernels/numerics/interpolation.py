@@ -55,7 +55,10 @@ class Interpolation:
 
     @in_40_digits
     def __init__(self, nodes: Sequence[Decimal]) -> None:
-        """Compute Lagrange's polynomials of ``nodes``."""
+        """Compute the coefficients of Lagrange's polynomials of the nodes, with 40 digits.
+
+        nodes : distinct numbers, Decimals.
+        """
         self.exact = tuple(nodes)
         self.nodes = to_doubles(nodes)
         lagrange = []
@@ -114,7 +117,10 @@ def chebyshev(n: int) -> list[Decimal]:
 
 @in_40_digits
 def to_chebyshev(n: int) -> _Floats:
-    """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1), [term, node]."""
+    """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1).
+
+    n : number of nodes.  Returns doubles, (n, n), [term, node].
+    """
     x = np.array(chebyshev(n))
     terms = [1 + 0 * x, x]
     for _ in range(n - 2):

@@ -60,7 +60,8 @@ def fma_vectors(builder, *vectors):
 def vector_pointers(context, builder, kind, array, start, count):
     """Return pointers to ``count`` vectors that follow each other in an array.
 
-    context, builder : of numba's lowering.  kind : numba's type of ``array``, an array or a pointer to doubles.
+    context, builder : numba's context of code generation, and builder of LLVM.
+    kind : numba's type of ``array``, an array or a pointer to doubles.
     start : index of the first number of the first vector.
     """
     data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data

@@ -140,7 +140,8 @@ def direct_delta_star(kappa, mu, lam, epsilon):
 def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
     """Return (beta, status) by Eq. (10) for 0 <= delta_abs < delta_star.
 
-    delta_abs : |delta|.  kappa, mu, lam, epsilon, zeta, alpha : as printed.
+    delta_abs : |delta|.
+    kappa, mu, lam, epsilon, zeta, alpha : as in the paper, dimensionless.
 
     At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is
     -2 delta kappa/(mu lam) (1 + p) <= 0 by Eq. (8).
@@ -154,7 +155,9 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
     """Return |Q| by Eq. (15).
 
-    beta : share of the stick zone.  delta_abs : |delta|.  kappa, mu, lam, epsilon, zeta : as printed.
+    beta : length of the stick zone divided by that of the contact.
+    delta_abs : |delta|.
+    kappa, mu, lam, epsilon, zeta : as in the paper, dimensionless.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at
     s = 1e-6 (1e-8 for kappa V = 1e3, where K1/K0 magnifies the rounding of the bracket).
@@ -169,7 +172,7 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
 
 @kernel
 def direct_moment(kappa, lam, epsilon, zeta, alpha):
-    """Return M > 0 by Eq. (16); kappa, lam, epsilon, zeta, alpha as printed.
+    """Return M > 0 by Eq. (16); kappa, lam, epsilon, zeta, alpha as in the paper, dimensionless.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by
     9e-14 relative at kappa V = 1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and

@@ -11,7 +11,9 @@ from .law import OK, direct_contact_length, direct_delta_star, direct_moment, di
 def direct_state(alpha, n, request):
     """Evaluate what is requested of one state; V = 0 is the limit of Sect. 3.4.
 
-    alpha : of the material.  n : number of the state.  request : the :class:`Request`, whose output is written.
+    alpha : of the material.
+    n : number of the state.
+    request : :class:`Request` of states and quantities, with the output array, written.
 
     Returns OK or NOT_CONVERGED.
     """
@@ -55,7 +57,8 @@ def direct_state(alpha, n, request):
 def direct_loop(alpha, request, count):
     """Evaluate what is requested of ``count`` states.
 
-    alpha : of length 1 or one for each state.  request : the :class:`Request`, whose output is written.
+    alpha : of length 1 or one for each state.
+    request : :class:`Request` of states and quantities, with the output array, written.
 
     Returns OK, or NOT_CONVERGED if one state was not solved.
     """

@@ -15,9 +15,13 @@ _HEAVY = -4.0
 
 @inline_kernel
 def _evaluate_N(u, law):
-    """Return (row, N, its integral over u from where t = 0 in the row, slope of N over u).
+    """Return N, its integral and its slope at u, with the row in which they were evaluated.
 
-    u : kappa |V|.  law : a :class:`Law` with rows of N.  row : its number, or the number of rows behind the last.
+    u : kappa |V|, dimensionless.
+    law : :class:`Law` of the material, with polynomials of N.
+
+    Returns (row, N, integral, slope): number of the row, or the number of rows where u lies behind the last one; N;
+    its integral with respect to u from t = 0 of that row; its slope with respect to u.
     """
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
@@ -31,9 +35,11 @@ def _evaluate_N(u, law):
 
 @kernel
 def _evaluate_added_mass(law, V, kappa, gamma):
-    """Return (gamma N, its slope over V, its integral over V) of a law that has N.
+    """Return (gamma N, its slope with respect to V, its integral with respect to V) of a law that has N.
 
-    law : a :class:`Law` with rows of N.  V : speed of the axis.  kappa : slenderness R/l0.
+    law : :class:`Law` of the material, with polynomials of N.
+    V : speed of the axis.
+    kappa : slenderness R/l0.
     gamma : mass parameter, dimensionless.  The integral begins at V = 0 or, where V = 0 is out of reach, at
     infinity.
     """
@@ -49,9 +55,13 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 
 @inline_kernel
 def added_mass(law, V, kappa, gamma):
-    """Return (gamma N, its slope over V, its integral over V), zeros of a law of steady rolling.
+    """Return (gamma N, its slope with respect to V, its integral with respect to V), zeros of a law of steady
+    rolling.
 
-    law : a :class:`Law`.  V : speed.  kappa : slenderness R/l0.  gamma : mass parameter, dimensionless.
+    law : :class:`Law` of the material: polynomials of each octave.
+    V : speed.
+    kappa : slenderness R/l0.
+    gamma : mass parameter, dimensionless.
     """
     return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
 

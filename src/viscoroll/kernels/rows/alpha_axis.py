@@ -1,16 +1,18 @@
 """Rows for one alpha after another, by the axis of alpha: polynomials in ln alpha, without root finding.
 
-For alpha in [2^N, 2^(N+1)) every coefficient of a row is a polynomial in s = 2 log2(alpha/2^N) - 1, with T_epsilon as
-unit of time, and with M/V and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no
-special case.  The higher a power of t, the fewer powers of s change a digit.  So a block of twelve coefficients has one
-or two groups of four powers of s in most rows, and only the first block has four.
+For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 + c_1 s + c_2 s^2 + c_3 s^3) for
+g = 0, 1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V
+and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
+would lose digits near alpha = 2^N, and a T_j for every coefficient would take a third more loads.  The higher a power
+of t, the fewer groups change a digit.  So a block of twelve coefficients has one or two groups in most rows, and only
+the first block has four.
 """
 
 import math
 
 import numpy as np
 
-from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, integers_at, record_at, record_type
+from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, fma, integers_at, record_at, record_type
 from ..compile.jit import inline_kernel, kernel
 from ..numerics.simd4 import LANES, broadcast, fma4, make_load, pack, store
 from .contact_states import element
@@ -28,13 +30,13 @@ from .record import (
     VERSION,
 )  # fmt: skip
 
-#: Largest number of powers of s: the 17th Chebyshev polynomial changes no digit of a double.
+#: Largest number of Chebyshev polynomials of s: the 17th changes no digit of a double.
 ALPHA_TERMS = 16
-#: Vectors of a block: with more of them fewer powers of s are negligible, with less the ends of loops count.
+#: Vectors of a block: with more of them fewer terms in s are negligible, with less the ends of loops count.
 _BLOCK_VECTORS = 3
 #: Numbers of a block, half of a part.
 BLOCK_SIZE = _BLOCK_VECTORS * LANES
-#: Powers of s of a group: their sums do not wait for those of the group before.
+#: Terms of a group, a cubic polynomial in s.
 GROUP = 4
 #: Groups of the blocks of (L, M/V), (lam, epsilon), H/F^2 and eta/F in most rows; bodies are alike and not on the axis.
 SHORT = (4, 2, 2, 1), (4, 2, 2, 1), (4, 2), (4, 2)
@@ -50,7 +52,7 @@ ALPHA_E0 = -4
 SOURCE = record_type("rows marks alpha state_count octaves")
 #: Integers of an octave in SOURCE.
 OCTAVE_SIZE = 3
-#: Index in the head of the rows of s.
+#: Index in the head of the rows of s, T_4(s), T_8(s) and T_12(s).
 _S = MAKER_NUMBERS
 #: Mark that is the address of the axis of the selected octave; behind it that of where functions begin, in groups.
 _AXIS = MAKER_MARKS
@@ -68,7 +70,14 @@ _load_block = make_load(_BLOCK_VECTORS)
 
 @kernel(allocates=True)
 def select_alpha(n, source):
-    """Select the alpha of state ``n``: write the head of rows and marks; ``source``: pointer to a SOURCE record."""
+    """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
+    parts.
+
+    n : number of the state.  source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+
+    Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
+    selected already.
+    """
     source = record_at(source)
     alpha = element(floats_at(source.alpha, source.state_count), n)
     rows = floats_at(source.rows, ROW_SIZE)
@@ -78,7 +87,11 @@ def select_alpha(n, source):
         marks = integers_at(source.marks, PARTS_PER_ROW)
         first = OCTAVE_SIZE * octave
         octaves = integers_at(source.octaves, first + OCTAVE_SIZE)
-        rows[_S] = 2.0 * np.log2(bits_to_float((bits & _MANTISSA) | (_BIAS << 52))) - 1.0
+        s = 2.0 * np.log2(bits_to_float((bits & _MANTISSA) | (_BIAS << 52))) - 1.0
+        second = fma(2.0 * s, s, -1.0)
+        rows[_S], rows[_S + 1] = s, fma(2.0 * second, second, -1.0)
+        rows[_S + 2] = fma(2.0 * rows[_S + 1], rows[_S + 1], -1.0)
+        rows[_S + 3] = rows[_S + 1] * fma(2.0, rows[_S + 2], -1.0)
         c = (alpha - 1.0) / alpha
         rows[ALPHA] = alpha
         rows[LAM_FAST] = 1.0 / np.sqrt(alpha)
@@ -92,10 +105,12 @@ def select_alpha(n, source):
 
 @kernel(allocates=True)
 def make_part(number, source):
-    """Make a part of a row of the selected alpha, except the moments of the bodies, which are alike.
+    """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
 
-    number : of the part, its place among the marks.  source : pointer to a SOURCE record.
-    At alpha = 1, where a sum would round, the closed form is written.
+    number : number of the part, its index in the marks.
+    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+
+    The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.
     """
     source = record_at(source)
     start = PART_SIZE * number
@@ -112,7 +127,8 @@ def make_part(number, source):
     groups = begins[function + 1] - first
     size = BLOCK_SIZE * GROUP
     axis = floats_at(marks[_AXIS] + 8 * size * first, size * groups)
-    s = rows[_S]
+    # read once: stores to rows could change them for all that the compiler knows
+    s = rows[_S], rows[_S + 1], rows[_S + 2], rows[_S + 3]
     if c == 0.0:
         for k in range(start, start + (2 * PART_SIZE if pair else PART_SIZE)):
             rows[k] = 0.0
@@ -139,20 +155,24 @@ def make_part(number, source):
 
 @inline_kernel
 def _sum_block(axis, first, groups, s, factor, rows, to):
-    """Write twelve numbers of a row: polynomials in s by Horner's scheme over groups of four powers.
+    """Write twelve coefficients of a row: the sum of groups, cubic polynomials in s times T_4g(s).
 
-    axis, first : numbers of the octave, and where those of the block begin, the group of the highest powers first.
-    groups : how many, a literal number: loops of a length that varies cost more than they save.
-    factor : vector by which every vector is multiplied.  rows : written, from ``to`` on.
+    axis : coefficients of the terms in s for the octave of alpha, a vector.
+    first : position in ``axis`` where those of the block begin, the group of the highest degree first.
+    groups : number of groups, a literal number: loops of a length that varies cost more than they save.
+    s : s, T_4(s), T_8(s) and T_12(s); s = 2 log2(alpha/2^N) - 1.
+    factor : vector by which every vector of results is multiplied.
+    rows : written.
+    to : position in ``rows`` of the first coefficient that is written.
     """
-    power = broadcast(s)
+    power = broadcast(s[0])
     square = power * power
-    fourth = square * square
     zero = broadcast(0.0)
     total = zero, zero, zero
     for group in range(groups):
         at = first + BLOCK_SIZE * GROUP * group
         low = fma4(_load_block(axis, at + BLOCK_SIZE), power, _load_block(axis, at))
         high = fma4(_load_block(axis, at + 3 * BLOCK_SIZE), power, _load_block(axis, at + 2 * BLOCK_SIZE))
-        total = fma4(total, fourth, fma4(high, square, low))
+        cubic = fma4(high, square, low)
+        total = fma4(cubic, broadcast(s[groups - 1 - group] if group < groups - 1 else 1.0), total)
     store(rows, to, fma4(total, factor, zero))

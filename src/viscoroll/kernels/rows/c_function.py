@@ -56,10 +56,14 @@ def _cover_law(V, omega, out, scenes):
 
 @kernel(inline=True, allocates=True)
 def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
-    """Evaluate the law and return the status.
+    """Evaluate the law at one state, write the results, and return the status.
 
     caller_V, caller_omega : speed and angular velocity in the units of the caller.
-    pointer : to the results, written.  scene : a SCENE record.  cover_rows : as of :class:`Law`.
+    pointer : address of the results, written.
+    scene : a SCENE record: rows of the law, kappa, mu and the units of the caller.
+    cover_rows : numbers that only a cover has, as in :class:`Law`.
+
+    Returns 0, or another number if V or omega cannot be evaluated.
     """
     out = carray(pointer, RESULTS)
     rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)
@@ -95,10 +99,12 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
 
 
 def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> NDArray[Any]:
-    """Return two SCENE records: without slopes, and with.
+    """Return two SCENE records for the C function of a law: without slopes, and with.
 
-    law : of one material; its arrays must outlive the records.  unlike : whether the two bodies differ.
-    kappa, mu : of the scene.  scale : for V, omega, Q and M what 1 is in the units of the caller.
+    law : :class:`Law` of one material; its arrays must outlive the records.
+    unlike : whether the two bodies differ.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
+    scale : for V, omega, Q and M the unit of this dimensionless quantity in the units of the caller.
     """
     cover_rows = law.cover_rows
     function, address = (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)

@@ -33,8 +33,10 @@ SMALL_CREEP = 0.0625
 def traction_over_mu(u, L, D, law):
     """Return |Q|/mu, the fraction of the friction that is used, in [0, 1].
 
-    u : kappa |V|, dimensionless speed.  L : 2 kappa delta_star/mu.  D : 2 kappa |delta|/mu; infinite in full slip.
-    law : a :class:`Law`.
+    u : kappa |V|, dimensionless speed.
+    L : 2 kappa delta_star/mu.
+    D : 2 kappa |delta|/mu; infinite in full slip.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
     if not w > 0.0:  # also where rounding puts delta_star above D
@@ -64,8 +66,10 @@ def _cancels(traction, D, L):
 def friction_reserve(u, L, D, law):
     """Return the friction reserve 1 - |Q|/mu, in [0, 1], with all its digits where it is small.
 
-    u : kappa |V|, dimensionless speed.  L : 2 kappa delta_star/mu.  D : 2 kappa |delta|/mu; infinite in full slip.
-    law : a :class:`Law`.
+    u : kappa |V|, dimensionless speed.
+    L : 2 kappa delta_star/mu.
+    D : 2 kappa |delta|/mu; infinite in full slip.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
     if not w > 0.0:
@@ -76,10 +80,13 @@ def friction_reserve(u, L, D, law):
 
 @inline_kernel
 def stick_fraction(u, lam, L, D, law):
-    """Return beta, the stick zone's share of the contact length, in [0, 1].
+    """Return beta, the length of the stick zone divided by the contact length, in [0, 1].
 
-    u : kappa |V|, dimensionless speed.  lam : length of the contact divided by l0.  L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta|/mu; infinite in full slip.  law : a :class:`Law`.
+    u : kappa |V|, dimensionless speed.
+    lam : length of the contact divided by l0.
+    L : 2 kappa delta_star/mu.
+    D : 2 kappa |delta|/mu; infinite in full slip.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
     if not w > 0.0:
@@ -92,8 +99,10 @@ def stick_fraction(u, lam, L, D, law):
 def traction_slopes(u, L, dL, D, law):
     """Return the slopes of |Q|/mu in partial slip, over u at fixed delta, and over D; (0, 0) in full slip.
 
-    u : kappa |V|, dimensionless speed.  L, dL : 2 kappa delta_star/mu and its slope over u.
-    D : 2 kappa |delta|/mu; infinite in full slip.  law : a :class:`Law`.
+    u : kappa |V|, dimensionless speed.
+    L, dL : 2 kappa delta_star/mu and its slope with respect to u.
+    D : 2 kappa |delta|/mu; infinite in full slip.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
     if not w > 0.0:
@@ -118,9 +127,15 @@ def traction_slopes(u, L, dL, D, law):
 
 @inline_kernel
 def _split_creep(L, free_creep, state, law):
-    """Return (a number with the sign of Q, the creepage that makes Q, D or, in full slip, infinity).
+    """Return the sign of Q, the creepage that causes Q, and D, the same in units of mu/(2 kappa).
 
-    L : 2 kappa delta_star/mu.  free_creep : 2 kappa delta_0.  state : a :class:`State`.  law : a :class:`Law`.
+    L : 2 kappa delta_star/mu.
+    free_creep : 2 kappa delta_0, from the creepage of free rolling.
+    state : :class:`State`: V, kappa, mu, and delta or omega.
+    law : :class:`Law` of the material: polynomials of each octave.
+
+    Returns (slip, creepage, D): a number with the sign of Q; delta - delta_0; 2 kappa |delta - delta_0|/mu, or
+    infinity in full slip.
     """
     slip, delta = slip_and_creepage(state)
     slip, delta = sliding_creep(slip, delta, free_creep, state, law.cover_rows)
@@ -132,8 +147,11 @@ def _split_creep(L, free_creep, state, law):
 def signed_traction(u, L, free_creep, state, law):
     """Return Q, with the sign of the creepage that makes it.
 
-    u : kappa |V|.  L : 2 kappa delta_star/mu.  free_creep : 2 kappa delta_0.  state : a :class:`State`.
-    law : a :class:`Law`.
+    u : kappa |V|.
+    L : 2 kappa delta_star/mu.
+    free_creep : 2 kappa delta_0.
+    state : :class:`State`: V, kappa, mu, and delta or omega.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     slip, _, D = _split_creep(L, free_creep, state, law)
     return np.copysign(state.mu * traction_over_mu(u, L, D, law), slip)
@@ -143,8 +161,11 @@ def signed_traction(u, L, free_creep, state, law):
 def Q_slopes(u, L, dL, free_creep, state, law):
     """Return (dQ/dV, dQ/ddelta, dQ/domega); the first at fixed delta or omega, whichever ``state`` has.
 
-    u : kappa |V|.  L, dL : 2 kappa delta_star/mu and its slope over u.  free_creep : 2 kappa delta_0.
-    state : a :class:`State`.  law : a :class:`Law`.
+    u : kappa |V|.
+    L, dL : 2 kappa delta_star/mu and its slope with respect to u.
+    free_creep : 2 kappa delta_0.
+    state : :class:`State`: V, kappa, mu, and delta or omega.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     _, delta, D = _split_creep(L, free_creep, state, law)
     if D == np.inf:
@@ -163,8 +184,11 @@ def Q_slopes(u, L, dL, free_creep, state, law):
 def _next_state(k, request):
     """Return (state, n, u) of the state that is number ``k`` in the order of evaluation.
 
-    k : number in that order.  request : the :class:`Request`.
-    state : the :class:`State`.  n : its number, hence its column of the output.  u : kappa |V|.
+    k : number in that order.
+    request : :class:`Request` of states and quantities, with the output array.
+    state : the :class:`State`.
+    n : its number, hence its column of the output.
+    u : kappa |V|.
     """
     n = request.order[np.uint64(k)] if request.order.size > 0 else k
     state = read_state(request.states, n)
@@ -181,10 +205,12 @@ def _requests_Q_slopes(to):
 def _write_functions_of_speed(k, column, buffer, law, request):
     """Write the requested quantities that depend on the speed alone: M, its parts and slopes, lam, zeta, epsilon.
 
-    k : position of the state in the order of ``request``.  column : column of ``buffer`` for this state.
+    k : position of the state in the order of ``request``.
+    column : column of ``buffer`` for this state.
     buffer : (4, states), in whose column L, lam, dL/du and 2 kappa delta_0 are kept for
         :func:`_write_functions_of_creep`.
-    law : a :class:`Law`.  request : the :class:`Request`, whose output is written.
+    law : :class:`Law` of the material: polynomials of each octave.
+    request : :class:`Request` of states and quantities, with the output array, written.
     """
     to = request.to
     state, n, u = _next_state(k, request)
@@ -218,9 +244,11 @@ def _write_functions_of_creep(k, column, buffer, law, request):
     """Write the requested quantities that depend on the creepage: Q and its slopes, beta, grip, delta_star and
     others.
 
-    k : position of the state in the order of ``request``.  column : column of ``buffer`` for this state.
+    k : position of the state in the order of ``request``.
+    column : column of ``buffer`` for this state.
     buffer : (4, states), whose column holds L, lam, dL/du and 2 kappa delta_0 at the speed of this state.
-    law : a :class:`Law`.  request : the :class:`Request`, whose output is written.
+    law : :class:`Law` of the material: polynomials of each octave.
+    request : :class:`Request` of states and quantities, with the output array, written.
     """
     to = request.to
     state, n, u = _next_state(k, request)
@@ -248,9 +276,12 @@ def _write_functions_of_creep(k, column, buffer, law, request):
 def contact_loop(law, request, buffer, count):
     """Evaluate the law at ``count`` states.
 
-    law : a :class:`Law`.  request : the :class:`Request`, whose output is written.
-    buffer : (4, states), numbers of some states that wait there, so that the processor works on several at once;
-        of one state where each has a law of its own, of which one is selected at a time.
+    law : :class:`Law` of the material: polynomials of each octave.
+    request : :class:`Request` of states and quantities, with the output array, written.
+    buffer : (4, states), scratch for the numbers of as many states as are evaluated together, which lets the
+    processor
+        work on several at once; (4, 1) where each state has a law of its own, of which one is selected at a time.
+    count : number of states.
     """
     for begin in range(0, count, buffer.shape[1]):
         end = min(begin + buffer.shape[1], count)

@@ -65,8 +65,10 @@ def read_state(states, n):
 def write_field(row, value, n, request):
     """Write a quantity of a state, if it is requested.
 
-    row : row of the output, a field of :class:`Fields`.  value : the quantity.  n : number of the state.
-    request : the :class:`Request`.
+    row : row of the output, a field of :class:`Fields`.
+    value : the quantity.
+    n : number of the state.
+    request : :class:`Request` of states and quantities, with the output array.
     """
     if row >= 0:
         request.out[np.uint64(row), np.uint64(n + request.first)] = value

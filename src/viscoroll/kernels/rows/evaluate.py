@@ -81,7 +81,13 @@ class LengthAndMoment(NamedTuple):
 
 @inline_kernel
 def locate_octave(x, e0):
-    """Return (row, t, dt/dx) of x >= 0 in rows of which row 0 ends at 2^e0."""
+    """Return the position of x in rows that span one octave each.
+
+    x : argument, >= 0.  e0 : binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
+
+    Returns (row, t, dt/dx): number of the row; argument of its polynomials, in [0, 1] in row 0, else in [-1, 1];
+    slope of that argument.
+    """
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
     # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
     slow = (row - 1) >> 63
@@ -108,11 +114,15 @@ def in_fast_limit(position):
 
 @inline_kernel
 def _fast_terms(u, body, law):
-    """Return (z, shift, part) of the fast limit at u.
+    """Return the terms of the fast limit, the expansion for u beyond the last row.
 
-    u : kappa |V|.  body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER.  law : a :class:`Law`.
+    u : kappa |V|.
+    body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER, the position of W and C of that body in the head of the
+    rows.
+    law : :class:`Law` of the material.
 
-    z = zeta.  shift = (alpha z/2) (C - W ln z), the epsilon of a half-space.  part = alpha z W/8.
+    Returns (z, shift, part): z = zeta; shift = (alpha z/2) (C - W ln z), the epsilon of a half-space;
+    part = alpha z W/8.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[body]
@@ -123,9 +133,13 @@ def _fast_terms(u, body, law):
 
 @inline_kernel
 def length_and_moment(position, u, law):
-    """Return :class:`LengthAndMoment` at u; the compiler leaves out the fields that a caller does not read.
+    """Return :class:`LengthAndMoment`: 2 kappa delta_star/mu, M/V and their slopes at u.
 
-    position : of u, by :func:`locate_row`.  u : kappa |V|.  law : a :class:`Law`.
+    position : :class:`RowPosition` of u: row and argument t in it.
+    u : kappa |V|.
+    law : :class:`Law` of the material: polynomials of each octave.
+
+    The compiler leaves out the fields that a caller does not read.
     """
     if in_fast_limit(position):
         lam = law.rows[LAM_FAST]
@@ -144,7 +158,10 @@ def length_and_moment(position, u, law):
 def moment_factor(position, u, scale, state):
     """Return the factor that turns m, which is M/V divided by ``scale``, into M: V, or V z in the fast limit.
 
-    position : of u.  u : kappa |V|.  scale : that of :class:`LengthAndMoment`.  state : a :class:`State`.
+    position : of u.
+    u : kappa |V|.
+    scale : that of :class:`LengthAndMoment`.
+    state : :class:`State`: V, kappa, mu, and delta or omega.
     """
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
 
@@ -153,7 +170,9 @@ def moment_factor(position, u, scale, state):
 def lam_and_epsilon(position, u, law):
     """Return (lam, epsilon): length of the contact divided by l0, and its shift in half lengths.
 
-    position : of u, by :func:`locate_row`.  u : kappa |V|.  law : a :class:`Law`.
+    position : :class:`RowPosition` of u: row and argument t in it.
+    u : kappa |V|.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     if in_fast_limit(position):
         _, shift, _ = _fast_terms(u, FAST_TOTAL, law)
@@ -165,7 +184,10 @@ def lam_and_epsilon(position, u, law):
 def body_moments(position, u, law):
     """Return (m_half_space, m_cylinder, d_um_half_space, d_um_cylinder): the parts of M/V and of d(u M/V)/du.
 
-    position : of u, by :func:`locate_row`.  u : kappa |V|.  law : a :class:`Law`.
+    position : :class:`RowPosition` of u: row and argument t in it.
+    u : kappa |V|.
+    law : :class:`Law` of the material: polynomials of each octave.
+
     The first two are divided by the scale of :class:`LengthAndMoment`.
     """
     if in_fast_limit(position):
@@ -188,7 +210,8 @@ def free_creep_and_slopes(u, law):
 def limits_at_rest(kappa, law):
     """Return (L, delta_0) in the limit V -> 0: (1, -0.0) of half-spaces.
 
-    kappa : slenderness R/l0.  law : a :class:`Law`.
+    kappa : slenderness R/l0.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     if law.cover_rows is None:
         return 1.0, -0.0
@@ -202,7 +225,7 @@ def limits_at_rest(kappa, law):
 
 @inline_kernel
 def _half_space_eta_over_F(y, law):
-    """Return eta/F and minus its slope over y = F(eta) in the fast limit of ``law``."""
+    """Return eta/F and minus its slope with respect to y = F(eta) in the fast limit of ``law``."""
     half = 0.5 * law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]
     bracket = law.rows[FAST_TOTAL + 1] - W * np.log(y) if y > 0.0 else 0.0
@@ -213,7 +236,9 @@ def _half_space_eta_over_F(y, law):
 def eta_over_F(position, v, law):
     """Return eta/F, which times F gives the half length of the stick zone.
 
-    position : of v, by :func:`locate_row`.  v : 1/F(eta).  law : a :class:`Law`.
+    position : :class:`RowPosition` of v: row and argument t in it.
+    v : 1/F(eta).
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     if in_fast_limit(position):
         return fast_eta_over_F(_half_space_eta_over_F(1.0 / v, law)[0], v, law.cover_rows)
@@ -222,9 +247,12 @@ def eta_over_F(position, v, law):
 
 @inline_kernel
 def H_over_F2(position, v, law):
-    """Return H/F^2 and its slope over v.
+    """Return H/F^2 and its slope with respect to v.
 
-    position : of v, by :func:`locate_row`.  v : 1/F(eta), dimensionless.  law : a :class:`Law`.
+    position : :class:`RowPosition` of v: row and argument t in it.
+    v : 1/F(eta), dimensionless.
+    law : :class:`Law` of the material: polynomials of each octave.
+
     |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta|)/mu.
     """
     if in_fast_limit(position):
@@ -240,8 +268,11 @@ def H_over_F2(position, v, law):
 def H_over_F2_secants(position, near, v, x, law):
     """Return H/F^2 and its slope at v, and the mean slopes of both between v/(1 + x) and v, without cancellation.
 
-    position : of v, by :func:`locate_row`.  near : position of v/(1 + x), in the same row or in the one before.
-    v : 1/F(eta).  x : >= 0, dimensionless.  law : a :class:`Law`.
+    position : :class:`RowPosition` of v: row and argument t in it.
+    near : position of v/(1 + x), in the same row or in the one before.
+    v : 1/F(eta).
+    x : >= 0, dimensionless.
+    law : :class:`Law` of the material: polynomials of each octave.
 
     Returns (value, slope, mean slope of the value, mean slope of the slope).
     """
@@ -269,7 +300,9 @@ def H_over_F2_secants(position, near, v, x, law):
 def _fast_secants(v, x, law):
     """Return the mean slopes of H/F^2 and of its slope between v/(1 + x) and v in the fast limit.
 
-    v : 1/F(eta).  x : >= 0, dimensionless.  law : a :class:`Law`.
+    v : 1/F(eta).
+    x : >= 0, dimensionless.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]

@@ -45,7 +45,8 @@ class LawType(types.Callable):
     def get_call_type(self, context, args, kws):
         """Return the signature of a call with two real numbers, or None for other arguments.
 
-        context : of numba.  args, kws : types of the positional and of the named arguments.
+        context : numba's typing context.
+        args, kws : types of the positional and of the named arguments.
         """
         try:
             kinds = _SIGNATURE.bind(*args, **kws).args
@@ -130,7 +131,9 @@ def _unbox(kind, law, c):
 def _lower_constant(context, builder, kind, law):
     """Return instructions for the address of a law that is a constant of the code.
 
-    context, builder, kind : of numba.  law : the :class:`Jitted`, which is kept alive.
+    context, builder, kind : numba's context of code generation, builder of LLVM and type of the law.
+    law : the :class:`Jitted`, which is kept alive.
+
     numba does not put code with such an address into its cache: the next process has other addresses.
     """
     _constants.append(law)
@@ -141,7 +144,8 @@ def _lower_constant(context, builder, kind, law):
 def _lower_call(context, builder, signature, arguments):
     """Return instructions that call the C function of a law, whose address begins the user data.
 
-    context, builder, signature : of numba.  arguments : values of the law, V and omega.
+    context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
+    arguments : values of the law, V and omega.
     """
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)

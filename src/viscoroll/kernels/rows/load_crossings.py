@@ -36,7 +36,9 @@ class LoadCurve(NamedTuple):
 def _find_crossing(load, n, curve, law):
     """Return u between the nodes ``n`` and n + 1 where the curve equals ``load``: Newton's iteration in a bracket.
 
-    load : value of kappa (M - gain V) between those of the nodes.  curve : a :class:`LoadCurve`.  law : a :class:`Law`.
+    load : value of kappa (M - gain V) between those of the nodes.
+    curve : :class:`LoadCurve`: nodes u and kappa (M - gain V) there.
+    law : :class:`Law` of the material: polynomials of each octave.
 
     Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others: 4e-15 of
     the load, measured.
@@ -79,8 +81,11 @@ def _find_crossing(load, n, curve, law):
 def crossing_loop(law, curve, load, node, out, start, stop):
     """Find u = kappa V where the curve equals each load.
 
-    law : a :class:`Law`.  curve : a :class:`LoadCurve`.  load : loads, (n,).
-    node : for each load the node below the crossing, (n,).  out : (n,), written from ``start`` to ``stop`` - 1.
+    law : :class:`Law` of the material: polynomials of each octave.
+    curve : :class:`LoadCurve`: nodes u and kappa (M - gain V) there.
+    load : loads, (n,).
+    node : for each load the node below the crossing, (n,).
+    out : (n,), written from ``start`` to ``stop`` - 1.
     """
     for n in range(start, stop):
         out[n] = _find_crossing(load[n], node[n], curve, law)

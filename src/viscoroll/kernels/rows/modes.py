@@ -61,7 +61,9 @@ def _jet(rate, z, function):
 def _write_ratio_jets(z, series, work):
     """Write the jets of 1/r, k and i2 of every mode.
 
-    z : zeta.  series : a :class:`Series`.  work : its :class:`Workspace`, written.
+    z : zeta.
+    series : :class:`Series`: rates and strengths of the modes.
+    work : its :class:`Workspace`, written.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -92,9 +94,13 @@ def _write_ratio_jets(z, series, work):
 
 @kernel
 def _evaluate_N(z, series, of_g, of_h, of_y):
-    """Return N at z = zeta > 0: from -sum E_i tau_i^2 as V -> 0 to z^2 sum E_i/4 in fast rolling.
+    """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0.
 
-    z : zeta.  series : a :class:`Series`.  of_g, of_h, of_y : jets of g, h and sum X_i i2_i.
+    z : zeta, dimensionless.
+    series : :class:`Series`: rates and strengths of the modes.
+    of_g, of_h, of_y : jets (value, d/dz, d/ds, d2/dz ds) of g, h and sum X_i i2_i (:mod:`.series`).
+
+    N goes from -sum E_i tau_i^2 as V -> 0 to z^2 sum E_i/4 in fast rolling.
     """
     T_mean = relaxed = strength = 0.0
     for i in range(series.a.size):
@@ -124,9 +130,11 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 
 @inline_kernel
 def set_alpha_of_state(n, alpha, series):
-    """Make a series of one mode that of state ``n``.
+    """Write the alpha of state ``n`` into a series of one mode.
 
-    alpha : alphas, of length 1 or with one for each state; empty: the series is complete.  series : written.
+    n : number of the state.
+    alpha : alphas, of length 1 or with one for each state; empty: the series is complete and nothing is written.
+    series : :class:`Series`, written.
     """
     if alpha.size > 0:
         one_alpha = element(alpha, n)
@@ -138,10 +146,11 @@ def set_alpha_of_state(n, alpha, series):
 def modes_loop(series, alpha, work, z, out):
     """Evaluate the functions of a series, their slopes and N at many z.
 
-    series : a :class:`Series`.
+    series : :class:`Series`: rates and strengths of the modes.
     alpha : alphas of a series of one mode, of length 1 or with one for each z; empty: the series is complete.
-    work : the :class:`Workspace` of the series.  z : values of zeta > 0, (n,).
-    out : (9, n), written: g/z, h/z, m of half-space and cylinder; their slopes over ln(1/z); N.
+    work : the :class:`Workspace` of the series.
+    z : values of zeta > 0, (n,).
+    out : (9, n), written: g/z, h/z, m of half-space and cylinder; their slopes with respect to ln(1/z); N.
     """
     for n in range(z.size):
         set_alpha_of_state(n, alpha, series)

@@ -46,8 +46,11 @@ _SLOW_POWERS = powers_of_chebyshev(TERMS, 1.0, 2.0).ravel()
 def divided_differences(count, scratch):
     """Compute the leading divided differences of ``count`` functions from arguments and values in ``scratch``.
 
-    Each order is computed in place, four at a time, from the last point down.  What lies below the first difference of
-    an order is spoilt, and is not read any more.
+    count : number of functions, 1 or 2.
+    scratch : vector of this module with arguments and values; the differences are written in place of the values.
+
+    Each order is computed in place, four at a time, from the last point down.  The entries below the first
+    difference of an order are overwritten and are not read again.
     """
     for order in range(POINT_COUNT):
         first = POINT_COUNT - LANES
@@ -98,10 +101,11 @@ def sum_of_rows(matrix, first, terms, factors, to, numbers):
 
 @kernel
 def to_powers(slow, limit, scratch):
-    """Replace values at the nodes by the coefficients of the powers of t.
+    """Replace the values of a function at the 24 nodes of a row by its coefficients of the powers of t.
 
-    slow : whether this is the slow row, where t is in [0, 1] and coefficients that are rounding become zero.
-    limit : in the slow row, the value at t = 0, from which the values count.  scratch : read and written.
+    slow : whether this is the slow row, where t is in [0, 1] and coefficients below rounding are set to zero.
+    limit : in the slow row, the value at t = 0, which is subtracted from the values at the nodes.
+    scratch : vector of this module; values at NODE_VALUES are read, and the coefficients are written in their place.
     """
     if not slow:
         limit = scratch[NODE_VALUES + TERMS // 2]

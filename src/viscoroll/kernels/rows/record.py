@@ -93,7 +93,9 @@ def select_material(law, n):
 def ensure_part(part, row, law):
     """Return the position in ``law.rows`` of a part of a row, after making the part if it is not up to date.
 
-    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.  row : number of the row, from 0.  law : a :class:`Law`.
+    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.
+    row : number of the row, from 0.
+    law : :class:`Law` of the material: polynomials of each octave.
     """
     number = (row + 1) * PARTS_PER_ROW + part // PART_SIZE
     if unlikely(law.marks[np.uint64(number)] != law.marks[VERSION]):

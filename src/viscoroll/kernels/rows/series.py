@@ -112,7 +112,9 @@ def new_workspace(modes: int) -> Workspace:
 def evaluate_ratios(places, series, work):
     """Write 1/r, k and i2 of every mode at four places z.
 
-    places : vector of four z > 0.  series : a :class:`Series`.  work : its :class:`Workspace`, written.
+    places : vector of four z > 0.
+    series : :class:`Series`: rates and strengths of the modes.
+    work : its :class:`Workspace`, written.
     """
     z = unpack(places)
     for at in range(LANES * series.a.size):
@@ -139,7 +141,11 @@ def multiply(jets, p, q):
 
 @inline_kernel
 def reciprocal(jets, p):
-    """Return 1/p of a vector, which is a jet if ``jets``."""
+    """Return 1/p of a vector of four values, or of a jet.
+
+    jets : whether the four are a jet (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
+    p : the vector, other than 0.
+    """
     inverse = 1.0 / p
     if not jets:
         return inverse
@@ -150,7 +156,7 @@ def reciprocal(jets, p):
 
 @inline_kernel
 def _strength(jets, strength, rate):
-    """Return e_i, or t_j, as a vector; of a jet its slope over s is the strength divided by the rate."""
+    """Return e_i, or t_j, as a vector; of a jet its slope with respect to s is the strength divided by the rate."""
     return pack(strength, 0.0, strength / rate, 0.0) if jets else broadcast(strength)
 
 
@@ -162,9 +168,10 @@ def _value(jets, p):
 
 @inline_kernel
 def _factorize(matrix, count):
-    """Factorize a symmetric positive definite matrix as L D L^T in its lower half, with 1/D on the diagonal.
+    """Factorize symmetric positive definite matrices as L D L^T, four at once, in place.
 
-    matrix : (count, count) vectors of four, flat.  count : number of rows.
+    matrix : (count, count) vectors of four, flat; overwritten by L in the lower half and 1/D on the diagonal.
+    count : number of rows.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
@@ -198,12 +205,14 @@ def _substitute(matrix, right, count):
 
 @inline_kernel
 def solve_modes(jets, series, work):
-    """Solve (1/r + Q^T k Q) y = e, and write y and k f.
+    """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes, and write y and k f, f = Q y, into the workspace.
 
-    jets : whether vectors are jets.  series : a :class:`Series`.  work : its :class:`Workspace` with the ratios.
+    jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
+    series : :class:`Series`: rates and strengths of the modes.
+    work : its :class:`Workspace` with the ratios 1/r and k, written.
 
-    The factors are those of the value of the matrix.  Of a jet that leaves an error with d/dz or d/ds as a factor: the
-    second turn leaves one with both, and the third none.
+    The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor:
+    the second pass leaves one with both, and the third none.
     """
     count = series.a.size
     for i in range(count):
@@ -243,10 +252,15 @@ def solve_modes(jets, series, work):
 
 @kernel
 def _split_moment(jets, lam2, series, work):
-    """Return (half-space, cylinder): what the creep modes of either body have in m; without slopes over s.
+    """Return the parts of m by the creep modes of the half-space and of the cylinder; without slopes with respect to
+    s.
 
-    jets : whether vectors are jets.  lam2 : lam^2.  series : a :class:`Series` with weights.
+    jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
+    lam2 : lam^2.
+    series : :class:`Series`: rates and strengths of the modes, with weights of the half-space.
     work : its :class:`Workspace` with X in place of y.
+
+    Returns (half-space, cylinder).
     """
     count = series.a.size
     half_space = cylinder = broadcast(0.0)
@@ -271,11 +285,13 @@ def _split_moment(jets, lam2, series, work):
 def evaluate_functions(jets, z, series, work):
     """Write g/z, h/z and m of both bodies at z > 0 into ``work.functions``.
 
-    jets : whether vectors are jets.  z : vector of four z, or the jet of one.  series : a :class:`Series`.
+    jets : whether vectors are jets.
+    z : vector of four z, or the jet of one.
+    series : :class:`Series`: rates and strengths of the modes.
     work : its :class:`Workspace` with the ratios at z, written.
 
-    Returns (g, h, sum X_i i2_i).  The moments of the two bodies are scaled so that their sum is m: they differ from it
-    by roundings of alpha times the size of one.
+    Returns (g, h, sum X_i i2_i).  The moments of the two bodies are scaled so that their sum is m: they differ from
+    it by roundings of alpha times the size of one.
     """
     solve_modes(jets, series, work)
     unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)

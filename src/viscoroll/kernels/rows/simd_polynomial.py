@@ -26,9 +26,12 @@ def _constant(numbers):
 
 
 def _make_sums(count: int, orders: int):
-    """Return a function for kernels, (table, start, x) -> polynomial in x with vectors for coefficients, derivatives.
+    """Return a kernel that evaluates a polynomial with vectors for coefficients, and its derivatives.
 
-    count : number of coefficients.  orders : how many values are returned: the polynomial, its first derivative, ...
+    count : number of coefficients.
+    orders : number of values that the kernel returns: the polynomial, its first derivative, and so on.
+
+    The kernel takes (table, start, x): vector of coefficients, position of the first, argument.
     """
 
     def lower(context, builder, signature, arguments):
@@ -51,8 +54,9 @@ def _make_sums(count: int, orders: int):
 def _lower_secants(context, builder, signature, arguments):
     """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its slope.
 
-    context, builder, signature, arguments : of numba's lowering.
-    p is the polynomial with vectors for coefficients, x and z are fourth powers of two arguments.
+    context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
+
+    p is the polynomial with vectors for coefficients; x and z are fourth powers of two arguments.
     """
     terms = load_vectors(context, builder, signature, arguments, _ONE)
     sums = []

@@ -68,13 +68,15 @@ class Points(NamedTuple):
 
 @kernel
 def _memory_integral(u, w, a, r_complement):
-    """Return Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.
+    """Return the memory integral of one relaxation mode at a point of the contact.
 
-    u, w : distances from the front and the rear edge in half contacts, u + w = 2.  a : alpha z.
-    r_complement : 1 - r(a).
+    u, w : distances from the front and the rear edge in half contacts, u + w = 2.
+    a : alpha z, half transit time times the rate of the mode.
+    r_complement : 1 - r(a), r the ratio I1/I0.
 
-    The integral over [0, pi] is zero.  Near the rear edge it is therefore taken over the small
-    rest [phi, pi], with the other sign, where a (cos phi - cos t) <= a w < 1.
+    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0,
+    pi] is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign, where
+    a (cos phi - cos t) <= a w < 1.
     """
     rear = w < 1.0 and a * w < 1.0
     sine = np.sqrt(u * w)
@@ -110,7 +112,8 @@ def unit_shape(u, w, z, series, weights):
 
     u, w : distances from the front and the rear edge in half contacts, u + w = 2.
     z : half transit time of the contact, or of the stick zone, dimensionless; inf is the elastic limit V = 0.
-    series : a :class:`Series`.  weights : its :class:`MemoryWeights`, computed again if they belong to another z.
+    series : :class:`Series`: rates and strengths of the modes.
+    weights : its :class:`MemoryWeights`, computed again if they belong to another z.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
@@ -134,11 +137,12 @@ def unit_shape(u, w, z, series, weights):
 
 @kernel
 def stress_loop(series, alpha, whole, stick, points, p, tau):
-    """Compute the stresses at points.
+    """Compute pressure and shear stress at points of the contact.
 
-    series : a :class:`Series`.
+    series : :class:`Series`: rates and strengths of the modes.
     alpha : alphas of a series of one mode, of length 1 or one for each point; empty: the series is complete.
-    whole, stick : :class:`MemoryWeights` for the contact and for the stick zone.  points : :class:`Points`.
+    whole, stick : :class:`MemoryWeights` for the contact and for the stick zone, scratch.
+    points : :class:`Points`: position, kappa, mu and the contact state of each point.
     p, tau : p/E' and |tau|/E' at every point, written.
     """
     for i in range(p.size):

@@ -168,7 +168,13 @@ def work_size(nodes: int) -> int:
 
 @kernel(allocates=True)
 def select_series(n, source):
-    """Select the material of state ``n``: write the heads of rows and marks; ``source``: pointer to a SOURCE record."""
+    """Make the material of a state the selected one: write its data into the heads of rows and marks.
+
+    n : number of the state.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.
+
+    Rows of the law are then computed when they are first read (:func:`make_part`).
+    """
     source = record_at(source)
     marks = integers_at(source.marks, PARTS_PER_ROW)
     index = select_index(n, source.material_index, source.state_count, marks)
@@ -185,9 +191,10 @@ def select_series(n, source):
 
 @kernel(allocates=True)
 def make_part(number, source):
-    """Make a part of a row of the selected material.
+    """Compute a part of a row of the selected material, and write it into the rows of the law.
 
-    number : of the part, its place among the marks.  source : pointer to a SOURCE record.
+    number : number of the part, its index in the marks.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)
@@ -210,10 +217,12 @@ def make_part(number, source):
 
 @kernel
 def _make_functions(part, row, grid):
-    """Make one function of v, or a pair of functions of u, for one row: write the coefficients of the powers of t.
+    """Compute one function of v, or a pair of functions of u, for one row, and write the coefficients of the powers
+    of t.
 
-    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.  row : number of the row.  grid : the :class:`Grid`, whose
-        ``rows`` are written.
+    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.
+    row : number of the row.
+    grid : :class:`Grid` of function values over ln z of the selected material, whose ``rows`` are written.
     """
     over_v = part >= H_OVER_F2
     slow = row == 0
@@ -253,7 +262,8 @@ def _is_times_u(function):
 def _slow_limit(function, grid):
     """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t.
 
-    function : _L to _ETA_OVER_F.  grid : the :class:`Grid`.
+    function : column of the function in the grid, _L to _ETA_OVER_F.
+    grid : :class:`Grid` of function values over ln z of the selected material.
     """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
@@ -271,7 +281,8 @@ def _slow_limit(function, grid):
 def _z_of_node(node, grid):
     """Return z of a node: a power of 2^(1/10), or a point of the slow row.
 
-    node : its number.  grid : the :class:`Grid`.
+    node : its number.
+    grid : :class:`Grid` of function values over ln z of the selected material.
     """
     slow = node - (grid.node_count - POINT_COUNT)
     n = node + grid.lowest
@@ -286,7 +297,8 @@ def _z_of_node(node, grid):
 def _fill_block(first, grid):
     """Compute the functions at four nodes.
 
-    first : number of the first node, a multiple of four.  grid : the :class:`Grid`, written.
+    first : number of the first node, a multiple of four.
+    grid : :class:`Grid` of function values over ln z of the selected material, written.
     """
     places = pack(
         _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
@@ -323,9 +335,10 @@ def _fill_block(first, grid):
 
 @inline_kernel
 def _ensure_nodes(first, stop, grid):
-    """Make nodes of the grid that belong to another material still.
+    """Compute those nodes of the grid that still hold values of another material.
 
-    first, stop : numbers of the first node and of the one behind the last.  grid : the :class:`Grid`, written.
+    first, stop : numbers of the first node and of the one behind the last.
+    grid : :class:`Grid` of function values over ln z of the selected material, written.
     """
     for block in range(first // LANES, (stop - 1) // LANES + 1):
         if grid.node_versions[block] != grid.version:
@@ -337,8 +350,11 @@ def _ensure_nodes(first, stop, grid):
 def _ln_from_end(node, row, over_v, grid):
     """Return ln u, or ln v, at a node of the grid minus ln of the end of an octave of u or v.
 
-    node : number of the node.  row : number of the row that spans the octave.  over_v : True for v, False for u.
-    grid : the :class:`Grid`, in which the node is made if it is missing.
+    node : number of the node.
+    row : number of the row that spans the octave.
+    over_v : True for v, False for u.
+    grid : :class:`Grid` of function values over ln z of the selected material, in which the node is made if it is
+    missing.
     """
     _ensure_nodes(node, node + 1, grid)
     end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
@@ -351,9 +367,12 @@ def _ln_from_end(node, row, over_v, grid):
 def _collect_points(row, first, count, over_v, grid):
     """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
 
-    row : number of the row that spans the octave.  first : index of the first function at a node.
-    count : number of functions, 1 or 2.  over_v : True if they are functions of v, False for u.
-    grid : the :class:`Grid`.  Arguments are ln u or ln v, counted from the end of the octave.
+    row : number of the row that spans the octave.
+    first : index of the first function at a node.
+    count : number of functions, 1 or 2.
+    over_v : True if they are functions of v, False for u.
+    grid : :class:`Grid` of function values over ln z of the selected material.  Arguments are ln u or ln v, counted
+    from the end of the octave.
     """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
@@ -377,9 +396,13 @@ def _collect_points(row, first, count, over_v, grid):
 def _collect_slow_points(first, count, over_v, grid):
     """Write the 36 points of the slow row, from 1/z = 0 to a little beyond its end, into the scratch of ``grid``.
 
-    first : index of the first function at a node.  count : number of functions, 1 or 2.
-    over_v : True if they are functions of v, False for u.  grid : the :class:`Grid`. Arguments are t = u or v
-    divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided by t.
+    first : index of the first function at a node.
+    count : number of functions, 1 or 2.
+    over_v : True if they are functions of v, False for u.
+    grid : :class:`Grid` of function values over ln z of the selected material.
+
+    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided
+    by t.
     """
     end = math.ldexp(1.0, int(grid.e0))
     _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)

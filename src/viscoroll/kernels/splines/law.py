@@ -25,10 +25,14 @@ GRID = record_type(
 
 @kernel(allocates=True)
 def _grid_law(V, omega, pointer, grids):
-    """The C function: write the results, and return the status.
+    """Evaluate the splines of a grid at one state, write the results, and return the status; the C function of the
+    grid.
 
-    V, omega : speed and angular velocity in the units of the grid.  pointer : to the results, written.
-    grids : pointer to a GRID record.
+    V, omega : speed and angular velocity in the units of the grid.
+    pointer : address of the results, written.
+    grids : pointer to a GRID record: addresses of the splines and the bounds of the grid.
+
+    Returns 0, or another number outside the grid.
     """
     out = carray(pointer, RESULTS)
     grid = record_at(grids)
@@ -63,9 +67,9 @@ def _grid_law(V, omega, pointer, grids):
 
 
 def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Jitted:
-    """Return the law of a grid for jitted code.
+    """Return the law of a grid as a function for jitted code.
 
-    splines : those of Q, M_half_space and M_cylinder, which the law keeps.
+    splines : vectors of the splines of Q, M_half_space and M_cylinder, which the law keeps alive.
     numbers : slips, slowest, low, high, R of :data:`GRID`.
     """
     grids = np.zeros(2, GRID)

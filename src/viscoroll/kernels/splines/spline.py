@@ -76,9 +76,11 @@ def _integer_at(spline, n):
 
 @inline_kernel
 def _locate(spline, name, x):
-    """Return the :class:`AxisPosition` of a coordinate x on an axis.
+    """Return the :class:`AxisPosition` of a coordinate on an axis of the spline.
 
-    spline : the vector.  name : V_AXIS, DELTA_AXIS or ALPHA_AXIS.
+    spline : vector of the spline: bounds, axes and coefficients.
+    name : V_AXIS, DELTA_AXIS or ALPHA_AXIS.
+    x : the coordinate, in the units of the grid.
     """
     axis = _integer_at(spline, name)
     interval = np.int64(0)
@@ -100,9 +102,13 @@ def _locate(spline, name, x):
 
 @inline_kernel
 def _basis(spline, position, n):
-    """Return (value of a basis spline, its slope, what it adds to the number of a coefficient).
+    """Return one basis spline at a position: value, slope and offset of its coefficient.
 
-    spline : the vector.  position : the :class:`AxisPosition`.  n : number of the basis spline in the interval.
+    spline : vector of the spline: bounds, axes and coefficients.
+    position : the :class:`AxisPosition`.
+    n : number of the basis spline in the interval, 0 to its degree.
+
+    Returns (value, slope, offset): the offset is added to the position of a coefficient in the vector.
     """
     axis = position.axis
     at = (position.interval * TERMS + n) * TERMS + EDGES + 1 + _integer_at(spline, axis + INTERVALS) + axis
@@ -119,9 +125,9 @@ def _basis(spline, position, n):
 def evaluate(spline, V, delta, alpha):
     """Return the :class:`Value` of a field at a point, for kernels that inline it.
 
-    spline : the vector of a spline.  V, delta, alpha : coordinates in the units of the grid; any number for an axis
-    on
-        which the field does not depend.
+    spline : vector of the spline: bounds, axes and coefficients.
+    V, delta, alpha : coordinates in the units of the grid; any number for an axis on which the field does not
+    depend.
     """
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)

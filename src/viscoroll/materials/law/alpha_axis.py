@@ -79,7 +79,7 @@ def law_axis(low: float, high: float) -> LawAxis:
     """
     low, high = (check_number("alpha", value, low=1.0, high=HIGHEST_ALPHA) for value in (low, high))
     if not low < high:
-        raise ParameterError("alpha", f"{low:g} to {high:g}", "a lower and a higher one")
+        raise ParameterError("alpha", f"{low:g} to {high:g}", "two numbers, the lower one first")
     octaves = range(math.frexp(low)[1] - 1, math.ceil(math.log2(high)))
     pieces = []
     for octave in octaves:

@@ -85,7 +85,8 @@ def friction_limit(attributes: Any) -> float:
 def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
     """Read the law of a grid from a netCDF file of any program.
 
-    Parameters ----------
+    Parameters
+    ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
     M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
     attributes: mu, and where V has a unit R in m and the load in N/m.
@@ -117,7 +118,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     try:
         return _law_of(_in_si(table))
     except (KeyError, ValueError) as error:  # of a variable that is missing, and of scipy
-        raise FileError(path, f"is no grid of a law: {' '.join(str(error).split()):.120}") from error
+        raise FileError(path, f"is not a grid of a law: {' '.join(str(error).split()):.120}") from error
 
 
 def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
@@ -160,7 +161,7 @@ def _law_of(table: xr.Dataset) -> LawGrid:
 
     table: grid at one alpha.
     """
-    V, delta = check_array("V", table["V"].values, low=0.0, strict=True), table["delta"].values
+    V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
     axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}
     for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
         field = table[name] if name in table else 0.5 * table["M"]
@@ -169,6 +170,6 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     return LawGrid(
         splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
         slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= _FULL_SLIP * most).all()),
-        R=check_number("R", table.attrs.get("R", "missing, the radius in m"), low=0.0, strict=True),
+        R=check_number("R", table.attrs.get("R", "missing, the radius in m"), above=0.0),
         title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip

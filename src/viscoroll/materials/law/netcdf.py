@@ -82,7 +82,7 @@ def _title(table: LawTable) -> str:
     if table.pair is None:
         return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
     bodies = (table.pair.cylinder, table.pair.base)
-    return " on ".join(body.name or "a material without a name" for body in bodies if body is not None)
+    return " on ".join(body.name or "material without a name" for body in bodies if body is not None)
 
 
 def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
@@ -91,7 +91,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     Parameters
     ----------
     path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
-        delta, of ``viscoroll tables build`` or of another program (:func:`viscoroll.materials.law.grid.load_grid`).
+        delta, of ``viscoroll tables build`` or of another program (``viscoroll.materials.law.grid.load_grid``).
     alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
         T_epsilon for the unit of time.
 
@@ -108,6 +108,14 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
         A file that is missing, cut or damaged in any byte, no law, or of another schema; an alpha beyond the file's.
     ParameterError
         An alpha beside the file of one material, or none for that of every alpha.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER), "rubber.nc")
+    >>> roller = vr.presets.RUBBER_CYLINDER.replace(material=vr.load_law("rubber.nc"))
+    >>> bool(roller.contact(1.0, delta=0.0).M == vr.presets.RUBBER_CYLINDER.contact(1.0, delta=0.0).M)
+    True
     """
     try:
         content = read_law(path)
@@ -136,7 +144,9 @@ def parse_law(content: Content, path: Any) -> LawTable:
     numbers, attributes = content
     kind = attributes[KIND]
     if kind == AXIS:
-        raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
+        raise FileError(
+            path, "is the law of every alpha: for one alpha use vr.tables.law(vr.load_law(path, alpha=11.0))"
+        )
     with _refuse_incomplete(path):
         given, pair = _parse_bodies(attributes["material"], path)
         coefficients, e0 = _coefficients(content), int(numbers["e0"])
@@ -176,7 +186,7 @@ def _refuse_incomplete(path: Any) -> Iterator[None]:
         yield
     except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
         text = " ".join(str(error).split())
-        raise FileError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
+        raise FileError(path, f"is an incomplete law file ({text:.200}): {REMEDY}") from error
 
 
 def bodies_as_toml(given: Any) -> str:

@@ -230,9 +230,9 @@ def _pack_cover(cover: CoverRows) -> Floats:
 
 
 class AxisRows(NamedTuple):
-    """The rows of an octave of alpha as polynomials in s (:mod:`...kernels.rows.alpha_axis`).
+    """The rows of an octave of alpha as groups of terms in s (:mod:`...kernels.rows.alpha_axis`).
 
-    numbers : blocks of twelve numbers; of each block its groups of powers of s, the group of the highest powers first.
+    numbers : blocks of twelve numbers; of each block its groups of terms in s, the group of the highest degrees first.
     starts : index of the first group of each function or pair of functions, (rows * functions + 1,).
     rows : number of rows.
     """
@@ -248,7 +248,6 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     records: records of the laws of standard linear solids at the nodes of an octave, with equal numbers of rows.
     c: (alpha - 1)/alpha of each, by which M/V and epsilon are divided.
     """
-    from ...kernels.numerics.interpolation import powers_of_chebyshev
     from ...kernels.rows.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
     from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
 
@@ -260,11 +259,11 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     pairs[:, :, 1::2] /= c[:, None, None, None]
     singles = values[..., H_OVER_F2:].reshape(nodes, rows, 2, PART_SIZE)
     terms = _significant_terms(np.concatenate([pairs, singles], axis=2))
-    powers = np.einsum("jk,j...->k...", powers_of_chebyshev(ALPHA_TERMS, 0.0, 1.0), terms)
-    pairs = powers[:, :, :4].reshape(ALPHA_TERMS, rows, 2, 2, PART_SIZE // 2, 2).swapaxes(3, 4)
-    powers = np.concatenate([pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), powers[:, :, 4:]], axis=2)
-    groups = np.moveaxis(powers.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE), 0, 2)
-    groups = np.moveaxis(groups, (1, 3, 2), (0, 1, 2))[:, :, ::-1]  # (rows, blocks, groups, powers, numbers)
+    pairs = terms[:, :, :4].reshape(ALPHA_TERMS, rows, 2, 2, PART_SIZE // 2, 2).swapaxes(3, 4)
+    terms = np.concatenate([pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), terms[:, :, 4:]], axis=2)
+    terms = _grouped_terms(terms, GROUP)
+    groups = np.moveaxis(terms.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE), 0, 2)
+    groups = np.moveaxis(groups, (1, 3, 2), (0, 1, 2))[:, :, ::-1]  # (rows, blocks, groups, terms, numbers)
     numbers, counts = [], []
     for row in groups:
         first = 0
@@ -276,6 +275,26 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
             numbers += [block[FULL - length :].ravel() for block, length in zip(blocks, lengths)]
             counts.append(sum(lengths))
     return AxisRows(lock_array(np.concatenate(numbers)), lock_array(np.append(0, np.cumsum(counts))), rows)
+
+
+def _grouped_terms(terms: Floats, size: int) -> Floats:
+    """Return sums of T_j(s) as sums of T_4g(s) times cubic polynomials in s.
+
+    terms: coefficients of T_0 to T_15, along the first axis.
+    size: terms of a group, 4.
+    Returns coefficients of the same shape: those of T_4g s^i at index 4 g + i.
+    """
+    terms = terms.copy()
+    for start in range(len(terms) - size, 0, -size):
+        for i in range(1, size):  # T_(4g+i) = 2 T_4g T_i - T_(4g-i)
+            terms[start - i] -= terms[start + i]
+            terms[start + i] *= 2.0
+    groups = terms.reshape(-1, size, *terms.shape[1:])
+    groups[:, 0] -= groups[:, 2]  # T_2 = 2 s^2 - 1, T_3 = 4 s^3 - 3 s
+    groups[:, 1] -= 3.0 * groups[:, 3]
+    groups[:, 2] *= 2.0
+    groups[:, 3] *= 4.0
+    return terms
 
 
 def _significant_terms(values: Floats) -> Floats:
@@ -297,8 +316,13 @@ def _significant_terms(values: Floats) -> Floats:
     # from powers to Chebyshev polynomials exactly: an inverse matrix would lose eight digits
     to_terms = np.array([np.pad(poly2cheb(power), (0, count - 1 - k)) for k, power in enumerate(units)])
     of_both = terms[:, 1:] @ to_terms
-    of_both[np.abs(of_both) < _NEGLIGIBLE * least[1:, :, None]] = 0.0
-    terms[:, 1:] = of_both @ powers_of_chebyshev(count, 0.0, 1.0)
+    dropped = np.where(np.abs(of_both) < _NEGLIGIBLE * least[1:, :, None], of_both, 0.0)
+    # dropped terms are subtracted: converting the others to Chebyshev polynomials and back would add rounding errors
+    terms[:, 1:] -= dropped @ powers_of_chebyshev(count, 0.0, 1.0)
+    kept = np.where(of_both != dropped, np.arange(1, count + 1), 0).max(axis=-1, keepdims=True)
+    terms[:, 1:][np.arange(count) >= kept] = 0.0
+    constant = (values == values[0]).all(axis=0)  # as lam = 1 at rest, which rounding must not change
+    terms[0, constant], terms[1:, constant] = values[0, constant], 0.0
     return terms
 
 

@@ -1,20 +1,26 @@
-"""Rolling that is not steady: a transient solver of the normal contact, of any Prony series.
+"""Make data/reference/unsteady.json: rolling that is not steady, by a transient solver of the normal contact.
 
-Two like bodies in two dimensions, quasistatic, constant load, rolling without slip.  Lengths in half the contact length
-at rest, times in T_ref, the load pi/2, the speed u = kappa V.  With Phi = G p, G the logarithmic kernel, and the creep
-form of the series, J(t) = 1 - sum J_k exp(-t/T_k),
+    python -m data.reference.unsteady [-o FILE]        in some ten minutes
+
+Two like bodies in two dimensions, of any Prony series, quasistatic, constant load, rolling without slip.  Lengths in
+half the contact length at rest, times in T_ref, the load pi/2, the speed u = kappa V.  With Phi = G p, G the
+logarithmic kernel, and the creep form of the series, J(t) = 1 - sum J_k exp(-t/T_k),
 
     w = Phi/alpha + sum J_k m_k,   T_k m_k' = Phi - m_k   at every point of the surface
     w = D - (X - Xc)^2/2 and p >= 0 in contact, the gap >= 0 outside, the integral of p is the load
     u' = -g kM,   Xc' = 2 u,   kM = kappa M = (mean X of the pressure - Xc)/2,   g = gamma/(1 + j)
 
 The grid is fixed in the material.  Far ahead, where slow modes remember the load, Phi is that of a point load and its
-second moment.  Nothing of viscoroll enters.
+second moment.  Nothing of viscoroll enters but the conversion of a series, the contact length that a run-in begins
+with, and how long a motion is worth following.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import argparse
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -22,7 +28,30 @@ from numpy.typing import NDArray
 from scipy.linalg import toeplitz
 from scipy.special import exp1
 
+import viscoroll as vr
+
 Array = NDArray[np.float64]
+
+TARGET = Path(__file__).with_suffix(".json")
+ALPHA_3, ALPHA_11 = ([2.0], [1.0 / 3.0]), ([10.0], [1.0 / 11.0])
+WEAK, STRONG = ([0.2, 3.0], [1.0, 0.01]), ([3.0, 1.0], [1.0, 0.01])
+#: The series of src/viscoroll/datasets/dma.csv; with 0.1 m and T_ref 3 s g is 583, and u = 318 is 1 m/s.
+DMA = ([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
+#: E and tau of the material, u = kappa V and g = gamma/(1 + j) at the start; the first six are the table over gamma.
+MOTIONS = [
+    *((ALPHA_11, 4.365, gamma / 1.5) for gamma in (0.32, 1.07, 3.2, 10.7, 32.0, 107.0)),
+    (ALPHA_3, 10.0, 4.5), (ALPHA_3, 30.0, 45.0), (ALPHA_11, 10.0, 12.0), (ALPHA_11, 10.0, 120.0),
+    (ALPHA_11, 30.0, 120.0), (WEAK, 30.0, 30.0), (WEAK, 100.0, 1000.0), (STRONG, 30.0, 30.0), (STRONG, 100.0, 1000.0),
+    (DMA, 30.0, 583.0), (DMA, 100.0, 583.0), (DMA, 318.0, 5000.0),
+]  # fmt: skip
+#: Cell of the grid, over half the contact length at rest.
+H = 0.02
+#: Speed over that at the start down to which the law is followed; time that is added to that, so that the end is seen.
+_LAST, _WAIT = 2e-3, 5.0
+#: Relative difference of u from the straight line between two times that are kept.
+_THINNED = 2e-5
+#: Speed over that at the start below which the difference counts as that of this speed.
+_SLOW = 1e-3
 
 #: of the grid behind the axis, of what is not far ahead, of the way of a run-in, and of the grid beyond the whole way
 BEHIND, AHEAD, RUN_IN, BEYOND = 3.0, 6.0, 18.0, 60.0
@@ -213,3 +242,93 @@ def _remembered(D: Array, L: float, variance: Array) -> Array:
     second = np.where(z < 200.0, (1.0 / D - E / L) / L, 1.0 / D**2)
     found: Array = -0.5 * (np.log(D) + E) + 0.25 * variance * second
     return found
+
+
+def end_of(scene: vr.Scene, u0: float) -> float:
+    """Return the time at which a motion has been followed far enough: the law's, a tenth more and ``_WAIT``.
+
+    scene: of the motion, with kappa = 1.
+    u0: speed at the start.
+    """
+    u = np.geomspace(u0, _LAST * u0, 2001)
+    rates = scene.gamma / (1.0 + scene.j) * vr.contact(scene, u, delta=0.0, fields="M").M
+    return 1.1 * float(np.trapezoid(u / rates, -np.log(u))) + _WAIT
+
+
+def solve(scene: vr.Scene, u0: float, h: float) -> dict[str, Array]:
+    """Return rows of t, Xc and u of a motion, let go "steady", from steady contact, and from a contact at "rest".
+
+    scene: kappa = 1, so that speeds are u.
+    u0: speed at the start.
+    h: cell of the grid.
+    """
+    series, steady = scene.material, scene.validity(u0).steady
+    lam = float(vr.contact(scene, u0, delta=0.0, fields="lam").lam)
+    g, path, end = scene.gamma / (1.0 + scene.j), 2.4 * float(steady.whole) + 20.0, end_of(scene, u0)
+    rows = {}
+    for start, run_in in {"steady": (u0, lam), "rest": ()}.items():
+        contact = Contact((series.J, series.T, series.alpha), grid(h), path, *run_in)
+        contact.u = u0
+        rows[start] = contact.roll(g, t_end=end)
+    return rows
+
+
+def thin(t: Array, u: Array) -> NDArray[np.intp]:
+    """Return the places of so few times that u is linear between them to ``_THINNED``.
+
+    t, u: times and speeds, (n,).
+    """
+    allowed = _THINNED * np.maximum(np.abs(u), _SLOW * u[0])
+
+    def is_straight(first: int, last: int) -> bool:
+        line = np.interp(t[first : last + 1], t[[first, last]], u[[first, last]])
+        return bool((np.abs(line - u[first : last + 1]) <= allowed[first : last + 1]).all())
+
+    places = [0]
+    while (first := places[-1]) < t.size - 1:
+        length = 1
+        while first + length < t.size - 1 and is_straight(first, min(first + 2 * length, t.size - 1)):
+            length *= 2
+        low, high = min(first + length, t.size - 1), min(first + 2 * length, t.size - 1)
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if is_straight(first, middle) else (low, middle)
+        places.append(low)
+    return np.array(places)
+
+
+def scene_of(series: tuple[list[float], list[float]], g: float) -> vr.Scene:
+    """Return the scene of a motion: kappa is 1, so that lengths over R are contact lengths, and speeds are u.
+
+    series: E and tau.
+    g: gamma/(1 + j).
+    """
+    return vr.Scene(material=vr.Prony(*series), kappa=1.0, mu=0.2, gamma=1.5 * g, j=0.5)
+
+
+def record(motion: tuple[Any, float, float], rows: dict[str, Array]) -> dict[str, Any]:
+    """Return what the file holds of a motion: E, tau, u and g, and times and speeds from either start.
+
+    motion: an entry of MOTIONS.
+    rows: what ``solve`` found.
+    """
+    (E, tau), u0, g = motion
+    kept = {}
+    for start, (t, _, u) in ((start, found.T) for start, found in rows.items()):
+        at = thin(t, u)
+        kept[start] = {name: [float(f"{x:.7g}") for x in values[at]] for name, values in (("t", t), ("u", u))}
+    return {"E": E, "tau": tau, "u": u0, "g": g} | kept
+
+
+def main() -> None:
+    """Solve all motions, and write the file, a line for each motion."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("-o", "--output", type=Path, default=TARGET)
+    output = parser.parse_args().output
+    records = (record(motion, solve(scene_of(motion[0], motion[2]), motion[1], H)) for motion in MOTIONS)
+    lines = ",\n".join(json.dumps(each) for each in records)
+    output.write_text(f'{{"h": {H}, "motions": [\n{lines}\n]}}\n', encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,164 @@
+"""Help of each command, as ``viscoroll COMMAND --help`` prints it.
+
+The first sentence is the line of the command in ``viscoroll --help``; an example follows the text.
+"""
+
+#: Words of a command -> its help.
+HELP = {
+    "contact": """\
+Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
+
+The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT,
+LOW:HIGH:COUNT:log, or several of these, separated by commas.
+
+example:
+  viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5""",
+    "stress": """\
+Compute pressure and shear stress along the contact.
+
+The stresses are given at 101 points of the contact, for one V and one delta (or omega).
+
+example:
+  viscoroll stress paper-section-5 --V 0.5 --delta -0.01""",
+    "roll": """\
+Integrate one free motion from given initial speeds.
+
+The motion obeys Eq. (22), and may change between full slip and partial slip.
+For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
+
+example:
+  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7""",
+    "steady": """\
+Find the steady speeds under force, torque or slope.
+
+Each equilibrium of each load is a row.  If a load has no equilibrium, the reason is printed.
+Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
+
+example:
+  viscoroll steady paper-section-5-rounded --slope 0:0.1:6""",
+    "validity": """\
+Check the assumptions of the model at one speed.
+
+Each line has the name of an assumption, whether it holds (yes, no, or ? if data are missing), and the reason.
+
+example:
+  viscoroll validity rubber-roller --V 5 --omega 4.9""",
+    "ensemble": """\
+Compute the motions of a run file with random initial speeds and parameters.
+
+The command computes the motions that the store lacks, and summarises all.  Call it again to complete an
+interrupted run, or to extend the store after n was raised in the run file.
+Without -o it prints size, memory and time of the run.
+
+example:
+  viscoroll ensemble docs/examples/ensemble.toml""",
+    "verify": """\
+Check every file of a results store against its SHA-256.
+
+The exit code is 1 if a file differs or is missing.""",
+    "sensitivity": """\
+Compute Sobol indices of the uncertain inputs of a run file.
+
+The table has first-order (S1) and total (ST) indices of the summarised quantities, with the half-width of the
+95 % confidence interval (S1_conf, ST_conf), sorted by ST.  `viscoroll plot` draws the .nc file as bars.
+
+example:
+  viscoroll sensitivity run.toml -n 4096 -o sensitivity.nc""",
+    "material show": """\
+Print moduli, relaxation modes and creep modes of the materials of a file.
+
+The values are those at the temperature that the file states.
+
+example:
+  viscoroll material show docs/examples/rubber.toml""",
+    "material fit": """\
+Fit a material to DMA data.
+
+The command fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their
+headings, and prints how well the data determine it.  With -o it writes a [material] of a TOML file, or netCDF.
+
+If the misfit exceeds --misfit or 5 %, the exit code is 1 and no file is written.  With --force the
+file is written, and the source of the data in it states the misfit.
+
+example:
+  viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml""",
+    "identify": """\
+Identify friction, modulus, relaxation times, strengths and bearing from measurements.
+
+The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states
+which of them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
+  [unknown]  NAME = [LOW, HIGH]: bounds; [cylinder] has the initial guess
+  [prior]    NAME = [VALUE, SD]
+  [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
+             Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m
+
+example:
+  viscoroll identify docs/examples/measured.toml --plot fit.png""",
+    "tables law": """\
+Write the contact law of a material, pair, cover or range of alpha to a file.
+
+.nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
+or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
+every alpha of a range.
+
+example:
+  viscoroll tables law docs/examples/rubber.toml -o rubber.h""",
+    "tables build": """\
+Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
+
+The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
+.csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.
+
+example:
+  viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc""",
+    "tables info": """\
+Print the contents of a table file: functions or grid, stated errors, material and provenance.
+
+example:
+  viscoroll tables info data/tables/rubber.nc""",
+    "tables validate": """\
+Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
+
+The exit code is 1 if an error is larger than the file states.
+
+example:
+  viscoroll tables validate data/tables/rubber.nc""",
+    "export": """\
+Convert the results of a run, or a table, to another file format.
+
+A results store (STORE.zarr) becomes .nc with summaries and stored motions.  A law becomes .nc, .cdf, .h or .json.
+A grid becomes .nc, .cdf, .csv, .txt or .mat.
+
+example:
+  viscoroll export data/tables/rubber.nc -o rubber.h""",
+    "fmu": """\
+Build an FMU of a cylinder, for Modelica tools and others.
+
+The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
+Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
+ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
+Both provide exact directional derivatives.
+
+example:
+  viscoroll fmu docs/examples/rubber.toml -o roller.fmu""",
+    "plot": """\
+Draw a result file, a scene, a material, or the results of a run.
+
+For a netCDF file the command draws its result, for a scene file the contact law over speed, for a file with only
+a [material] moduli and relaxation, and for a results store the summaries.""",
+    "warmup": """\
+Compile all kernels in advance, so that the first calls do not wait.
+
+The compiled kernels go into the cache, once for each machine and version of the package.  If they are there
+already, the command takes a second.
+
+example:
+  viscoroll warmup""",
+    "doctor": """\
+Report versions, cache, threads, compiled functions and missing packages.
+
+Send this output with a report of a problem.  The exit code is 1 if a required package is missing.
+
+example:
+  viscoroll doctor""",
+}

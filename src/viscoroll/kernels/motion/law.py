@@ -1,0 +1,153 @@
+"""The contact law at a state of a motion: rolling moments, creepage, slip, added mass.
+
+Everything is read off rows of the law (:mod:`..rows.evaluate`) at u = kappa |V|; nothing here depends on the drive.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.by_reference import by_value
+from ..compile.jit import inline_kernel, kernel
+from ..rows.added_mass import added_mass
+from ..rows.evaluate import body_moments, free_creep_and_slopes, length_and_moment, limits_at_rest, locate_row
+
+
+@inline_kernel
+def evaluate_moments(u, scene):
+    """Evaluate the critical creepage, Eq. (9), and the rolling moments, Eq. (18), of the law at one speed.
+
+    u: float, kappa |V|, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), dimensionless; L = lam (1 +
+    epsilon) and its derivatives in u.
+    """
+    law = by_value(scene.law)
+    index = locate_row(u, law)
+    law_at_u = length_and_moment(index, u, law)
+    m, slope = law_at_u.scale * law_at_u.m, law_at_u.d_um
+    if not scene.moments_differ:
+        return law_at_u.L, law_at_u.dL, law_at_u.ddL, 0.5 * m, 0.5 * m, 0.5 * slope, 0.5 * slope
+    half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
+    # The scale is 1, or less in the fast limit.
+    scale = m / (half_space + cylinder) if m > 0.0 else 1.0
+    return law_at_u.L, law_at_u.dL, law_at_u.ddL, scale * half_space, scale * cylinder, half_space_slope, cylinder_slope
+
+
+@inline_kernel
+def rest_limits(scene):
+    """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
+
+    scene: Scene, parameters of Eq. (22).
+    """
+    return limits_at_rest(scene.kappa, by_value(scene.law))
+
+
+@kernel
+def low_speed_limits(work):
+    """Return moments, force and torque divided by V in the limit V -> 0 of free rolling.
+
+    work: Workspace, of the motion.
+    Returns (M_half_space, M_cylinder, force of feedback, torque of feedback), each divided by V, dimensionless.
+    """
+    _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
+    gains = work.drive.gains
+    omega_over_V = 1.0 + rest_limits(work.scene)[1]
+    force, torque = gains.force_V + gains.force_omega * omega_over_V, gains.torque_V + gains.torque_omega * omega_over_V
+    return half_space, cylinder, force, torque
+
+
+@inline_kernel
+def critical_creepage(V, scene):
+    """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips, dimensionless.
+
+    V: float, speed of the axis, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    """
+    u, law = scene.kappa * abs(V), by_value(scene.law)
+    return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
+
+
+@inline_kernel
+def creepage(V, d, scene):
+    """Return the creepage delta, Eq. (5), in partial slip; on a cover it includes that of free rolling.
+
+    V: float, speed of the axis, dimensionless.
+    d: float, delta/delta_star of the excess over free rolling, |d| <= 1.
+    scene: Scene, parameters of Eq. (22).
+    """
+    u, law = scene.kappa * abs(V), by_value(scene.law)
+    delta = critical_creepage(V, scene) * d
+    return delta if law.cover_rows is None else delta + 0.5 / scene.kappa * free_creep_and_slopes(u, law)[0]
+
+
+@inline_kernel
+def excess_slip(slip, V, scene):
+    """Return the slip omega - V less that of free rolling, dimensionless; for half-spaces the slip itself.
+
+    slip: float, omega - V, dimensionless.
+    V: float, speed of the axis, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    """
+    law = by_value(scene.law)
+    if law.cover_rows is None:
+        return slip
+    return slip - V * (0.5 / scene.kappa * free_creep_and_slopes(scene.kappa * abs(V), law)[0])
+
+
+@inline_kernel
+def added_inertia(V, scene):
+    """Return (n = gamma N, its derivative in V, its integral over V from 0) of the added mass N V', dimensionless.
+
+    The equations are in docs/theory_materials.md, Slowly changing speed; all are 0 for a law without added mass.
+
+    V: float, speed of the axis, dimensionless.
+    scene: Scene, parameters of Eq. (22).
+    """
+    return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
+
+
+@inline_kernel
+def omega_and_delta(state, regime, scene):
+    """Return (omega, creepage delta of Eq. (5)) of a state, dimensionless; delta is infinite at V = 0 in full slip.
+
+    state: State, the unknowns.
+    regime: Regime, which tells what the second unknown is.
+    scene: Scene, parameters of Eq. (22).
+    """
+    if not regime.full_slip:
+        delta = creepage(state.V, state.omega_or_d, scene)
+        return state.V * (1.0 + delta), delta
+    slip = state.omega_or_d - state.V
+    return state.omega_or_d, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
+
+
+@inline_kernel
+def added_mass_margin(n, j):
+    """Return the margin of the added mass, above 0 while the equations are regular, dimensionless.
+
+    It is 1 without added mass, 0 where n = 1 + j, and 0 where a negative n takes half of the inertia 1 + j or of the
+    factor 1 + n/2 of V'.
+
+    n: float, gamma N, dimensionless.
+    j: float, moment of inertia, dimensionless.
+    """
+    return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
+
+
+@inline_kernel
+def stick_edge_function(V, omega_or_d, regime, scene):
+    """Return the event function of the edge of the stick zone: positive within the regime, 0 at its end.
+
+    In full slip it is |omega - V| less its limit delta_star |V|, Eq. (9); in partial slip 1 - |d|, times the margin of
+    the added mass.
+
+    V: float, speed of the axis, dimensionless.
+    omega_or_d: float, second unknown, dimensionless.
+    regime: Regime, the present one.
+    scene: Scene, parameters of Eq. (22).
+    """
+    if not regime.full_slip:
+        n, _, _ = added_inertia(V, scene)
+        return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
+    return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(V, scene) * abs(V)

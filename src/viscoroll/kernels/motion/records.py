@@ -1,0 +1,276 @@
+"""Records of the solver of motions, the codes in its results and the columns of a segment of the drive; without
+numba.
+
+Times are tau = gamma t, dimensionless.  Speeds are V T_epsilon/R and omega T_epsilon, forces are divided by the load
+P, torques by P R, as in Eq. (22).  `omega_or_d` is the second unknown: omega in full slip, d = delta/delta_star in
+partial slip.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+#: Regime of an output: the whole contact slips.
+FULL_SLIP = 0
+#: Regime of an output: a part of the contact sticks.
+PARTIAL_SLIP = 1
+#: Regime of an output: V = omega = 0 without a brake.
+AT_REST = 2
+#: Regime of an output: a brake holds omega at 0 while V is not 0.
+OMEGA_LOCKED = 3
+#: Regime of an output: V = omega = 0, held by a brake or by a prescribed speed.
+HELD_AT_REST = 4
+#: Entry among the regime changes: V changed its sign.
+DIRECTION_REVERSED = -1
+
+#: Code of a drive: neither speed is prescribed.
+NOT_PRESCRIBED = 0
+#: Code of a drive: omega is prescribed.
+PRESCRIBED_OMEGA = 1
+#: Code of a drive: V is prescribed.
+PRESCRIBED_V = 2
+
+#: Status of a motion: it is integrated to its last output time.
+COMPLETED = 0
+#: Status of a motion: it came below the rest threshold.
+CAME_TO_REST = 1
+#: Status of a motion: the allowed number of steps was used up.
+STEP_LIMIT = 2
+#: Status of a motion: every step, however short, was rejected.
+STEP_TOO_SMALL = 3
+#: Status of a motion: the departure from rest is not unique.
+NOT_UNIQUE = 4
+#: Status of a motion: the added mass left the range in which the equations are regular.
+ADDED_MASS_EXHAUSTED = 5
+
+#: Unit of rounding of a double, dimensionless.
+ROUNDING = 2.2e-16
+#: V below which it counts as 0 in partial slip, dimensionless: far below every speed that an output can tell from 0.
+ZERO_SPEED = 1e-200
+
+
+class Scene(NamedTuple):
+    """Parameters of Eq. (22) of one motion, dimensionless.
+
+    law : rows of polynomials of the contact law of one material (:mod:`..rows.evaluate`)
+    moments_differ : whether half-space and cylinder take unequal parts of the rolling moment M
+    kappa : R/l0, radius of the cylinder divided by the length of the contact at rest
+    mu : coefficient of friction
+    gamma : P T_epsilon^2/(m R), Eq. (4): tau = gamma t; also the factor of the added mass N
+    j : J/(m R^2), moment of inertia of the cylinder
+    """
+
+    law: Any
+    moments_differ: bool
+    kappa: float
+    mu: float
+    gamma: float
+    j: float
+
+
+class Gains(NamedTuple):
+    """Feedback: derivatives of the applied force and torque in V and omega, dimensionless.
+
+    force_V, force_omega : of the force, in V and in omega
+    torque_V, torque_omega : of the torque of the motor, in V and in omega
+    """
+
+    force_V: float
+    force_omega: float
+    torque_V: float
+    torque_omega: float
+
+
+class Drive(NamedTuple):
+    """External actions on one motion.
+
+    segments : [segment, column], each row one segment of the drive over tau, columns as COL_* below
+    gains : Gains, the feedback, the same on all segments
+    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V
+    """
+
+    segments: Any
+    gains: Gains
+    prescribed: int
+
+
+class Load(NamedTuple):
+    """The drive at one time, in the direction of the regime, dimensionless (docs/theory_motion.md, Driven motion).
+
+    V' = inverse_mass (Q - M_half_space + force) + prescribed_V_rate
+    omega' = inverse_inertia (-Q - M_cylinder + torque) + prescribed_omega_rate
+
+    force, torque : force on the axis and torque of the motor, without feedback
+    prescribed_V_rate, prescribed_omega_rate : slope in tau of a prescribed speed; 0 where the speed is free
+    brake : largest torque of the brake, at least 0; it enters ``torque`` with the sign against omega
+    inverse_mass : 1, or 0 where V is prescribed
+    inverse_inertia : 1/j, or 0 where omega is prescribed or held at 0 by the brake
+    gains : Gains, the feedback
+    """
+
+    force: float
+    torque: float
+    prescribed_V_rate: float
+    prescribed_omega_rate: float
+    brake: float
+    inverse_mass: float
+    inverse_inertia: float
+    gains: Gains
+
+
+class Regime(NamedTuple):
+    """Regime of a motion and the orientation in which its V is at least 0.
+
+    full_slip : whether the whole contact slips
+    direction : 1 or -1; speeds, forces and torques times this are those of the regime, with V >= 0
+    sigma : 1 or -1, sign of omega - V in full slip, sign of d of the branch of the law in partial slip
+    spin_sign : sign of omega where a brake acts, 0 where none does
+    locked : whether a brake holds omega at 0
+    """
+
+    full_slip: bool
+    direction: float
+    sigma: float
+    spin_sign: float
+    locked: bool
+
+
+#: Regime of a cylinder at rest, before its departure is known.
+REGIME_AT_REST = Regime(False, 1.0, 1.0, 0.0, False)
+
+
+class State(NamedTuple):
+    """Unknowns of a motion in the direction of its regime, dimensionless.
+
+    V : speed of the axis
+    omega_or_d : omega in full slip, d = delta/delta_star in partial slip
+    """
+
+    V: float
+    omega_or_d: float
+
+
+class StepState(NamedTuple):
+    """Progress of the integration of one motion.
+
+    tau : time reached, dimensionless
+    next_output : index in ``Workspace.output_tau`` of the next output time
+    segment : index of the segment of the drive
+    n_steps : number of trial steps so far
+    n_accepted : number of accepted steps so far
+    h : length in tau of the next trial step; 0: not chosen yet
+    """
+
+    tau: float
+    next_output: int
+    segment: int
+    n_steps: int
+    n_accepted: int
+    h: float
+
+
+class Step(NamedTuple):
+    """One collocation step.
+
+    tau : time of the left end, dimensionless
+    h : length in tau
+    segment : index of the segment of the drive in which it lies
+    initial_slope_known : whether the slope of the second unknown at the left end is finite and known (V > 0)
+    undriven : whether nothing drives from there on: then V is measured relative to itself and may come to rest
+    """
+
+    tau: float
+    h: float
+    segment: int
+    initial_slope_known: bool
+    undriven: bool
+
+
+class Options(NamedTuple):
+    """Options of the integration.
+
+    rtol : relative tolerance of the speeds, dimensionless
+    rest_speed : speed below which a motion that nothing drives ends at rest, dimensionless; 0: none
+    max_steps : largest number of trial steps of a motion
+    """
+
+    rtol: float
+    rest_speed: float
+    max_steps: int
+
+
+class Workspace(NamedTuple):
+    """The problem of one motion and the arrays that its solution uses.
+
+    scene, drive, options : Scene, Drive and Options, the problem
+    output_tau : (k,), times tau of the outputs, increasing
+    outputs : [quantity, time], filled; rows as in :mod:`output`
+    with_quadratures : whether distance, angle and energies are requested
+    with_forces : whether force and torque are requested
+    switches : (m, 2), filled with t and the code of the regime behind each regime change
+    step_ends : filled with the end t of each accepted step, as far as it has room
+    nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`workspace`)
+    p_matrix, d_matrix : pointers to the inverse Newton matrices of p and of the second unknown, column by column
+    """
+
+    scene: Scene
+    drive: Drive
+    options: Options
+    output_tau: Any
+    outputs: Any
+    with_quadratures: bool
+    with_forces: bool
+    switches: Any
+    step_ends: Any
+    nodes: Any
+    p_matrix: Any
+    d_matrix: Any
+
+
+class Batch(NamedTuple):
+    """Parameters and starts of many motions: arrays of one value for all, or of one for each motion; dimensionless.
+
+    law : of one material for all, or of each motion in turn (:mod:`..rows.record`)
+    moments_differ : as in ``Scene``, the same for all
+    kappa, mu, gamma, j : as in ``Scene``
+    V0, omega0 : initial speeds
+    """
+
+    law: Any
+    moments_differ: bool
+    kappa: Any
+    mu: Any
+    gamma: Any
+    j: Any
+    V0: Any
+    omega0: Any
+
+
+#: Column of a segment: tau of its left end.
+COL_START = 0
+#: Column of a segment: scale of its time; x = (tau - start) scale - 1 runs from -1 to 1.
+COL_SCALE = 1
+#: First column of the coefficients in x of a segment, in ascending powers: as many for each function below as there are
+#: terms.
+COL_COEFFICIENTS = 2
+#: Function of a segment: force.
+DRIVE_FORCE = 0
+#: Function of a segment: torque of the motor.
+DRIVE_TORQUE = 1
+#: Function of a segment: slope in tau of the prescribed speed.
+DRIVE_RATE = 2
+#: Function of a segment: largest torque of the brake.
+DRIVE_BRAKE = 3
+#: Function of a segment: prescribed speed.
+DRIVE_SPEED = 4
+#: Number of functions of a segment.
+N_DRIVE_FUNCTIONS = 5
+#: Number of functions that are stored at the nodes of a step: all but the prescribed speed, which is evaluated at
+#: single times.
+N_NODE_FUNCTIONS = 4
+#: Quadrature: loss in rolling.
+ROLLING_LOSS = 3
+#: Number of quadratures that a free motion has: distance, angle, losses in slip and in rolling.
+N_FREE_QUADRATURES = 4
+#: Number of quadratures: those, then work of force and of torque and the loss in the brake, 0 unless something drives.
+N_QUADRATURES = 7
