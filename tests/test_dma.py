@@ -321,7 +321,7 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
     assert low < fit.kramers_kronig.median < high
     assert not fit.reached
     text = str(fit)
-    assert f"{fit.kramers_kronig.median:.2f} times what the slope of E' allows" in text
+    assert f"{fit.kramers_kronig.median:.2f} times the value from the slope of E'" in text
     assert "do not go together" in text
 
 

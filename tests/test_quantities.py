@@ -78,7 +78,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "Ensemble": lambda: vr.ensemble(CYLINDER, [0.5, 0.4], 0.5, 0.25),
 }  # fmt: skip
 #: how a unit is refused
-REFUSED = "must be in .+, or in a unit|must be a number without dimension"
+REFUSED = "must be in .+, or in another unit|must be a number without dimension"
 
 
 class Argument(NamedTuple):

@@ -270,4 +270,4 @@ def test_edited_materials(tmp_path):
     data = material_as_dataset(STORED[0])
     for changed in (data.assign(E=-data.E), data.drop_vars("tau"), data.assign_attrs(given="both", schema="other")):
         write_dataset(changed, path, sealed=True)
-        refused(lambda: vr.Material.from_netcdf(path), "no material", error=vr.FileError)
+        refused(lambda: vr.Material.from_netcdf(path), "not a material file", error=vr.FileError)

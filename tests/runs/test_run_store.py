@@ -163,7 +163,7 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
     for call, words in (
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
         (partial(run_ensemble, run, thesis), "not a results store, it contains chapter.tex"),
-        (partial(verify, thesis), "is not a results store"),
+        (partial(verify, thesis), "not a results store"),
     ):
         refused(call, words, error=vr.FileError)
     assert [path.name for path in thesis.iterdir()] == ["chapter.tex"]

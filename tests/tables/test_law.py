@@ -152,7 +152,7 @@ def error_of(path: Path) -> str:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda file: file.attrs.__setitem__("law_schema", 2), "schema 2, and this viscoroll"),
+        (lambda file: file.attrs.__setitem__("law_schema", 2), "law schema 2, but viscoroll"),
         (lambda file: file["press"].__setitem__((3, 5), 0.125), "its numbers are not those of its sha256_of_numbers"),
         (lambda file: file.attrs.__setitem__("sha256_of_numbers", "0" * 64), "its numbers are not those"),
         (lambda file: file.__delitem__("share"), "variable 'share' is missing"),

@@ -25,7 +25,7 @@ for axes, scene, title in zip(
     strict=True,
 ):
     extrema = vr.resistance_extrema(scene)
-    V = np.geomspace(extrema.V[0] / 20.0, 5.0 * extrema.V[-1], 801)
+    V = np.geomspace(extrema.V[0] / 20.0, 20.0 * extrema.V[-1], 801)
     axes.semilogx(V, vr.contact(scene, V, delta=0.0, fields="M").M, "k", label="M")
     for pull in (0.35, 0.7, 0.95):  # of the largest M
         slope = np.arctan(pull * extrema.M.max())
@@ -43,7 +43,7 @@ for axes, scene, title in zip(
         axes.plot(s.V[s.stable], s.M[s.stable], "o", color="C0")
         axes.plot(s.V[~s.stable], s.M[~s.stable], "o", color="C0", mfc="white")
     axes.set(
-        xlabel=r"speed $V\,T/R$", title=title, xlim=(V[0], 2.0 * V[-1]), ylim=(0.0, None)
+        xlabel=r"speed $V\,T/R$", title=title, xlim=(V[0], 6.0 * V[-1]), ylim=(0.0, None)
     )
     axes.xaxis.set_minor_formatter(NullFormatter())
 panels[0].set_ylabel(r"$M/(PR)$; $\tan(\mathrm{slope})$")

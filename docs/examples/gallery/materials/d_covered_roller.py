@@ -34,7 +34,7 @@ for thickness, style in styles.items():
     right.semilogx(speed, 1e3 * c.length, style, label=name)
 left.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
 right.set(xlabel="speed, m/s", ylabel="contact length, mm", ylim=(0.0, None))
-left.legend(frameon=False, title="cover")
+right.legend(frameon=False, title="cover", loc="lower left")
 
 # %%
 # An incompressible cover is stretched under the contact: a freely rolling covered roller travels

@@ -47,7 +47,7 @@ contact, (near, whole) = plt.subplots(
 )
 for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
     for n, name in enumerate(SYMBOLS):
-        for motion, style in ((m, "-"), (marked, "o")):
+        for motion, style in ((m, ("-", "--", "-.", ":")[n]), (marked, "o")):
             values = (
                 motion.delta if name == "delta" else getattr(motion.contact(name), name)
             )
@@ -56,7 +56,7 @@ for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
                 values,
                 f"C{n}{style}",
                 mfc="none",
-                label=SYMBOLS[name] if style == "-" else "_",
+                label="_" if motion is marked else SYMBOLS[name],
             )
     axes.set(
         xlim=(0.0, 1e4 * end), ylim=(-0.75, 1.1), xlabel=r"$t/T_\varepsilon\times 10^4$"

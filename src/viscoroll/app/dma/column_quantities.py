@@ -105,7 +105,7 @@ def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
     except ParameterError:
         return problem
     if "angular" in name and unit.lower().endswith("hz"):
-        return f"with an angular frequency in {unit}: rename it, or give units="
+        return f"an angular frequency in {unit}: rename it, or give units="
     angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
     return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
 

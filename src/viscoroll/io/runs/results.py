@@ -77,7 +77,7 @@ class RunResults(Result):
         ...     vr.runs.open_run("results.zarr").motions()
         ... except vr.FileError as error:
         ...     print(error.problem)
-        holds no motions, summaries alone: run it with keep = "all"
+        contains summaries but no motions: run it with keep = "all"
         """
         import xarray as xr
 

@@ -70,7 +70,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     >>> import viscoroll as vr
     >>> _ = vr.runs.run_ensemble(vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1)
     >>> print(vr.runs.verify("results.zarr"))
-    complete: 1 block and the summaries have the SHA-256 that they were written with
+    complete: 1 block and the summaries match their SHA-256
     """
     root, start = Path(path), start_of(path)
     motions, size, blocks = (int(start.about[name]) for name in ("motions", "motions_a_block", "blocks"))
