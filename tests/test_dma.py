@@ -204,7 +204,7 @@ def test_a_plateau_fixes_no_shift():
     columns = [list(column) for column in columns]
     columns[2] = [np.full(11, 50.0), np.full(11, 50.0)]  # the noise floor of the instrument
     with pytest.warns(
-        vr.ModelWarning, match=r"does not determine the shift from 0 to 10 C \(.*; give shift=, or try on="
+        vr.ModelWarning, match=r"does not determine the shift from 0 to 10 C \(.*: give shift=, or try on="
     ):
         fit = vr.fit_prony(*columns, temperature=[0.0, 10.0], misfit=0.5)
     assert "does not determine the shift from 0 to 10 C" in str(fit)
@@ -322,7 +322,7 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
     assert not fit.reached
     text = str(fit)
     assert f"{fit.kramers_kronig.median:.2f} times the value from the slope of E'" in text
-    assert "do not go together" in text
+    assert "are inconsistent" in text
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # units that are not given

@@ -89,7 +89,7 @@ def test_howto_runs(page, tmp_path, monkeypatch):
         exec(compile(code, f"{page}.md, block {n + 1}", "exec"), session)
     if page == "files":
         assert (tmp_path / "motion.nc").exists()
-    if page == "motion":  # the controller with a state holds what it was told to
+    if page == "law":  # the controller with a state holds what it was told to
         assert close(session["controlled_V"], session["wanted"], rel=tol.EXAMPLE_RADAU)
 
 

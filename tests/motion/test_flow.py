@@ -135,7 +135,7 @@ def test_rest(rest):
 
 def test_scenes_without_a_map_are_integrated():
     for scene, why in (
-        (SCENE.replace(alpha=1.0), "elastic"), (SCENE.replace(mu=0.01), "resistance"),
+        (SCENE.replace(alpha=1.0), "elastic"), (SCENE.replace(mu=0.01), "steady speed"),
         (vr.Scene(11.0, 0.4, 0.09, 1.0, 0.01), ""),
     ):  # fmt: skip
         V0, omega0 = starts(20, 8, scene)
