@@ -113,7 +113,7 @@ class Validity(NamedTuple):
         """Title and rows of the printed report."""
         items = self._asdict().items()
         rows = [SummaryRow(name, f"{assumption.word:<4} {assumption.sentence}") for name, assumption in items]
-        return "What the model assumes, and whether it holds", rows
+        return "Assumptions of the model, and whether they hold", rows
 
     def __repr__(self) -> str:
         return as_text(*self._summary())
@@ -130,9 +130,8 @@ UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
     "the surface speeds of the two bodies are not compared: give omega=",
     "Dundurs' constant must be 0, as for identical materials; a scene does not state it: use a Cylinder",
     "the transit frequency is not compared with the measured band of the material: give the Material measured=",
-    "no thickness is given: the law is that of a half-space, whose contact length is within 5 % of that on a "
-        "layer where "
-    f"it is up to {THICK_LIMIT:.2g} times the thickness",
+    "no thickness is given: the law is that of a half-space.  It applies to a layer if the contact is at most "
+    f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
     "the state must be plane strain (a long cylinder, or one between walls) or plane stress (a thin disc)",
 )))  # fmt: skip
 

@@ -138,15 +138,17 @@ def _describe_free(free: FreeRolling) -> str:
     if not np.isfinite(whole):
         return text + "an elastic cylinder never stops"
     fine, start = free.reach(0.1 * STEADY_LIMIT), free.start()
-    text += f"free rolling by the law of steady rolling ends after {whole:.4g}{length}; the error of V is below "
+    text += f"the coasting distance is {whole:.4g}{length}; the error of V is below "
     if fine.time:
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
     if fine.speed:
-        end = f"down to {most.speed:.2g}{speed}, after {most.time:.3g}{time} and {most.left:.2g}{length} before the end"
+        reached = f"which is reached after {most.time:.3g}{time}, {most.left:.2g}{length} before the end"
+        end = f"down to {most.speed:.2g}{speed}, {reached}"
         text += f"10 % {end if most.speed else 'to the end'}"
     if start.speed > LARGEST_LOSS * float(free.u * free.speed):
-        return text + "; after a long standstill the cylinder would stay in its indentation"
-    return text + f"; a start after a long standstill loses {start.speed:.2g}{speed} and {start.way:.2g}{length}"
+        return text + "; after a long standstill the cylinder would not leave its indentation"
+    loss = f"{start.speed:.2g}{speed} of speed and {start.way:.2g}{length} of distance"
+    return f"{text}; a start after a long standstill costs {loss}"
 
 
 def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
@@ -157,7 +159,7 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     share: part of its distance with an error above 10 %, NaN where it is not known.
     """
     text = f"unsteadiness up to {most:.2g} (up to {STEADY_LIMIT} is allowed): "
-    text += "by the law of steady rolling the error of V is below 10 % "
+    text += "the error of V is below 10 % "
     if most <= STEADY_LIMIT:
         return text + "throughout"
     speed = f"{free.reach(STEADY_LIMIT).speed:.2g} {free.units[0]}".rstrip()
