@@ -89,11 +89,7 @@ def test_howto_runs(page, tmp_path, monkeypatch):
         exec(compile(code, f"{page}.md, block {n + 1}", "exec"), session)
     if page == "files":
         assert (tmp_path / "motion.nc").exists()
-<<<<<<< HEAD
-    if page == "law":  # the controller with a state holds what it was told to
-=======
     if page == "law":  # the integral part removes the steady-state error
->>>>>>> h-pages
         assert close(session["controlled_V"], session["wanted"], rel=tol.EXAMPLE_RADAU)
 
 
