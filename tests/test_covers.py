@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
+from data.reference import layer as elastic_layer
 from pipeline.evidence.prove import layer
 from viscoroll.materials.law.cover_rows import solve_at_speed
 from viscoroll.materials.law.cover_solve import CoverModes, solve
@@ -68,7 +69,7 @@ def test_an_elastic_cover(nu):
     """Its load at half width 1 is that of another solution (make prove); delta_0 of a thick one is in closed form."""
     found = vr.contact(scene_on(vr.Cover(1.0, nu=nu, thickness=1.0)), 1.0, delta=0.0)
     assert found.M == 0.0
-    assert close(found.lam**2 * layer.load(2.0 / found.lam, nu), 1.0, rel=tol.COVER_ELASTIC)
+    assert close(found.lam**2 * elastic_layer.load(2.0 / found.lam, nu), 1.0, rel=tol.COVER_ELASTIC)
     thick = vr.contact(scene_on(vr.Cover(1.0, nu=nu, thickness=1e12, on="base")), 1.0, delta=0.0)
     assert close(thick.delta_0, -(0.5 - nu) / (1.0 - nu) * 4.0 / (3.0 * np.pi * KAPPA), rel=tol.COVER_LOCAL, scale=1e-3)
     alike = vr.Cover(1.0, nu=nu, thickness=1e12, part=0.5, other_nu=nu)
@@ -199,7 +200,7 @@ def test_a_law_on_disk(tmp_path):
         for name, values in vr.contact(found, V, delta=1e-3).as_dict().items():
             assert np.array_equal(values, vr.contact(known, V, delta=1e-3)[name])
     assert law.pair == roller.pair
-    refused(lambda: found.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "layer of 0.5", "0.49")
+    refused(lambda: found.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "thickness is 0.5", "0.49")
 
 
 @pytest.mark.parametrize("p", [ONE, THREE])
@@ -336,6 +337,19 @@ def test_equilibria(cover):
         assert close(s.beta, c.beta, rel=tol.COVER_STEADY)
     rest, slow = vr.steady(scene, force=0.1, torque=-0.1), vr.steady(scene, V=1e-12, torque=-0.1)
     assert close(rest.delta, slow.delta, rel=tol.COVER_REST)
+
+
+@pytest.mark.parametrize("cover", COVERS)
+@pytest.mark.parametrize("force", [vr.Feedback(0.004), vr.Feedback(-0.01, omega=0.4)])
+def test_equilibria_with_a_feedback_on_omega(cover, force):
+    """Forces balance at what is found: where omega follows from V, and where the gains cancel in the sum."""
+    scene, torque = scene_on(cover), vr.Feedback(0.02, omega=-0.4)
+    s = vr.steady(scene, force=force, torque=torque)
+    assert s.V.size
+    c = vr.contact(scene, s.V, omega=s.omega)
+    pushed, turned = (each.value + (each.omega or 0.0) * s.omega for each in (force, torque))
+    assert close(c.Q - c.M_half_space + pushed, 0.0 * s.V, rel=tol.COVER_STEADY, scale=1.0)
+    assert close(turned - c.Q - c.M_cylinder, 0.0 * s.V, rel=tol.COVER_STEADY, scale=1.0)
 
 
 def test_a_thickness_in_SI_units():

@@ -5,8 +5,9 @@ With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two
 
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
 
-R is smooth between the speeds at which omega - V is 0 or at the limit of stick, which are found first.  If fw + qw =
-0, the sum determines V, and R = 0 is an equation for omega.  All states here are in a frame where V > 0.
+R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V delta_0 of covers) or at
+a limit of stick, which are found first.  If fw + qw = 0, the sum determines V, and R = 0 is an equation for omega.  All
+states here are in a frame where V > 0.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 from ...materials.law.table import LawTable
 from .loads import Loads
 from .resistance import find_zeros, speed_nodes
-from .states import Field, States, contact_fields_at, find_crossings, state_rows
+from .states import Field, States, contact_fields_at, find_crossings, free_creep, state_rows
 
 #: nodes into which an interval of V with partial slip is divided
 _STICK_NODES = 16
@@ -37,6 +38,22 @@ _SAME_STATE = 1e-10
 _ROUNDING = 2e-15
 
 
+class _FreeRolling(NamedTuple):
+    """The contact at several speeds, in the frame of the motion, each (n,).
+
+    V : speeds.
+    M, M_half_space : moment of both bodies and of the half-space.
+    limit : omega - V less ``slip`` at which the whole contact slips.
+    slip : omega - V of free rolling, V delta_0, at which Q = 0.
+    """
+
+    V: NDArray
+    M: NDArray
+    M_half_space: NDArray
+    limit: NDArray
+    slip: NDArray
+
+
 class _ScanProblem(NamedTuple):
     """One load in the frame of the motion.
 
@@ -49,13 +66,13 @@ class _ScanProblem(NamedTuple):
     kappa: float
     mu: float
 
-    def free_rolling(self, x: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        """(V, M, M_half_space, omega - V at the limit of stick) at x = log2(kappa V)."""
+    def free_rolling(self, x: NDArray) -> _FreeRolling:
+        """Return the contact at x = log2(kappa V), (n,)."""
         V = np.exp2(x) / self.kappa
         M, M_half_space, star = contact_fields_at(
             self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star"
         )
-        return V, M, M_half_space, star * V
+        return _FreeRolling(V, M, M_half_space, star * V, free_creep(self.law, self.kappa, self.mu, V) * V)
 
     def loads_at(self, V: Any, omega: Any) -> NDArray:
         """Force and torque at the speeds V and omega."""
@@ -138,19 +155,19 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     """x = log2(kappa V) and slip of every state of ``problem``, where omega follows from V."""
 
     def beyond(x: NDArray, part: float) -> NDArray:
-        V, M, _, limit = problem.free_rolling(x)
-        return problem.slip(V, M) - part * limit
+        free = problem.free_rolling(x)
+        return problem.slip(free.V, free.M) - free.slip - part * free.limit
 
     nodes = speed_nodes(problem.law)
     nodes = np.unique(
         np.concatenate([nodes, *(find_zeros(partial(beyond, part=part), nodes) for part in (-1.0, 0.0, 1.0))])
     )
-    V, M, _, limit = problem.free_rolling(nodes)
-    stuck = np.abs(problem.slip(V, M)) <= limit * (1.0 + 1e-9)
+    free = problem.free_rolling(nodes)
+    stuck = np.abs(problem.slip(free.V, free.M) - free.slip) <= free.limit * (1.0 + 1e-9)
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     fine = nodes[within, None] + np.linspace(0.0, 1.0, _STICK_NODES)[1:-1] * np.diff(nodes)[within, None]
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
-    V, M, M_half_space, _ = problem.free_rolling(nodes)
+    V, M, M_half_space, *_ = problem.free_rolling(nodes)
     terms = (
         problem.mu + M_half_space + np.abs(problem.load_rows[0]) @ np.abs([np.ones_like(V), V, V + problem.slip(V, M)])
     )
@@ -166,15 +183,16 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
     positions, slips = [np.empty(0)], [np.empty(0)]
     for x in np.log2(u[sign > 0.0]):
-        V, _, M_half_space, (limit,) = problem.free_rolling(np.array([x]))
+        V, _, M_half_space, (limit,), (free_slip,) = problem.free_rolling(np.array([x]))
         rest = M_half_space - problem.loads_at(V, V)[0]  # Q + gain slip
 
-        def residual(part: NDArray, x: float = x, limit: float = limit) -> NDArray:
-            return problem.residual(np.full(part.size, x), limit * part)
+        def residual(part: NDArray, x: float = x, limit: float = limit, free_slip: float = free_slip) -> NDArray:
+            return problem.residual(np.full(part.size, x), free_slip + limit * part)
 
         sides = np.array([1.0, -1.0])
-        free = (rest - sides * problem.mu) / problem.load_rows[0, 2]
-        slips += [limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES)), free[sides * free > limit]]
+        full = (rest - sides * problem.mu) / problem.load_rows[0, 2]
+        partial_slip = free_slip + limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
+        slips += [partial_slip, full[sides * (full - free_slip) > limit]]
         positions += [np.full(each.size, x) for each in slips[-2:]]
     return np.concatenate(positions), np.concatenate(slips)
 

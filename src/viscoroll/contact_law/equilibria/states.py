@@ -149,6 +149,14 @@ def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any
     return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
 
+def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
+    """Return delta_0 at V > 0, the creepage at which Q = 0; 0.0 of half-spaces.
+
+    law : rows of the material.  kappa, mu : parameters.  V : speeds, (n,).
+    """
+    return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
+
+
 def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
     """Rows of :class:`Field` with slopes at V > 0 and a creepage."""
     rows = np.empty((2 + len(_ROWS), V.size))
@@ -186,7 +194,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V
-    delta_0: Any = 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
+    delta_0 = free_creep(law, kappa, mu, V)
     free = contact_fields_at(law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
     M = free[0] + free[1]
     share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)

@@ -99,9 +99,6 @@ def steady(
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
-    elif loads.gains.omega and law.cover is not None:
-        allowed = "a feedback on V only: for covers, steady speeds with a feedback on omega are not computed"
-        raise ParameterError("omega", "in the feedback", allowed)
     elif loads.gains.omega:
         rolling = scan_states(law, loads)
     else:

@@ -100,7 +100,13 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
 
 
 def _lazy_record(
-    kernels: Any, select: Any, rows: Floats, marks: Integers, cover_rows: Floats | None = None, **fields: Any
+    kernels: Any,
+    select: Any,
+    rows: Floats,
+    marks: Integers,
+    cover_rows: Floats | None = None,
+    kept: Any = None,
+    **fields: Any,
 ) -> Any:
     """Return the record of a law whose rows are made by kernels where they are read.
 
@@ -108,6 +114,7 @@ def _lazy_record(
     select: kernel that makes the law of one element the current one.
     rows, marks: numbers and marks of the record, which the kernels write.
     cover_rows: likewise the numbers that covers have in addition; None for half-spaces.
+    kept: arrays behind addresses in fields, which live as long as the record.
     fields: the other fields of SOURCE, numbers or arrays, of which the address is passed.
     """
     from ...kernels.compile.intrinsics import function_address
@@ -118,7 +125,7 @@ def _lazy_record(
     for name, value in fields.items():
         source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
     # the marks keep all arrays alive of which the kernels have the addresses
-    owner = SimpleNamespace(__array_interface__=marks.__array_interface__, arrays=(source, fields))
+    owner = SimpleNamespace(__array_interface__=marks.__array_interface__, arrays=(source, fields, kept))
     selector, maker = (function_address(kernel, kernels.SOURCE) for kernel in (select, kernels.make_part))
     rows, marks, N_rows = map(lock_array, (rows.view(), np.asarray(owner), np.empty(0)))
     cover_rows = None if cover_rows is None else lock_array(cover_rows.view())
@@ -151,7 +158,7 @@ def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
     return _lazy_record(
         thickness_axis, thickness_axis.select_cover, rows=rows, marks=marks, cover_index=index, state_count=index.size,
         cover_rows=np.zeros(max(record.cover_rows.size for record in records)), cover_count=thickness.size,
-        weights=np.ascontiguousarray(weights), octaves=np.array(octaves, np.int64),
+        weights=np.ascontiguousarray(weights), octaves=np.array(octaves, np.int64), kept=laws,
     )  # fmt: skip
 
 
