@@ -69,7 +69,7 @@ DAMAGE = {
 
 
 @pytest.mark.parametrize("damage", DAMAGE)
-def test_what_is_damaged_is_made_anew(folder, damage):
+def test_a_damaged_map_is_built_again(folder, damage):
     for number in (2.0, 3.0):
         kept(number)
     path, other = (place(number)[1] for number in (2.0, 3.0))
