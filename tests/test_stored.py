@@ -74,7 +74,7 @@ def test_a_damaged_map_is_built_again(folder, damage):
         kept(number)
     path, other = (place(number)[1] for number in (2.0, 3.0))
     path.write_bytes(DAMAGE[damage](path.read_bytes(), other.read_bytes()))
-    with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\); it is built anew"):
+    with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\) and is built again"):
         assert not kept(2.0)
     assert kept(2.0)
 
