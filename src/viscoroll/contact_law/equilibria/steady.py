@@ -89,7 +89,9 @@ def steady(
     plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
     roller, scene, scale = resolve_model(roller, "steady", slope=slope)
-    force, torque, V = (make_dimensionless(name, plain[name], scale) for name in ("force", "torque", "V"))
+    force = make_dimensionless("force", plain["force"], scale)
+    torque = make_dimensionless("torque", plain["torque"], scale)
+    V = make_dimensionless("V", plain["V"], scale)
     loads = loads_of(scene, force, torque, slope, V)
     law = scene.table
     assert law is not None  # loads_of refuses arrays of materials
