@@ -29,10 +29,12 @@ _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "Wit
 
 @contextmanager
 def _memoized_types(typing):
-    """Keep, within a ``with`` block, the types of operations on numbers, which numba resolves again at each sum of
-    floats.
+    """Memoize the types that numba finds for operations on numbers, within a ``with`` block.
 
-    typing : numba's typing context.
+    Without it numba resolves the types of a sum of floats again at each such sum.
+
+    typing : numba's typing context, changed within the block.
+    Yields None.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -80,7 +82,11 @@ class EntryPipeline:
 
     @_without_garbage_collection()
     def compile_extra(self, function: Callable):
-        """Compile ``function``, and return numba's result; in numba's own way if a private name of numba fails."""
+        """Compile a function by a part and a whole; by numba's own pipeline if a private name of numba has changed.
+
+        function : the Python function.
+        Returns numba's ``CompileResult``.
+        """
         announce_compiling()
         global _deferring
         if not _deferring:
@@ -112,6 +118,7 @@ def defer(whole, options: dict[str, Any]):
 
     whole : numba's dispatcher of the kernel, changed.
     options : options of ``numba.njit`` for the part.
+    Returns None; the dispatcher compiles in the new way from then on.
     """
     plain = type(whole)
 
@@ -135,7 +142,10 @@ def defer(whole, options: dict[str, Any]):
 
 @lru_cache(maxsize=1)
 def _pipelines():
-    """Return numba's compiler classes for parts and for wholes."""
+    """Make numba's compiler classes for the part of a kernel that others call and for the whole that Python calls.
+
+    Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``.
+    """
     from numba.core.codegen import JITCodeLibrary
 
     class Part(JITCodeLibrary):
@@ -170,6 +180,9 @@ def _pipelines():
         """A library with the IR of all parts below, optimised and compiled together."""
 
         def finalize(self):
+            """Add the called libraries to the module of LLVM, optimize it once, and turn it into machine code; returns
+            None.
+            """
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
             _link(self, module)
@@ -215,7 +228,10 @@ def _link(library, module):
 
 
 def _pipeline(library_class: type):
-    """Return numba's default compiler, which lowers into libraries of ``library_class``."""
+    """Return numba's default compiler, which lowers into libraries of ``library_class``.
+
+    Returns the subclass of numba's ``CompilerBase``.
+    """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass
     from numba.core.typed_passes import NativeLowering

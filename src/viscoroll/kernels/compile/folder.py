@@ -22,7 +22,10 @@ _SUPERUSERS = 0
 
 
 def cache_root() -> Path:
-    """Return the folder that holds every cache of the package."""
+    """Return the folder that holds every cache of the package.
+
+    Returns the path; the folder may not exist yet.
+    """
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
     if base := os.environ.get("XDG_CACHE_HOME"):

@@ -1,5 +1,7 @@
 """Flow map, starts inside the stick zone: the search for the onset of partial slip that the start would have come
 from.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -64,8 +66,10 @@ def find_onset(V, delta, edge, flow):
     edge : delta_star at V.
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
-    Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the
-    slow manifold E is infinite and the speed is that of the state.  Newton's iteration in ln V at onset and in u,
+    Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the slow
+    manifold E is infinite and the speed is that of the state.
+
+    Method: Newton's iteration in ln V at onset and in u,
     applied to the logarithm of the distance from the manifold, which decreases nearly linearly in E.
     """
     v = flow.kappa * V

@@ -6,6 +6,8 @@ and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then n
 would lose digits near alpha = 2^N, and a T_j for every coefficient would take a third more loads.  The higher a power
 of t, the fewer groups change a digit.  So a block of twelve coefficients has one or two groups in most rows, and only
 the first block has four.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import math
@@ -73,7 +75,8 @@ def select_alpha(n, source):
     """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
     parts.
 
-    n : number of the state.  source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+    n : index of the state.
+    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
     selected already.
@@ -107,7 +110,7 @@ def select_alpha(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
 
-    number : number of the part, its index in the marks.
+    number : index of the part in the marks.
     source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
 
     The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.

@@ -56,7 +56,7 @@ def _cover_law(V, omega, out, scenes):
 
 @kernel(inline=True, allocates=True)
 def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
-    """Evaluate the law at one state, write the results, and return the status.
+    """Evaluate the law at one state and write the results in the units of the caller.
 
     caller_V, caller_omega : speed and angular velocity in the units of the caller.
     pointer : address of the results, written.

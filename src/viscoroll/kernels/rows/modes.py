@@ -9,6 +9,8 @@ y = sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
 
 _s is the slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h and y gain
 T_mean times themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -59,9 +61,10 @@ def _jet(rate, z, function):
 
 @kernel
 def _write_ratio_jets(z, series, work):
-    """Write the jets of 1/r, k and i2 of every mode.
+    """Write the jets of 1/r, k and i2 of every mode: each value with its derivatives d/dz, d/ds, d2/dz ds
+    (:mod:`.series`).
 
-    z : zeta.
+    z : zeta, half transit time of the contact, > 0, dimensionless.
     series : :class:`Series`: rates and strengths of the modes.
     work : its :class:`Workspace`, written.
     """
@@ -132,7 +135,7 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 def set_alpha_of_state(n, alpha, series):
     """Write the alpha of state ``n`` into a series of one mode.
 
-    n : number of the state.
+    n : index of the state.
     alpha : alphas, of length 1 or with one for each state; empty: the series is complete and nothing is written.
     series : :class:`Series`, written.
     """
