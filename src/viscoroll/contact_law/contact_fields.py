@@ -112,7 +112,7 @@ def complete(
 ) -> dict[str, Any]:
     """Return the fields of a call by name, numbers or arrays.
 
-    names: fields of the call.  computed: field of each row.  rows: values, (fields, states).  shape: of the call.
+    names: fields of the call.  computed: field of each row.  rows: values, (fields, states).  shape: shape of the call.
     """
     found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
     if computed != names:

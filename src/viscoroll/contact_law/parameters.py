@@ -139,7 +139,9 @@ class Parameters(Roller):
 
     @property
     def table(self) -> LawTable | None:
-        """The law of its one material, as given or computed; None of several alphas or materials."""
+        """Return the law of the one material of the scene, as given or computed; None if it has several alphas or
+        materials.
+        """
         if self._law is not None:
             return self._law
         if self.material is not None:
@@ -159,7 +161,11 @@ class Parameters(Roller):
         return self
 
     def replace(self, **changes: Any) -> Self:
-        """Return a copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
+        """Return a copy with some parameters changed.
+
+        changes: parameters by name; an alpha takes the place of a material, and the reverse.
+        Raises ParameterError for values out of range.
+        """
         material: dict[str, Any] = {}
         if changes.keys() & {"alpha", "material"}:
             material = {"alpha": None, "material": None}
@@ -281,7 +287,7 @@ def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a sin
     """Raise ParameterError where a parameter is an array.
 
     scene: the parameters.
-    names: of the parameters.
+    names: names of the parameters.
     allowed: what the message says instead.
     """
     for name in names:

@@ -34,14 +34,15 @@ def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers) -> Values:
 def stress(
     roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
 ) -> Values:
-    """Pressure and shear stress along the contact, Eqs. (11)-(14).
+    """Return pressure and shear stress along the contact, Eqs. (11)-(14).
 
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a :class:`Cylinder`, in SI units.
     x : position divided by l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
         value: the stresses are 0 outside the contact.
-    V, delta, omega : as for :func:`contact`; all arguments broadcast.
+    V : velocity of the axis, any sign; of a Cylinder m/s.
+    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity (rad/s).  All arguments broadcast.
 
     Returns
     -------
@@ -107,7 +108,7 @@ def stress(
 
 
 def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
-    """Compute the stresses at points.
+    """Compute the stresses at points, material by material.
 
     scene: parameters of the roller.  alpha: alphas, or of many materials their indices; points of one material lie
     together.  points: record of the kernel, whose fields have one value, or one for each point.  p, tau: results, (n,).
@@ -133,7 +134,10 @@ def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats)
 def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     """Return p/E' at points on a cover, by one solve for each state of the contact.
 
-    scene: with the cover.  index: which of its covers, if there are many.  points: as the kernels take them.
+    scene: parameters with a cover.
+    index: index of the cover, if there are many.
+    points: record of the kernel, with the position and the contact state of each point.
+    Returns p/E', (n,).
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = modes_of_cover(cover)

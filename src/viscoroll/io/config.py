@@ -87,6 +87,10 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
         if it is another material.
     more : further sections that the file may have.
 
+    Returns
+    -------
+    Scene or Cylinder
+
     Raises
     ------
     FileError
@@ -159,6 +163,10 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     Parameters
     ----------
     path : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
+
+    Returns
+    -------
+    Pair, Prony, Bodies, float or Cylinder
 
     Raises
     ------

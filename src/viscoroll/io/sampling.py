@@ -112,7 +112,12 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
 
 @np.errstate(all="ignore")  # scipy may overflow for a distribution that is refused
 def _is_distribution(name: str, value: Any) -> bool:
-    """Whether the ``value`` of a quantity ``name`` is a distribution, else a number; raise ParameterError otherwise."""
+    """Return whether the value of a quantity is a distribution; else it must be a number.
+
+    name: name of the quantity.
+    value: what a caller gave.
+    Raises ParameterError for what is neither.
+    """
     random = hasattr(value, "ppf")
     try:
         check_number(name, value.ppf(0.5) if random else value)

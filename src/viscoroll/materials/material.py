@@ -225,6 +225,10 @@ class Material(FromPrograms):
         ----------
         omega : angular frequencies, rad/s, >= 0, of any shape.
 
+        Returns
+        -------
+        number or array, Pa, of the shape of ``omega``
+
         Raises
         ------
         ParameterError
@@ -240,7 +244,8 @@ class Material(FromPrograms):
         return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
-        """Return the loss modulus E'', Pa; arguments and errors as of :meth:`storage`.
+        """Return the loss modulus E'', Pa, of the shape of ``omega`` (angular frequencies, rad/s, >= 0); errors as of
+        :meth:`storage`.
 
         Examples
         --------
@@ -252,7 +257,8 @@ class Material(FromPrograms):
         return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
-        """Return the loss factor E''/E', dimensionless; arguments and errors as of :meth:`storage`.
+        """Return the loss factor E''/E', of the shape of ``omega`` (angular frequencies, rad/s, >= 0); errors as of
+        :meth:`storage`.
 
         Examples
         --------
@@ -271,6 +277,10 @@ class Material(FromPrograms):
         ----------
         t : times, s, >= 0, of any shape.
 
+        Returns
+        -------
+        number or array, Pa, of the shape of ``t``
+
         Raises
         ------
         ParameterError
@@ -287,7 +297,7 @@ class Material(FromPrograms):
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
     def creep(self, t: ArrayLike) -> Any:
-        """Return the creep compliance in tension times E, from E/E(0) to 1; arguments as of :meth:`relaxation`.
+        """Return the creep compliance in tension times E, from E/E(0) to 1, of the shape of ``t`` (times, s, >= 0).
 
         Examples
         --------

@@ -84,7 +84,7 @@ def save_material(material: Any, path: str | PathLike[str]) -> None:
 def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
     """Read a file of :func:`save_material`; raises FileError.
 
-    path: of the file.
+    path: path of the file.
     make: constructor of the material, called with its parameters by name.
     Returns the material.
     """

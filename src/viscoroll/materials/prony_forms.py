@@ -131,12 +131,12 @@ def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
 
 
 def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """Return the sum at s = pole[origin] + step, (..., zeros).
+    """Return constant + sum weight_j/(pole_j - s) at s = pole[origin] + step, (..., zeros).
 
-    step: (..., zeros).
+    step: distance of s from the pole of its origin, (..., zeros).
     seen: poles relative to the origin of each zero, [..., i, j].
-    weight: (..., poles).
-    constant: (..., 1).
+    weight: weights of the poles, (..., poles).
+    constant: the constant, (..., 1).
     """
     return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 
@@ -147,12 +147,12 @@ def _improve_distance(
     """Return the distances after one step of Newton's method for weight[origin] = distance side (the rest of the
     sum).
 
-    distance: of each zero from its origin, (..., zeros).
+    distance: distance of each zero from its origin, (..., zeros).
     origin: index of the pole that each zero is measured from, (..., zeros).
     side: 1 for a zero right of its origin, -1 left of it, (..., zeros).
     seen: poles relative to the origin of each zero, [..., i, j].
-    weight: (..., poles).
-    constant: (..., 1).
+    weight: weights of the poles, (..., poles).
+    constant: the constant of the sum, (..., 1).
     """
     inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)

@@ -96,9 +96,10 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
     """Look motions up in the flow map of their scene, which counts in the material's own time.
 
     batch: motions of one scene.
-    speed: as of :func:`solve_batch`.
+    speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
     about: receives the error and the problem of the map.
-    Returns None where all motions are at rest, or the stated error exceeds rtol.
+    Returns the result, in which motions outside the map have a status below 0; None where all motions are at rest, or
+    the stated error exceeds rtol.
     """
     scene, rows = batch.problem.scene, batch.rows
     rtol, threshold, _ = batch.problem.limits
@@ -137,6 +138,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
+        """Integrate the motions ``start`` to ``stop`` - 1 of those without a result, and write their results."""
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:
             return
@@ -168,6 +170,9 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
         return lambda alpha, index: law
 
     def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
+        """Return (law as the kernel takes it, whether bodies differ) for motions; alpha: their alphas; index: their
+        indices.
+        """
         if several is not None:
             index = np.minimum(index, len(several) - 1)
         if unsteady:

@@ -73,8 +73,9 @@ def _shape(value: Any) -> tuple[int, ...]:
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:
     """Check the limits of an integration.
 
-    rtol, max_steps: as of :func:`viscoroll.roll`.
-    rest: threshold, dimensionless.
+    rtol: relative tolerance.
+    max_steps: largest number of steps of a motion.
+    rest: rest threshold, the speed below which a motion ends, dimensionless; None: none.
     Returns (rtol, threshold of rest or 0, step limit).
     Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """

@@ -196,7 +196,8 @@ def fit_callable(
 ) -> tuple[Floats, Floats, float]:
     """Fit a callable by piecewise polynomials.
 
-    name, function: the argument and the callable.
+    name: name of the argument, for errors.
+    function: the callable, of the time in T_ref.
     end: last time, in T_ref.
     rtol: relative tolerance of the motion.
     low: smallest value allowed.

@@ -125,7 +125,7 @@ class DriveFunctions:
 
     @cached_property
     def pieces(self) -> Floats:
-        """All functions over common pieces, in the layout of the kernels, (1 or m, k, columns)."""
+        """Return all functions over common pieces, dimensionless, in the layout of the kernels, (1 or m, k, columns)."""
         zero, name = piecewise(np.zeros(())), self.prescribed
         force, torque, brake, speed = (
             piecewise(self.functions[f]) if f in self.functions else zero for f in ("force", "torque", "brake", name)
@@ -178,9 +178,11 @@ def prepare_drive(
     drive: dimensionless.
     V0, omega0: start speeds, dimensionless; None where they are prescribed.
     end: last time, in T_ref.
-    rtol, resolve: as of :func:`viscoroll.roll`.
+    rtol: relative tolerance of the motion.
+    resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what follows
     from them given as well; a start that is not the prescribed one; ``resolve`` without a callable.
+    Returns the :class:`DrivenStart`.
     """
     if resolve is not None and not drive.has_callable:
         sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"

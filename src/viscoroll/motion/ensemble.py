@@ -52,7 +52,7 @@ def ensemble(
     threads: int | None = None,
     progress: bool = False,
 ) -> Ensemble:
-    """Motions of n cylinders or n starts; the result has the same bits for any number of threads.
+    """Compute the motions of n cylinders or n starts; the result has the same bits for any number of threads.
 
     Parameters
     ----------

@@ -89,7 +89,7 @@ class Ensemble(RollResult):
         return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
 
     def messages(self) -> dict[str, int]:
-        """How many motions ended in which way, in words.
+        """Return the number of motions that ended in each way, by the way in words.
 
         Examples
         --------
@@ -101,7 +101,7 @@ class Ensemble(RollResult):
         return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
 
     def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
-        """Moments, quantiles and histograms over the motions, per output time, named as those of a run's store.
+        """Compute moments, quantiles and histograms over the motions, per output time, named as those of a run's store.
 
         Parameters
         ----------
@@ -168,7 +168,7 @@ class Ensemble(RollResult):
         return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Title and rows of the printed report."""
+        """Return title and rows of the printed report."""
         ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
@@ -183,7 +183,7 @@ class Ensemble(RollResult):
         return f"Ensemble of {len(self)} motions", rows + ends
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over (motion, t) with starts, outputs, onset and status.
+        """Return the dataset over (motion, t) with starts, outputs, onset and status.
 
         Examples
         --------

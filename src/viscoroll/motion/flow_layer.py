@@ -106,7 +106,7 @@ def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Flo
 def _layer_motions(
     problem: FlowProblem, sign: float, V0: Floats, k0: Floats, split: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Motions of a boundary layer at the nodes of its tables.
+    """Integrate the motions of a boundary layer, and return them at the nodes of its tables.
 
     problem : the scene.  sign : sign of omega - V at onset.  V0 : speeds at onset, (octaves, nodes).
     k0 : relaxation rates there.  split : splits there.

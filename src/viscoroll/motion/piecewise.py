@@ -60,7 +60,7 @@ def check_function(
     end: last time, in T_ref.
     rtol: relative tolerance of the motion, of which the fit of a callable takes a tenth.
     low: smallest value allowed.
-    resolve: largest spacing of samples, as of :func:`viscoroll.roll`.
+    resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is neither a number, a schedule nor a callable; values that are not finite or below
     ``low``; a callable that polynomials do not follow.
     """
@@ -99,7 +99,11 @@ def count_corners(function: TimeFunction) -> int:
 
 
 def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
-    """Return a function for some motions, by an index of numpy; itself where it is the same for all."""
+    """Return a function of time for some of the motions; the function itself where it is the same for all.
+
+    function: number, numbers of the motions, schedule or fitted callable.
+    index: index of numpy that selects the motions.
+    """
     if isinstance(function, Piecewise) or count_motions(function) == 1:
         return function
     if isinstance(function, Schedule):
@@ -109,7 +113,10 @@ def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
 
 
 def piecewise(function: TimeFunction) -> Piecewise:
-    """Return a function as polynomials; a schedule is linear between its times, constant outside."""
+    """Return a function of time as piecewise polynomials; a schedule is linear between its times, constant outside.
+
+    function: number, numbers of the motions, schedule or fitted callable; dimensionless.
+    """
     if isinstance(function, Piecewise):
         return function
     if not isinstance(function, Schedule):
@@ -158,10 +165,11 @@ def values_at_start(terms: Floats) -> Floats:
 
 
 def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
-    """Return pieces that start at 0 where their first value is rounding, by which a motion would leave rest.
+    """Set the value at the left end of pieces to 0 where it is rounding, as it would move a cylinder at rest.
 
-    terms: (..., terms).
-    rounding: first value divided by the size of the terms that counts as rounding.
+    terms: polynomials, (..., terms).
+    rounding: ratio of that value to the size of the terms below which it is rounding.
+    Returns the polynomials, (..., terms).
     """
     first, size = values_at_start(terms), np.abs(terms).sum(axis=-1)
     shifted = terms.copy()
@@ -234,9 +242,10 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
 def _substitute(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray) -> Floats:
     """Return the terms of polynomials on parts of their pieces, by Horner's scheme with x -> shift + scale x.
 
-    terms: (m, k, terms).
+    terms: coefficients of the polynomials, (m, k, terms).
     first, last: start and end of each piece, (m, k); inf for one without end, which is constant.
     starts, ends: start and end of each part, (m, k).
+    Returns the coefficients on the parts, (m, k, terms).
     """
     endless = np.isinf(last) | (last == first)
     length = np.where(endless, 1.0, last - first)

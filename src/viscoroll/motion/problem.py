@@ -95,6 +95,7 @@ def make_problem(
     options: how to integrate.
     single: whether only one motion is allowed.
     Raises ParameterError for everything that :func:`viscoroll.roll` and :func:`viscoroll.ensemble` refuse.
+    Returns the :class:`MotionProblem`.
     """
     acts = drive.acts
     if single:
@@ -130,7 +131,7 @@ def make_problem(
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """Return whether the added mass acts; raises ParameterError where N, or the part of either body, is not known.
 
-    unsteady: as given.
+    unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
     scene: parameters.
     """
     if not check_bool("unsteady", unsteady):
@@ -145,7 +146,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
 def _standstill_time(rested: Any, units: HasUnits) -> float:
     """Return the time of the standstill before the start, infinite for a long one, in the unit of the roller.
 
-    rested: as given.
+    rested: argument of the caller: a truth value, or a time.
     units: units of the roller.
     Raises ParameterError for what is not one number >= 0.
     """
@@ -203,11 +204,12 @@ def integrate(
 
 
 def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
-    """Integrate one motion; returns all rows (rows, times), and status, steps, switches, onset and rest time.
+    """Integrate one motion.
 
     problem: checked problem of one motion.
     times: output times, ascending, in T_ref.
-    notes: as of :func:`integrate`.
+    notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
+    Returns (all rows, (rows, times); [status, steps, switches, onset time, rest time]), dimensionless.
     """
     scene = problem.scene
     if problem.immobile:

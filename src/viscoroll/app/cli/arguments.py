@@ -50,7 +50,8 @@ COMMANDS: dict[str, Command] = {}
 def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
     """Return a decorator that adds a function to :data:`COMMANDS`.
 
-    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.  options: as of :class:`Command`.
+    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.  options: options of the command,
+    in the order of its help; a list of them is a group of which one at most may be given.
     """
 
     def add(run: CommandFunction) -> CommandFunction:
@@ -122,6 +123,10 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
     """
 
     def path(text: str) -> Path:
+        """Return the path of an argument; raises ArgumentTypeError for another suffix or a file that cannot be written.
+
+        text: the argument.
+        """
         text = text.rstrip("/") if text.endswith(".zarr/") else text  # as shells complete the name of a folder
         if Path(text).suffix.lower() not in suffixes:
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")

@@ -111,9 +111,10 @@ def parser() -> Parser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the program and return its exit code.
+    """Run the program.
 
     argv: arguments; default: those of the process.
+    Returns the exit code: 0 success, 1 a check failed, 2 an error.
     """
     if sys.stdout is None:  # closed by the shell
         sys.stdout = io.StringIO()
@@ -139,10 +140,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(argv: Sequence[str]) -> int:
-    """Parse the arguments, run the command and return its exit code.
+    """Parse the arguments and run the command.
 
     argv: the words of the command line without the name of the program.
-    Raises what the command raises; UsageError where the line does not parse.
+    Returns the exit code of the command, 0 or 1.  Raises what the command raises; UsageError where the line does not
+    parse.
     """
     try:
         arguments = parser().parse_args(argv)

@@ -111,10 +111,11 @@ def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
 
 
 def numbers_of(table: Table, column: Column) -> Numbers:
-    """Return the numbers of a column's quantity in rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
+    """Return the numbers of a column in the unit of its quantity: rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
 
     table : the table that has the column.
     column : a column whose quantity is known.
+    Returns :class:`Numbers`, (n,): the values, and half of the last digit that the file states of each.
     Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed.
     """
     name, unit = column.name, column.unit

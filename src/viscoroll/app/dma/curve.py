@@ -202,7 +202,7 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     """Compare the loss modulus with the local form of the Kramers-Kronig relations, E'' = (pi/2) dE'/d ln omega.
 
     curve : storage and loss modulus.
-    Returns the ratio of both sides at each point.
+    Returns :class:`KramersKronig`, the ratio of both sides at each point.
 
     The form is exact for a power law in the limit of small exponents, and good where E' bends little within a decade
     (H. C. Booij and G. P. J. M. Thoone, Rheologica Acta 21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is

@@ -27,7 +27,7 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 
 
 def _rows(fit: Any) -> Iterator[SummaryRow]:
-    """Yield the lines of the report below its title.
+    """Yield the lines of the report below its title, as :class:`SummaryRow`.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """

@@ -99,7 +99,8 @@ class SeriesFit(Result):
 
     @cached_property
     def wider(self) -> tuple[Any, ...]:
-        """Fits on grids of times one and two decades wider on either side, no time left out.
+        """Return two fits on grids of times that are one and two decades wider on either side, with a mode at every
+        time.
 
         For each ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose transit times lie within
         the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.ExtendedGridFit`).  They are
@@ -120,14 +121,17 @@ class SeriesFit(Result):
     def material(
         self, nu: float = 0.49, *, name: str = "", density: float | None = None, thickness: float | None = None
     ) -> Material:
-        """The fit as a :class:`viscoroll.Material`, ``measured`` and ``temperature`` with it; of data in Pa.
+        """Return the fit as a :class:`viscoroll.Material` with its ``measured`` band and ``temperature``; the data must
+        be in Pa.
 
         A shear modulus becomes Young's by E = 2 (1 + nu) G; ``measured.source`` then says so.
 
         Parameters
         ----------
         nu : Poisson's ratio, constant in time.
-        name, density, thickness : as there; density in kg/m^3, thickness in m.
+        name : name of the material, free text.
+        density : kg/m^3.
+        thickness : thickness of the layer, m; None for a half-space.
 
         Raises
         ------
@@ -203,7 +207,9 @@ class SeriesFit(Result):
         return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 
     def to_xarray(self) -> xr.Dataset:
-        """Data and fit over omega or t, the series over ``mode``, and the constants as attributes."""
+        """Return a dataset of data and fit over omega or t, of the series over ``mode``, and of the constants as
+        attributes.
+        """
         import xarray as xr
 
         x, *names = self.data._fields

@@ -66,7 +66,7 @@ def master_curve(
     shift: ArrayLike | Callable[[float], float] | None,
     on: Literal["both", "storage"] = "both",
 ) -> tuple[Curve, Shifts]:
-    """All points at the reference temperature, frequencies times a_T.
+    """Shift the curves of several temperatures to one, by frequencies times a_T.
 
     Parameters
     ----------
@@ -75,6 +75,11 @@ def master_curve(
     reference : degrees Celsius; default: where a given shift is 1, else the middle one of the curves.
     shift : factors in the order of the curves, a function of the temperature, or None: by the overlap of neighbours.
     on : the moduli by whose overlap shifts are found.
+
+    Returns
+    -------
+    tuple
+        The master curve, a :class:`Curve` at the reference temperature; the :class:`Shifts` of the temperatures.
 
     Raises
     ------

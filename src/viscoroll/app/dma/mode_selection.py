@@ -87,8 +87,9 @@ def _starts(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[floa
 def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
     """Return times from the longest down, both ends among them.
 
-    ends : shortest and longest time.
-    density : times a decade.
+    ends : shortest and longest time, s.
+    density : number of times in a decade.
+    Returns times in equal ratios, s, shape (times,).
     """
     decades = math.log10(ends[1] / ends[0])
     return np.geomspace(ends[1], ends[0], max(2, 1 + round(decades * density)))
@@ -117,7 +118,7 @@ def _leave_out_mode(
     data : the curve.
     spectrum : the spectrum from which a mode is left out.
     ends : shortest and longest time that is allowed.
-    good : whether a spectrum is acceptable; None: any is.
+    good : function that returns whether a spectrum is acceptable; None: any is.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
@@ -130,9 +131,10 @@ def _leave_out_mode(
 
 
 def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
-    """Return lists of times with one left out, or with two neighbours at their mean time.
+    """Return the candidates for one mode less: times with one left out, or with two neighbours replaced by their mean.
 
-    spectrum : the spectrum; means are of the logarithms of its times, weighted by strength.
+    spectrum : the spectrum, of n modes; means are of the logarithms of its times, weighted by strength.
+    Returns a list of 2 n - 1 arrays of times, s, shape (n - 1,) each.
     """
     tau, strength = spectrum.tau, spectrum.strength
     without = [np.delete(tau, n) for n in range(tau.size)]

@@ -138,9 +138,10 @@ class _Choice(NamedTuple):
 
 
 def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the units by quantity that overrule the file, and those of columns for which the file gives none.
+    """Split the argument ``units`` into those that overrule the file and those that supplement it.
 
-    units : as of :func:`read_dma`.
+    units : argument ``units`` of :func:`read_dma`.
+    Returns (quantity -> unit in place of that of the file, quantity -> unit where the file gives none).
     Raises ParameterError for another form, a unit that is unknown or of another dimension.
     """
     by_name = isinstance(units, Mapping)
@@ -176,6 +177,7 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
     others : headings of the other columns, and why they are left out; those of another mode or kind than the pair, and
         measured frequencies beside reduced ones, are added.
     Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
+    Returns the :class:`_Choice`.
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
     quantities = {column.quantity for column in found}

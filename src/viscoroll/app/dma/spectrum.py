@@ -45,19 +45,18 @@ def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
 
     prony : strengths divided by the long-time modulus, times over T_ref.
     E : long-time modulus.
-    T_ref : time that those of the series are counted in, s.
+    T_ref : unit of the times of the series, s.
     """
     return Spectrum(E, prony.E * E, prony.tau * T_ref)
 
 
 def _relative(data: Data, constant: float, modes: Floats) -> Floats:
-    """Return the columns of the least squares: the responses of a constant and of modes, divided by the measured
-    moduli.
+    """Return the matrix of the least squares: responses of a constant and of modes, divided by the measured moduli.
 
-    data : the curve.
-    constant : long-time modulus.
-    modes : responses of modes in each row, shape (rows, n, modes).
-    Returns shape (rows n, 1 + modes).
+    data : the curve, with ``rows`` moduli at n points.
+    constant : long-time modulus, in the unit of the data.
+    modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
+    Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
     """
     found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
     found[..., 0], found[..., 1:] = np.multiply(constant, data.constant)[:, None], modes
@@ -70,6 +69,7 @@ def _residuals(data: Data, values: Floats) -> Floats:
 
     data : the curve.
     values : long-time modulus, strengths, times; shape (1 + 2 modes,).
+    Returns shape (rows n,), dimensionless.
     """
     count = values.size // 2
     return _relative(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
@@ -80,6 +80,7 @@ def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
 
     data : the curve.
     spectrum : the fit.
+    Returns a number for each row, dimensionless.
     """
     errors = _residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(len(data.constant), -1)
     return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
@@ -178,6 +179,7 @@ def _normal_matrix(slopes: Floats) -> Floats:
     """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads.
 
     slopes : slopes of the residuals, shape (residuals, unknowns).
+    Returns shape (unknowns, unknowns).
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))

@@ -109,7 +109,11 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
 
 
 def _quantity(name: str) -> tuple[str, str] | None:
-    """Return quantity and mode that a name without unit says, None where its words name no quantity."""
+    """Return quantity and mode of a column by its name without unit.
+
+    name : words of the heading.
+    Returns (quantity, mode), texts, the mode "" where the name does not say it; None if the words name no quantity.
+    """
     if re.search("[%°º]", name):  # of a unit
         return None
     text = unicodedata.normalize("NFKD", name.replace("\u2033", "''"))

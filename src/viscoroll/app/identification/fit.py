@@ -109,7 +109,9 @@ class Identification(Result):
         return {record_name: self._predict(record, record_name, _LEVEL) for record_name, record in self.records.items()}
 
     def _delta_chi2(self, level: float = _LEVEL) -> float:
-        """Return the rise of chi2 at the ends of an interval: chi-squared where sigma is given, F where it is
+        """Return the rise of chi2 at the ends of a confidence interval, dimensionless.
+
+        It is a quantile of the chi-squared distribution where sigma is given, of the F distribution where it is
         estimated.
 
         level : confidence level, in (0, 0.9999].
@@ -166,6 +168,7 @@ class Identification(Result):
         alone, by the slopes there.
 
         level : confidence level, in (0, 0.9999].
+        Returns a list of :class:`Product`, the best determined first.
         """
         return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
@@ -212,11 +215,14 @@ class Identification(Result):
         )
 
     def _predict(self, record: Record, record_name: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
-        """Predict a record, with bands.
+        """Predict the quantities of a record, with confidence bands.
 
         record : the record.
         record_name : its name among the data, by which its own unknowns are found; "" of another record.
-        level, draws, seed : as of :meth:`predict`.
+        level : confidence level of the bands, in (0, 0.9999].
+        draws : number of random values of the unknowns from which the bands are taken; 0: from slopes.
+        seed : seed of the draws.
+        Returns the :class:`Prediction`.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 

@@ -132,7 +132,10 @@ class Problem:
         self.active = self._find_active()
 
     def _find_active(self) -> list[int]:
-        """Return the unknowns that change a residual at the start or at one of four other points."""
+        """Return the unknowns that change a residual at the start or at one of four other points.
+
+        Returns indices of these unknowns, ascending.
+        """
         rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
         others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (4, middle.size))
         idle = [*range(middle.size)]
@@ -153,7 +156,8 @@ class Problem:
 
         record : the record.
         u : coordinates of the unknowns.
-        record_name : name of the record, by which its own unknowns are found.
+        record_name : name of the record, by which its own unknowns are found; "" of a record that was not fitted.
+        Returns quantity -> values, SI units, in the shape of the coordinates of the record.
         """
         values = self.values(u)
         own = {name.removesuffix(f":{record_name}"): value for name, value in values.items()}
@@ -217,7 +221,8 @@ class Problem:
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
         """Return (residuals, their derivatives), each row times the square root of its weight in chi2.
 
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, shape (unknowns,).
+        Returns shapes (n,) and (n, unknowns), dimensionless.
         """
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)

@@ -249,7 +249,10 @@ class ProfileWalk:
         return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
 
     def profile(self) -> Profile:
-        """Find both ends of the interval and return the profile."""
+        """Find both ends of the interval, by minima of chi2 with the combination fixed.
+
+        Returns the :class:`Profile`.
+        """
         problem, ends, limits, pieces = self.problem, [], [], False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
             reach = self.distance(np.where(self.powers > 0.0, near, far))

@@ -177,6 +177,7 @@ class Resistance(Record):
 
         cylinder : the cylinder with the present values of the unknowns.
         values : name -> value of brake and drag, 0 where they are missing.
+        Returns {"M": values, "F": values}, in the shape of the speeds of the record.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R

@@ -110,11 +110,11 @@ def unknowns_of(
 
 
 def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
-    """Return an unknown after checks.
+    """Check range and prior of an unknown, and return it as :class:`Unknown`.
 
     name, start : name and start value of the unknown.
-    span : (low, high).
-    prior : (value, standard deviation), None without.
+    span : range of the unknown, (low, high), in SI units.
+    prior : value and standard deviation known beforehand, or None.
     Raises ParameterError for a range or a prior that is none.
     """
     low, high = _pair("unknown", name, span)

@@ -120,7 +120,7 @@ class Branches:
 
 
 def resistance_extrema(roller: Roller) -> ResistanceExtrema:
-    """Every local maximum and minimum of the rolling resistance M over the speed.
+    """Find every local maximum and minimum of the rolling resistance M over the speed.
 
     A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
 
@@ -164,9 +164,10 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
 
 @lru_cache(maxsize=16)
 def branches(law: LawTable, gain: float) -> Branches:
-    """The curve of a material and a gain.
+    """Return the curve kappa (M - G V) over speed, divided into branches on which it is monotone.
 
-    law : rows of the material.  gain : G, dimensionless.
+    law : rows of the material.
+    gain : G, slope of the load in V, dimensionless.
 
     Raises
     ------
@@ -190,7 +191,11 @@ def branches(law: LawTable, gain: float) -> Branches:
 
 
 def speed_nodes(law: LawTable) -> Floats:
-    """Nodes of log2(u), ascending, closely spaced where the material of the rows ``law`` relaxes."""
+    """Return nodes of log2(u), u = kappa V, closely spaced where the material relaxes.
+
+    law : rows of the material.
+    Returns the nodes, ascending, (n,).
+    """
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
     high = math.ceil(-math.log2(times.min())) + _CLOSE_OCTAVES
@@ -240,9 +245,10 @@ def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
 
 
 def _refine_near_double_roots(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
-    """Points and values that separate two zeros between the neighbours of a node.
+    """Find points that separate two zeros between the neighbours of a node.
 
-    function : vectorised function.  x, y : nodes and values.
+    function : vectorised function of one variable.
+    x, y : nodes, ascending, and values of the function there, (n,).
 
     Returns a list of (points, values), one for each pair of zeros.
     """

@@ -134,7 +134,9 @@ class Steady(Values):
 
     @cached_property
     def loss(self) -> Loss:
-        """Powers, coefficient of rolling resistance, efficiency."""
+        """Return the powers of each equilibrium, its coefficient of rolling resistance and its efficiency, as
+        :class:`Loss`.
+        """
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
         )
@@ -187,7 +189,7 @@ class Steady(Values):
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers.
+        """Return a dataset over the loads and ``equilibrium``, with names and units; ``loss_...`` are the powers.
 
         Examples
         --------
@@ -219,8 +221,11 @@ def append_axis(unit: Any) -> Any:
 def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None) -> Steady:
     """Pack sorted states into arrays over loads and equilibria.
 
-    loads : the loads.  states : existing states, sorted.  reasons : data of missing equilibria.  scale : units of
-    the result.  labels : of the arguments, or None.
+    loads : the loads.
+    states : existing states, sorted by load and |V|.
+    reasons : data of the loads without equilibrium.
+    scale : units of the roller, which the result has.
+    labels : labels of the arguments, or None.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

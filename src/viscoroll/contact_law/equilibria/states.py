@@ -64,7 +64,7 @@ class States(NamedTuple):
 
     @classmethod
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
-        """States from rows with slopes.
+        """Make the states from the law at them.
 
         loads : the loads.  load : index of the load of each state.  sign : sign of V.  answers : rows of
         :class:`Field` with slopes, in a frame where V > 0.
@@ -77,7 +77,9 @@ class States(NamedTuple):
 
     @classmethod
     def at_rest(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
-        """States of V = omega = 0, the limit of slow rolling: Carter's contact, and V' = -rate V with omega in step.
+        """Return the states of V = omega = 0, the limit of slow rolling.
+
+        The contact is that of Carter; a disturbance decays as V' = -rate V, with omega in proportion to V.
 
         loads : the loads.  load : index of the load of each state.  law : rows of the material.
         """
@@ -115,10 +117,11 @@ class States(NamedTuple):
 
 
 def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
-    """Eigenvalues of small disturbances of (V, omega) over gamma t.
+    """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
-    slopes : dQ/dV, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n).  gains : feedback.  j : moments of inertia,
-    (n,).
+    slopes : dQ/dV, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n).
+    gains : feedback.
+    j : moments of inertia, (n,).
 
     Returns rows: real part of the faster and of the slower eigenvalue, imaginary part of the slower.  The
     determinant is b (M'(V) - gain)/j without a gain on omega; it is computed without the cancellation of the large
@@ -166,9 +169,11 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
 
 
 def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
-    """Speeds at which kappa (M - gain V) equals a total.
+    """Find the speeds at which kappa (M - gain V) equals a given total.
 
-    law : rows of the material.  gain : G.  total : kappa (force + torque), (n,).
+    law : rows of the material.
+    gain : slope of the load in V, dimensionless.
+    total : kappa (force + torque), (n,).
 
     Returns (index of the load, sign of V, kappa |V|), one entry for each crossing.
     """
@@ -187,7 +192,7 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 
 
 def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
-    """Steady states at given V > 0, whether or not the friction suffices.
+    """Return the steady states at given V > 0, whether or not the friction suffices.
 
     law : rows of the material.  loads : the loads.  load : index of the load of each state, (n,).  sign : sign of
     the motion, in whose frame V > 0.  V : speeds, (n,).

@@ -32,7 +32,7 @@ def steady(
     slope: Numbers | None = None,
     V: Numbers | None = None,
 ) -> Steady:
-    """Steady rolling: every pair of V and omega at which force and torque balance, and whether it is stable.
+    """Find steady rolling: every pair of V and omega at which force and torque balance, and whether it is stable.
 
     Arguments and what rolls broadcast against each other.
 
@@ -120,7 +120,7 @@ def steady(
 
 
 def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
-    """Indices of the loads under which the cylinder can be at rest.
+    """Return the indices of the loads under which the cylinder can be at rest, (n,).
 
     loads : the loads.  neutral : whether any speed is steady without a load (elastic bodies).
     """
@@ -131,7 +131,7 @@ def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
 
 
 def _states_under_load(law: LawTable, loads: Loads) -> States:
-    """All states of rolling under loads without a gain on omega.
+    """Find all states of rolling under loads without a gain on omega; rest is not among them.
 
     law : rows of the material.  loads : the loads.  Raises ParameterError for loads outside the range of the nodes.
     """

@@ -87,7 +87,7 @@ class FreeRolling:
     Attributes
     ----------
     materials : alphas or series in their own times.
-    index : of the material of each state, in the shape of u.
+    index : index of the material of each state, in the shape of u.
     u : kappa |V| in the material's own time, dimensionless, any shape.
     g : gamma/(1 + j) in the material's own time.
     speed, time, length : 1 of u, of the own time and of l0, in the units of the caller.
@@ -187,9 +187,17 @@ class FreeRolling:
         return self._evaluate(lambda curve, u, g: [curve.distance(u) / g], [np.inf])[0] * self.length
 
     def reach(self, level: float) -> Reach:
-        """Return the part of free rolling in which the unsteadiness is below a level, dimensionless."""
+        """Return the part of free rolling in which the unsteadiness is below a level.
+
+        level: of the unsteadiness, the relative error of the quasi-steady assumption, dimensionless.
+        """
 
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
+            """Return the fields of :class:`Reach` for states of one material.
+
+            curve: free rolling of the material.  u: kappa V at the start, (n,).  g: gamma/(1 + j), (n,).  Both in the
+            material's own time.
+            """
             end, below = np.empty(u.size), np.empty(u.size, bool)
             levels, group = np.unique(g, return_inverse=True)
             for n, value in enumerate(levels):
@@ -204,7 +212,10 @@ class FreeRolling:
         return Reach(end * self.speed, time * self.time, way * self.length, left * self.length)
 
     def start(self, rested: float = math.inf) -> Start:
-        """Return the losses of a start after a standstill; ``rested``: its time, in the unit of the caller."""
+        """Return the losses of a start after a standstill, as :class:`Start`.
+
+        rested: time of the standstill, in the unit of the caller; infinite for a long one.
+        """
 
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
             way = curve.distance(u)

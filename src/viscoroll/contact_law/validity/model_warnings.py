@@ -184,7 +184,7 @@ def _start_faults(
     material: its alpha, Prony series or bodies.
     kappa, mu, gamma, j: parameters of the scene, dimensionless.
     V0, omega0: start speeds, dimensionless.
-    driven: as of :func:`warn_of_start`.
+    driven: whether something drives the motion, or it is rolled with the added mass N.
     Returns sentences without numbers.
     """
     faults: list[str] = []
@@ -216,7 +216,7 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
 
     scene: parameters, numbers or arrays (n,).
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
-    driven: as of :func:`warn_of_start`.
+    driven: whether something drives the motions, or they are rolled with the added mass N.
     Returns different sentences without numbers.
     """
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]

@@ -147,8 +147,10 @@ def _evaluate_missing(
 def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Any]]:
     """Open the executor of the tasks; a context manager.
 
-    store, cluster, threads: as of :func:`run_ensemble`.
-    Gives (executor, number of workers, the store as tasks take it).  Raises ParameterError or FileError.
+    store: store of the run.
+    cluster: None (threads of this process), "local" or the address of a scheduler.
+    threads: number of threads or local processes; None: all cores available. Gives (executor, number of workers, the
+    store as tasks take it).  Raises ParameterError or FileError.
     """
     if cluster is None:
         interrupted = threading.Event()
@@ -205,8 +207,9 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
 def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
     """Draw the progress of a run; a context manager.
 
-    run: whose motions are counted.  progress: as of :func:`run_ensemble`.
-    Gives a function of a number of motions; those that were ``on_disk`` do not count in the rate.
+    run: run whose motions are counted.
+    progress: False, True (a bar) or "lines" (a line every half minute). Gives a function of a number of motions; those
+    that were ``on_disk`` do not count in the rate.
     """
     from tqdm import tqdm
 

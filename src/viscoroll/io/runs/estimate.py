@@ -68,7 +68,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    threads : as of :func:`run_ensemble`.
+    threads : number of threads that the run will have; None: all cores available.
 
     Returns
     -------

@@ -43,7 +43,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     run : a run of :func:`read_run`.
     values : every uncertain input by name, a number or (n,).
     count : number of motions, if all inputs are numbers.
-    threads : as of :func:`viscoroll.ensemble`.
+    threads : number of threads; None: all cores available.
 
     Returns
     -------

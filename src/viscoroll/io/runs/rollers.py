@@ -153,7 +153,7 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
 def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
     """Return the factors of the relaxation times at the temperature of each motion, (n,), over those at the first.
 
-    path, name, section: as of :func:`_body`.  None if the temperature is certain.
+    path: path of the run file.  name: "material" or "base".  section: its content.  None if the temperature is certain.
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None

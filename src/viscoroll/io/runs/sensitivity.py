@@ -161,10 +161,12 @@ def _points(count: int, base: int, seed: int) -> Floats:
 def _outcomes(
     run: Run, cube: Floats, threads: int | None, progress: bool
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
-    """Roll all motions, block by block, and return (values of each quantity (t, motion), how each motion ended).
+    """Roll all motions at points of the unit cube, block by block.
 
     run: states the quantities.  cube: points of the unit cube, (input, motion).
-    threads, progress: as of :func:`sobol_indices`.
+    threads: number of threads; None: all cores available.
+    progress: whether a progress bar is drawn.
+    Returns (quantity -> values, (t, motion); status code of each motion, (motion,)).
     """
     motions = cube.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}

@@ -173,9 +173,10 @@ class BlockContent(NamedTuple):
 
 
 def block_content(run: Run, block: int) -> BlockContent:
-    """Roll the motions of a block and return what the store holds of it.
+    """Roll the motions of a block, and make the files and the summary that the store keeps of it.
 
     run, block: the run, and the number of the block.
+    Returns the :class:`BlockContent`.
     """
     values, motions = roll_block(run, block)
     files = _motion_files(run, columns_of(run, values, motions), block) if run.settings.keep == "all" else {}

@@ -46,7 +46,7 @@ def build(
     method: Literal["table", "direct"] = "table",
     command: str | None = None,
 ) -> xr.Dataset:
-    """Table of the contact over (V, delta) or (V, delta, alpha), with the errors of interpolation in it.
+    """Compute a table of the contact over (V, delta) or (V, delta, alpha), and its errors of interpolation.
 
     Parameters
     ----------
@@ -56,8 +56,8 @@ def build(
     V : speeds of the axis, > 0, strictly increasing; for V < 0 see the signs of Eqs. (17), (18).
     delta : creepages, any sign, strictly increasing.
     alpha : strictly increasing, in place of that of a scene without a material.
-    method : as of :func:`contact`: "table", from the rows of the law, or "direct", by root solves of the printed
-        equations, of one relaxation time.  With "direct" the rows are evaluated too, and ``difference_from_rows`` of a
+    method : "table", from the rows of the law, or "direct", by root solves of the printed equations, of one relaxation
+        time.  With "direct" the rows are evaluated too, and ``difference_from_rows`` of a
         field is the largest difference: of lam, zeta and delta_star relative, of other fields divided by their largest
         value.
     command : recorded in ``history``; default: the command line of this process.
@@ -209,8 +209,10 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
 def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the law.
 
-    table: the grid.  roller: roller of the grid.  Differences are relative for :data:`RELATIVE_FIELDS`, else divided
-    by the largest value of the field.
+    table: the grid.
+    roller: roller of the grid.
+    Returns field -> difference, dimensionless: relative for :data:`RELATIVE_FIELDS`, else divided by the largest value
+    of the field.
     """
     rows = _evaluate_nodes(roller, {name: table[name].values for name in schema.axes_of(table)}, "table")
     found = {}

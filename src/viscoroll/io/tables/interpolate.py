@@ -48,7 +48,8 @@ class Interpolant:
     def __init__(self, table: xr.Dataset, linear: bool = False) -> None:
         """Check a table and choose its axes and bounds; splines are computed at the first use of a field.
 
-        table, linear : as of the class.  Raises FileError if it is not a table.
+        table : the grid, dataset of a file or of ``build``.
+        linear : whether interpolation is linear, else by cubic splines.  Raises FileError if it is not a table.
         """
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
@@ -60,7 +61,12 @@ class Interpolant:
         self._bounds = {"Q": (-limit, limit), "Q_over_mu": (-1.0, 1.0), "beta": (0.0, 1.0)}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
-        """Interpolated ``fields`` at ``points``, as of :func:`interpolate`."""
+        """Interpolate fields at points.
+
+        fields: names of fields of the table; None: all.
+        points: coordinates by the name of the axis, in the units of the table; they broadcast.
+        Returns the fields as :class:`Values`, each in the shape of the points.  Raises as :func:`interpolate`.
+        """
         known = schema.fields_of(self._table)
         names = check_names("fields", known if fields is None else fields, known, "a field of this table")
         coordinates, shape = self._map_points(points, names)
@@ -75,7 +81,7 @@ class Interpolant:
         return Values(results, title="Interpolated")
 
     def jitted(self, field: str) -> tuple[Any, Any]:
-        """A field for numba's jitted functions: a function ``at(spline, V, delta, alpha)`` and its spline.
+        """Return a field for numba's jitted functions: a function ``at(spline, V, delta, alpha)`` and its spline.
 
         Parameters
         ----------
@@ -156,7 +162,7 @@ class Interpolant:
 
 
 def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
-    """Fields of a grid between its nodes, without extrapolation.
+    """Interpolate fields of a grid between its nodes, without extrapolation.
 
     Parameters
     ----------

@@ -234,8 +234,8 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
     out : outputs (ROWS, times), written.
 
-    Returns (status, time of the onset of partial slip, time of coming to rest); status is an int, a code of
-    :mod:`..motion.records`; times are gamma t, NaN where there is none.
+    Returns (status, time of the onset of partial slip, time of coming to rest); status is COMPLETED or CAME_TO_REST of
+    :mod:`..motion.records`, or NOT_COVERED; times are gamma t, NaN where there is none.
     """
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:

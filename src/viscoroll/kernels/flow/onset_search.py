@@ -69,8 +69,8 @@ def find_onset(V, delta, edge, flow):
     Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the slow
     manifold E is infinite and the speed is that of the state.
 
-    Method: Newton's iteration in ln V at onset and in u,
-    applied to the logarithm of the distance from the manifold, which decreases nearly linearly in E.
+    Method: Newton's iteration in ln V at onset and in u, applied to the logarithm of the distance from the manifold,
+    which decreases nearly linearly in E.
     """
     v = flow.kappa * V
     lowest, highest = 2.0**flow.first, 2.0 ** (flow.first + layout.OCTAVES)

@@ -21,8 +21,7 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
   the next step.
 - Rates: the right-hand side at a State and its derivatives (:mod:`rhs`).
 - p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
-  (:mod:`rhs`).
-  p' is its slope in tau.
+  (:mod:`rhs`).  p' is its slope in tau.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
@@ -124,8 +123,7 @@ def find_equilibrium(state, regime, noise, step_state, work):
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
     Returns (whether the motion has reached it, State after the Newton step); (False, state) where the equilibrium is
-    not stable, or in partial
-    slip with a speed prescribed.
+    not stable, or in partial slip with a speed prescribed.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)

@@ -112,8 +112,7 @@ def prescribed_speed(tau, segment, drive):
     segment: int, index of the segment that contains tau.
     drive: Drive, with a prescribed speed.
     Returns V or omega, dimensionless, in a fixed direction, not in that of the regime; 0 where it is rounding relative
-    to the coefficients
-    of its segment.
+    to the coefficients of its segment.
     """
     row = drive.segments[segment]
     speed = evaluate_polynomial(row, DRIVE_SPEED, (tau - row[COL_START]) * row[COL_SCALE] - 1.0)

@@ -181,7 +181,7 @@ def write_due_outputs(state, regime, step_state, work):
 def _quadrature_at(n, v, step, nodes):
     """Return the increase of a quadrature from the left end of a step to a position, dimensionless.
 
-    n: int, the quadrature.
+    n: int, index of the quadrature, as of :func:`write_quadrature`.
     v: float, position in [0, 2].
     step: Step, the accepted one.
     nodes: Workspace.nodes, with the integrands and their dense output.

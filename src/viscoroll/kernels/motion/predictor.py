@@ -10,8 +10,7 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
 - v: position on a step, 0 at its left end and 2 at its right end.
 - p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
-  (:mod:`rhs`).
-  p' is its slope in tau.
+  (:mod:`rhs`).  p' is its slope in tau.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """

@@ -16,8 +16,7 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
   the next step.
 - p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
-  (:mod:`rhs`).
-  p' is its slope in tau.
+  (:mod:`rhs`).  p' is its slope in tau.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """

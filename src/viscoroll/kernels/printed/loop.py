@@ -18,7 +18,7 @@ def direct_state(alpha, n, request):
     n : index of the state.
     request : :class:`Request` of states and quantities, with the output array, written.
 
-    Returns OK or NOT_CONVERGED.
+    Returns the status: OK or NOT_CONVERGED.
     """
     to = request.to
     state = read_state(request.states, n)
@@ -62,9 +62,9 @@ def direct_loop(alpha, request, count):
 
     alpha : T_epsilon/T_sigma, (1,), or (count,) with one for each state.
     request : :class:`Request` of states and quantities, with the output array, written.
+    count : int, number of states.
 
-    Returns OK, or NOT_CONVERGED if one state was not solved.
-    count : number of states.
+    Returns the status: OK, or NOT_CONVERGED if one state was not solved.
     """
     worst = OK
     for n in range(count):

@@ -64,8 +64,8 @@ def added_mass(law, V, kappa, gamma):
     law : :class:`Law` of the material: polynomials of each octave.
     V : speed.
     kappa : slenderness R/l0.
-    gamma : mass parameter, Eq. (4), dimensionless.
-    The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
+    gamma : mass parameter, Eq. (4), dimensionless. The integral begins at V = 0 or, where V = 0 is out of reach, at
+    infinity.
     """
     return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
 

@@ -294,8 +294,7 @@ def evaluate_functions(jets, z, series, work):
     work : its :class:`Workspace` with the ratios at z, written.
 
     Returns (g, h, sum X_i i2_i), vectors of four.  The moments of the two bodies are scaled so that their sum is m:
-    they differ from
-    it by roundings of alpha times the size of one.
+    they differ from it by roundings of alpha times the size of one.
     """
     solve_modes(jets, series, work)
     unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)

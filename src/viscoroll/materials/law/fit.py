@@ -101,11 +101,12 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
 
 
 def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
-    """Return a table with N.
+    """Return a table with the coefficients of N, which the rows of steady rolling do not have.
 
     material: an alpha, a series, or two bodies.
     table: rows of its steady rolling, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
+    Returns the table (rows, 24 powers, 7 functions).
     """
     rows, whole = Rows(e0, len(table)), table.copy()
     (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())

@@ -135,7 +135,7 @@ def _lazy_record(
 def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
     """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
 
-    thickness: of each cover, divided by l0, shape (covers,).
+    thickness: thickness of each cover, divided by l0, shape (covers,).
     covers: covers of which all but the thickness is taken.
     index: index of the cover of each element, shape (n,).
     """

@@ -130,7 +130,7 @@ def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
     """Return the rows that a law needs; beyond the last one its fast limit is accurate to rounding.
 
     slowest: slowest rate of creep, in units of 1/T_ref; a number or an array.
-    fastest: fastest rate of relaxation, likewise.
+    fastest: fastest rate of relaxation, in units of 1/T_ref.
     Returns (e0, number of rows), of the shape of the arguments.
     """
     from ...kernels.rows.z_grid import FAST_LIMIT_OCTAVES
