@@ -100,11 +100,17 @@ class Cylinder(Methods):
     ) -> None:  # fmt: skip
         """Check and freeze the parameters, which the class describes.
 
-        R: radius, m.  m: mass per length, kg/m.  E: Young's modulus, Pa.  nu: Poisson's ratio.
-        T_epsilon, T_sigma: retardation and relaxation time, s.  mu: coefficient of friction.  j: moment of inertia
-        divided by m R^2.
-        g: acceleration of gravity, m/s^2.  plane: "strain" or "stress".
-        material, base: materials of cylinder and half-space, in place of E to T_sigma.  load: N/m; None: the weight.
+        R: radius, m.
+        m: mass per length, kg/m.
+        E: Young's modulus, Pa.
+        nu: Poisson's ratio.
+        T_epsilon, T_sigma: retardation and relaxation time, s.
+        mu: coefficient of friction.
+        j: moment of inertia divided by m R^2.
+        g: acceleration of gravity, m/s^2.
+        plane: "strain" or "stress".
+        material, base: materials of cylinder and half-space, in place of E to T_sigma.
+        load: N/m; None: the weight.
         pressed: field of ``load``, for :func:`dataclasses.replace`.
         Raises ParameterError as the class says.
         """

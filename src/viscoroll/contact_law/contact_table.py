@@ -51,8 +51,7 @@ def evaluate_contact(
 
     Returns
     -------
-    dict of str to array
-        The fields in the shape of the broadcast arguments; numbers if these are numbers.
+    dict of str to array The fields in the shape of the broadcast arguments; numbers if these are numbers.
 
     Raises
     ------
@@ -121,7 +120,8 @@ def evaluate_law(
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
         """Evaluate the states ``start`` to ``stop`` - 1 and write them into the columns of ``out``.
 
-        alpha: alphas, or indices of materials, of these states.  parts: kappa, mu, V and creep of these states.
+        alpha: alphas, or indices of materials, of these states.
+        parts: kappa, mu, V and creep of these states.
         """
         law, order = (record, _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
@@ -195,7 +195,9 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     """Return fields of pure rolling (delta = 0) at kappa |V| = u and kappa = mu = 1, a row each.
 
-    law: rows of the material.  u: speeds, (n,).  names: fields that kernels compute.
+    law: rows of the material.
+    u: speeds, (n,).
+    names: fields that kernels compute.
     """
     return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
 
@@ -203,7 +205,9 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
     """Raise ParameterError where kappa |V| exceeds its largest allowed value.
 
-    kappa: slenderness.  V: speeds, dimensionless; the arrays broadcast.  fastest: largest allowed kappa |V|.
+    kappa: slenderness.
+    V: speeds, dimensionless; the arrays broadcast.
+    fastest: largest allowed kappa |V|.
     """
     if not (kappa.size and V.size):
         return

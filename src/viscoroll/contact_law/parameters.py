@@ -250,7 +250,7 @@ def resolve_model(
     """Return (the roller on its slope, its dimensionless parameters, its scale) of a call.
 
     roller: the first argument of the call.
-    call: its name, for refusals.
+    call: name of the function that is called, for errors.
     moves: whether it needs gamma.
     slope: angle, rad; None: level.
     Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma.
@@ -288,7 +288,7 @@ def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a sin
 
     scene: the parameters.
     names: names of the parameters.
-    allowed: what the message says instead.
+    allowed: what the message says is allowed.
     """
     for name in names:
         if shape := np.shape(getattr(scene, name)):

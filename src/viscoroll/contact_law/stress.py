@@ -110,8 +110,10 @@ def stress(
 def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """Compute the stresses at points, material by material.
 
-    scene: parameters of the roller.  alpha: alphas, or of many materials their indices; points of one material lie
-    together.  points: record of the kernel, whose fields have one value, or one for each point.  p, tau: results, (n,).
+    scene: parameters of the roller.
+    alpha: alphas, or of many materials their indices; points of one material lie together.
+    points: record of the kernel, whose fields have one value, or one for each point.
+    p, tau: results, (n,).
     """
     from ..kernels.rows.stress import new_memory_weights, stress_loop
 

@@ -29,7 +29,7 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     name : name of the argument, for errors.
     value : a number, an array or a list.
     **bounds : ``unit`` of the argument, to which a value with a unit is converted (default "1"); ``low`` and ``high``,
-    smallest and largest allowed value; ``above``, number that all values must exceed.
+        smallest and largest allowed value; ``above``, number that all values must exceed.
 
     Returns
     -------
@@ -54,8 +54,7 @@ def check_array_extent(
     name : name of the argument, for errors.
     value : a number, an array or a list, perhaps with a unit.
     unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
-    dimensionless
-        number, or an object that has units by name, as a :class:`.scale.Scale`.
+        dimensionless number, or an object that has units by name, as a :class:`.scale.Scale`.
     low : smallest allowed value.
     above : number that all values must exceed.
     high : largest allowed value.
@@ -85,8 +84,10 @@ def _range_words(low: float, above: float, high: float) -> str:
 def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:
     """Return numbers as float64 in the unit of the argument.
 
-    name: name of the argument.  value: what a caller gave.  unit: unit of the argument, a text or an object that has
-    units by name.  bounds: low, above and high of the range, for the ParameterError of a value that is not numeric.
+    name: name of the argument.
+    value: what a caller gave.
+    unit: unit of the argument, a text or an object that has units by name.
+    bounds: low, above and high of the range, for the ParameterError of a value that is not numeric.
     """
     plain = value
     if not has_no_unit(value):
@@ -111,7 +112,8 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
 def _first_wrong(array: Floats, wrong: Booleans) -> str:
     """Return the first wrong element of an array, its index, and the number of further ones.
 
-    array: numbers.  wrong: mask of the same shape.
+    array: numbers.
+    wrong: mask of the same shape.
     """
     if array.size == 1:
         return str(array.item())

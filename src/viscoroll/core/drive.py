@@ -26,10 +26,9 @@ class Schedule:
     Parameters
     ----------
     times : times of the corners, (k,), ascending, >= 0; a time that occurs twice is a jump.  For an ensemble also
-    (n, k), a
-        row for each motion.
-    values : at the corners, (k,) or (n, k).  Units of times and values are converted by the function that takes the
-        schedule.
+        (n, k), a row for each motion.
+    values : values at the corners, (k,) or (n, k).  Units of times and values are converted by the function that
+        takes the schedule.
 
     Raises
     ------
@@ -118,7 +117,9 @@ class Feedback:
 def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
     """Replace a field by its checked numbers, and keep the unit that it was given in.
 
-    load: the schedule or feedback.  name: name of the field.  low: smallest allowed number.
+    load: the schedule or feedback.
+    name: name of the field.
+    low: smallest allowed number.
     """
     numbers, unit = split_unit(name, getattr(load, name))
     object.__setattr__(load, name, read_only(check_array(name, numbers, low=low)))
@@ -129,7 +130,9 @@ def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
 def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
     """Return an argument in its unit: numbers, a schedule or a feedback.
 
-    name: name of the argument.  value: what a caller gave.  units: unit of each argument by name.
+    name: name of the argument.
+    value: what a caller gave.
+    units: unit of each argument by name.
 
     Raises
     ------
@@ -152,7 +155,9 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
 def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
     """Return a schedule or a feedback with its fields in given units.
 
-    name: name of the argument.  load: the schedule or feedback.  wanted: name of a field -> unit.
+    name: name of the argument.
+    load: the schedule or feedback.
+    wanted: name of a field -> unit.
     """
     converted = {
         part: convert(f"{part} of {name}", getattr(load, part), unit, wanted[part]) for part, unit in load.units.items()
@@ -211,8 +216,9 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
 def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     """Return a load divided by its unit: a number, an array, a schedule, a function of time or a feedback.
 
-    name: name of the argument.  value: what a caller gave.  scale: scale of the roller; the values of a scene stay
-    as they are.
+    name: name of the argument.
+    value: what a caller gave.
+    scale: scale of the roller; the values of a scene stay as they are.
 
     Raises
     ------

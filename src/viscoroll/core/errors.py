@@ -46,7 +46,7 @@ class ParameterError(ViscorollError, ValueError):
     Parameters
     ----------
     name : name of the parameter.
-    value : that was found.
+    value : value that was found.
     allowed : words that follow "must be".
     sentence : the whole message, where name, value and allowed values do not make one.
 
@@ -95,7 +95,8 @@ def describe_value(value: Any) -> str:
 def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     """Return the error of a call that must give one of two parameters.
 
-    first, second: the parameters.  both: whether both were given; else neither was.
+    first, second: the parameters.
+    both: whether both were given; else neither was.
     """
     sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
     return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
@@ -150,7 +151,7 @@ class OutOfTableError(ParameterError):
     Parameters
     ----------
     name : name of the coordinate.
-    value : that was found.
+    value : value that was found.
     low, high : ends of the axis.
 
     Examples

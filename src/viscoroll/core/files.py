@@ -137,11 +137,10 @@ def write_dataset(
 
     Parameters
     ----------
-    dataset : to write.
+    dataset : dataset to write.
     path : path of the file.
     encoding : encoding of variables, as xarray takes it.  Default: no fill values (CF forbids them for coordinates),
-    arrays of
-        numbers compressed and with Fletcher-32 checksums.
+        arrays of numbers compressed and with Fletcher-32 checksums.
     sealed : whether the file ends with a seal.
     """
     filters = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}

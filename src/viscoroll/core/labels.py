@@ -30,7 +30,9 @@ class Labels(NamedTuple):
     def apply(self, name: str, values: Any, *further: str) -> Any:
         """Return values with labels, or as they are if their shape is not that of the arguments.
 
-        name: name of the result.  values: array.  further: names of its axes behind those of the arguments.
+        name: name of the result.
+        values: array.
+        further: names of its axes behind those of the arguments.
         """
         shape = np.shape(values)
         fits = shape[: len(self.shape)] == self.shape and len(shape) == len(self.shape) + len(further)
@@ -39,7 +41,8 @@ class Labels(NamedTuple):
     def renamed_coords(self, names: tuple[str, ...], prefix: str) -> tuple[tuple[str, ...], dict[str, Any]]:
         """Return (axes, coordinates) for a dataset whose variables have some of their names.
 
-        names: names of the variables.  prefix: word put before an axis or a coordinate of the same name.
+        names: names of the variables.
+        prefix: word put before an axis or a coordinate of the same name.
         """
         new = {name: f"{prefix}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
         coords = {new[name]: (tuple(new[dim] for dim in dims), values) for name, (dims, values) in self.coords.items()}

@@ -279,7 +279,8 @@ class Values(Result):
 def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
     """Return (names of all axes, values of the axes along which one argument alone varies).
 
-    given: name -> argument.  shape: shape of arguments and results, broadcast.
+    given: name -> argument.
+    shape: shape of arguments and results, broadcast.
     """
     dims, values = [], {}
     for axis, size in enumerate(shape, -len(shape)):

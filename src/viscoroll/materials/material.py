@@ -411,7 +411,7 @@ class Material(FromPrograms):
         """Return t divided by each of several times, (..., times).
 
         t: s, >= 0, of any shape.
-        times: in units of T_ref.
+        times: times in units of T_ref, (times,).
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)

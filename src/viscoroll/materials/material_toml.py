@@ -109,7 +109,7 @@ def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material
     """Return the materials of a file that was read; raises FileError as :func:`read_materials` does.
 
     path: path of the file.
-    content: its sections.
+    content: sections of the file.
     """
     return {name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content}
 
@@ -118,7 +118,7 @@ def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[f
     """Return the shifts of those materials of a file that have one; raises FileError.
 
     path: path of the file.
-    content: its sections.
+    content: sections of the file.
     Returns functions a_T(temperature in degrees Celsius) by section, which are 1 at the temperature of the section.
     """
     sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}

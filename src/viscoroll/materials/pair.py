@@ -154,7 +154,7 @@ class Pair:
         Parameters
         ----------
         l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array for many
-        covers.
+            covers.
 
         Raises
         ------

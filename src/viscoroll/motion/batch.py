@@ -97,7 +97,7 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
 
     batch: motions of one scene.
     speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
-    about: receives the error and the problem of the map.
+    about: dict that receives the error and the problem of the map.
     Returns the result, in which motions outside the map have a status below 0; None where all motions are at rest, or
     the stated error exceeds rtol.
     """
@@ -129,7 +129,7 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
 def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     """Integrate the motions that have no result yet, status < 0.
 
-    found: receives their results.
+    found: results, into which theirs are written.
     batch: all motions.
     Returns the steps of each motion, (n,).
     """

@@ -99,7 +99,7 @@ class _Sampled:
         end: last time, in T_ref.
         rtol: relative tolerance of the motion.
         low: smallest value allowed.
-        samples: their number.
+        samples: number of samples.
         """
         self.name, self.function, self.low, self.taken = name, function, low, 0
         self.share = _SHARE * rtol
@@ -122,7 +122,7 @@ class _Sampled:
     def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
         """Fit a piece.
 
-        start, stop: its ends, in T_ref.
+        start, stop: ends of the piece, in T_ref.
         so_far: largest value before it.
         Returns (the piece, None if its fit is not good; where to cut it, None for its middle).
         """

@@ -125,7 +125,9 @@ class DriveFunctions:
 
     @cached_property
     def pieces(self) -> Floats:
-        """Return all functions over common pieces, dimensionless, in the layout of the kernels, (1 or m, k, columns)."""
+        """Return all functions over common pieces, dimensionless, in the layout of the kernels, (1 or m, k,
+        columns).
+        """
         zero, name = piecewise(np.zeros(())), self.prescribed
         force, torque, brake, speed = (
             piecewise(self.functions[f]) if f in self.functions else zero for f in ("force", "torque", "brake", name)
@@ -175,7 +177,7 @@ def prepare_drive(
 ) -> DrivenStart:
     """Check a drive and the start speeds.
 
-    drive: dimensionless.
+    drive: drive, dimensionless.
     V0, omega0: start speeds, dimensionless; None where they are prescribed.
     end: last time, in T_ref.
     rtol: relative tolerance of the motion.
@@ -226,7 +228,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
 
     name: "V" or "omega".
     stated: the start that the caller gave; None without.
-    functions: with the prescribed speed.
+    functions: functions of the drive, with the prescribed speed.
     speed: the prescribed speed as the caller gave it.
     Raises ParameterError where ``stated`` is another start, or where the speed jumps.
     """
@@ -255,7 +257,7 @@ def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
     rest: threshold, dimensionless; 0 for none.  Where nothing drives, speeds below it stay below.
-    functions: that drive.
+    functions: functions of the drive, or None.
     """
     if rest > 0.0 and functions is not None and functions.acts_at_end:
         sentence = f"rest = {rest:g} is given, but the motion is driven to its end: leave it out"

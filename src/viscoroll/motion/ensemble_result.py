@@ -47,9 +47,8 @@ class Ensemble(RollResult):
     t : output times.
     V, omega, x, angle, delta, regime : shape (n, len(t)); those not requested are None.
     slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_epsilon)^2 or in J/m: the
-    integrals of
-        gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
-        (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
+        integrals of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what (V^2 + j
+        omega^2)/2 has fallen by (at rest: all of it).
     force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
     rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
@@ -105,7 +104,7 @@ class Ensemble(RollResult):
 
         Parameters
         ----------
-        quantiles : in [0, 1].
+        quantiles : levels of the quantiles, in [0, 1].
 
         Returns
         -------

@@ -58,7 +58,7 @@ def _dataset(
 ) -> xr.Dataset:
     """Return the dataset of a result.
 
-    result: its rows, drive and roller are put into the dataset.
+    result: motion or ensemble, whose rows, drive and roller are put into the dataset.
     title: title of the dataset.
     dims: dimensions of the rows.
     variables, about: further variables and attributes.

@@ -37,8 +37,11 @@ def fill_layers(
 ) -> None:
     """Fill the tables of the boundary layers and asymptotes of one family.
 
-    problem : the scene.  sign : sign of omega - V at onset.  first : lowest octave of kappa V at onset.
-    slow : the slow manifold.  asymptote, layer : views of the tables, written.
+    problem : the scene.
+    sign : sign of omega - V at onset.
+    first : lowest octave of kappa V at onset.
+    slow : the slow manifold.
+    asymptote, layer : views of the tables, written.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
@@ -108,8 +111,11 @@ def _layer_motions(
 ) -> tuple[Floats, Floats, Floats]:
     """Integrate the motions of a boundary layer, and return them at the nodes of its tables.
 
-    problem : the scene.  sign : sign of omega - V at onset.  V0 : speeds at onset, (octaves, nodes).
-    k0 : relaxation rates there.  split : splits there.
+    problem : the scene.
+    sign : sign of omega - V at onset.
+    V0 : speeds at onset, (octaves, nodes).
+    k0 : relaxation rates there.
+    split : splits there.
 
     Returns V and delta, (octave, node of V, octave of u, node of u), and V at the end of the layer, (octave, node of
     V).

@@ -45,7 +45,7 @@ class SlowManifold(NamedTuple):
         """Return (distance, angle) along the manifold, as ``manifold_path`` of :mod:`..kernels.flow.lookup`.
 
         start : slow logarithms at the beginning.
-        span : their decrease.
+        span : decrease of the slow logarithms.
         rate : decrease in unit time.
         """
         end, value = start - span, self.rows.value
@@ -59,7 +59,8 @@ class SlowManifold(NamedTuple):
 def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     """Fill the tables of the slow manifold, and return it.
 
-    problem : the scene.  parts : views of the tables.
+    problem : the scene.
+    parts : views of the tables.
 
     One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and loss are
     integrals from V -> 0 upward.

@@ -45,7 +45,7 @@ class Histogram(msgspec.Struct):
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
         """Return the histogram of the finite ones of some values.
 
-        values: (n,); those that are not finite are left out.
+        values: numbers, (n,); those that are not finite are left out.
         exact: whether to keep the values, for exact quantiles.
         """
         kept = values[np.isfinite(values)]
@@ -83,8 +83,8 @@ class Histogram(msgspec.Struct):
     def quantiles(self, levels: tuple[float, ...]) -> Floats:
         """Return the quantiles, (levels,); NaN without values.
 
-        levels: in [0, 1]. Where the values were not kept, each quantile lies between the two values beside it, which
-        are known to their bins.
+        levels: levels of the quantiles, in [0, 1]. Where the values were not kept, each quantile lies between the two
+        values beside it, which are known to their bins.
         """
         if not self.count:
             return np.full(len(levels), np.nan)

@@ -140,7 +140,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     """Return the derivative of a prescribed speed.
 
     name: name of the argument, for the refusal.
-    speed: in the unit of the kernels.
+    speed: prescribed speed, dimensionless.
     Raises ParameterError where the speed jumps.
     """
     lengths = speed.ends - speed.starts

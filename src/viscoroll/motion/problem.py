@@ -90,7 +90,7 @@ def make_problem(
 
     roller: scene or cylinder.
     start: V0 and omega0 in its units, plain numbers; None where they are prescribed.
-    drive: in its units, plain numbers.
+    drive: loads and prescribed speeds in its units, plain numbers.
     end: last output time, in its unit.
     options: how to integrate.
     single: whether only one motion is allowed.
@@ -187,7 +187,7 @@ def integrate(
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """Integrate motions in the kernel.
 
-    count: their number.
+    count: number of motions.
     batch: law, whether bodies differ, kappa, mu, gamma, j, V0, omega0, each one number or (count,).
     drive: drive of the motions as the kernels take it.
     times: output times, ascending, in T_ref.
@@ -235,7 +235,7 @@ def integrate_motions(
     starts: V0 and omega0, (n,).
     gamma: time scale of each motion, (n,).
     t: output times, common to all.
-    threads: to use.
+    threads: number of threads; None: all cores available.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss (8, n, times); status, steps, switches, onset
     and rest time (n, 5)).
     """

@@ -66,7 +66,8 @@ class RollResult(Result):
 
         report: validity of the states of the motions.
         roller: roller of the motions.
-        V: speeds in its unit, (times, ...); rolls: where the motions are not in full slip, (times, ...).
+        V: speeds in its unit, (times, ...);
+        rolls: where the motions are not in full slip, (times, ...).
         x: distances travelled, (times, ...); NaN where they are not known.
         ends: whether the unsteadiness is that of each motion as a whole, else at each time.
         """

@@ -50,8 +50,9 @@ COMMANDS: dict[str, Command] = {}
 def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
     """Return a decorator that adds a function to :data:`COMMANDS`.
 
-    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.  options: options of the command,
-    in the order of its help; a list of them is a group of which one at most may be given.
+    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.
+    options: options of the command, in the order of its help; a list of them is a group of which one at most may be
+    given.
     """
 
     def add(run: CommandFunction) -> CommandFunction:
@@ -118,8 +119,10 @@ def roller_of_argument(text: str) -> Any:
 def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
     """Return the option of an output file; a path that cannot be written is refused before any work.
 
-    suffixes: allowed suffixes.  name: name of the option; without its dashes it names the argument, "output" for -o.
-    required: whether it must be given.  more: text behind the suffixes in the help.
+    suffixes: allowed suffixes.
+    name: name of the option; without its dashes it names the argument, "output" for -o.
+    required: whether it must be given.
+    more: text behind the suffixes in the help.
     """
 
     def path(text: str) -> Path:

@@ -25,7 +25,7 @@ _EXTRAS = {"runs": "zarr", "cluster": "distributed"}
 def doctor(arguments: Namespace) -> int:
     """Print the lines of a problem report: versions, cache, threads, a check of the law, packages.
 
-    arguments: none.
+    arguments: parsed command line, not used.
     Returns 1 if a required package is missing, else 0.
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()

@@ -24,7 +24,7 @@ _SPEEDS = 301
 def plot(arguments: Namespace) -> None:
     """Draw a file and write the figure.
 
-    arguments: what, path of the file, a .nc, .toml or .zarr; output, path of the figure.
+    arguments: parsed command line with what, path of the file, a .nc, .toml or .zarr; output, path of the figure.
     Raises ParameterError for another suffix, FileError for a file that cannot be read or written.
     """
     from ...core.plots.style import save

@@ -59,9 +59,10 @@ class _StoreOnce(argparse.Action):
         """Store the value of an option or a positional argument; raise ArgumentError where the option had one
         before.
 
-        parser: not used.  namespace: values of all arguments; its ``stored`` is the set of those that have a value.
-        values: the value.  name: name of the option; None of a positional argument.
-        The signature is that of ``argparse.Action``.
+        parser: not used.
+        namespace: values of all arguments; its ``stored`` is the set of those that have a value.
+        values: the value.
+        name: name of the option; None of a positional argument. The signature is that of ``argparse.Action``.
         """
         stored = vars(namespace).setdefault("stored", set())
         if name is not None and self.dest in stored:
@@ -73,7 +74,9 @@ class _StoreOnce(argparse.Action):
 def _converted(kind: type, words: str, text: str) -> Any:
     """Return the value of an argument.
 
-    kind: its type.  words: the type in words, for the error.  text: the argument.
+    kind: its type.
+    words: the type in words, for the error.
+    text: the argument.
     """
     try:
         return kind(text)

@@ -29,7 +29,7 @@ class Column(NamedTuple):
     name : name of its quantity, a key of :data:`.vocabulary.UNITS`.
     mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
     log : whether its numbers are logarithms to base 10.
-    unit : in which its numbers are.
+    unit : unit in which its numbers are.
     stated : whether the file or the user gives the unit, or it is assumed.
     """
 
@@ -53,7 +53,7 @@ def columns_of(
 ) -> tuple[list[Column], dict[str, str]]:
     """Find the columns whose quantity is known.
 
-    table : with headings.
+    table : table with headings.
     named : quantity -> heading, of columns that the user named.
     overruling : quantity -> unit that overrules the file.
     defaults : quantity -> unit where the file gives none.

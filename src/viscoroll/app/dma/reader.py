@@ -46,9 +46,8 @@ def read_dma(
         compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
         file without headings are called "column 0", "column 1" ...; three of them are frequency, storage and loss.
     units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
-    -> unit,
-        in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in Pa, with a
-        warning.
+        -> unit, in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in
+        Pa, with a warning.
     decimal : "." or ","; default: the one that the numbers have.
     encoding : encoding of the file; default: by its first bytes.
 

@@ -53,7 +53,7 @@ def fit_on_extended_grid(
     data : the curve.
     prony, E, T_ref : series, long-time modulus and reference time of the fit.
     grid : shortest and longest time of its grid.
-    decades : by which the grid becomes wider on either side.
+    decades : number of decades by which the grid becomes wider on either side.
     Returns the wider fit.  With as few modes as possible
     those outside the data would be left out first, though the data allow them.
     """

@@ -88,7 +88,7 @@ class Meaning(NamedTuple):
 
     name : name of the quantity, a key of :data:`UNITS`.
     mode : mode of the modulus, "tension", "shear", or "" where the heading does not say.
-    unit : in the heading or in the row of units, "" without.
+    unit : unit in the heading or in the row of units, "" without.
     log : whether the numbers are logarithms to base 10.
     """
 

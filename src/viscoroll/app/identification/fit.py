@@ -67,8 +67,7 @@ class Identification(Result):
     noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation; of
         robust fits both as a tenth of outliers changes them little.
     misfit : names of quantities whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or,
-    of robust
-        fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
+        of robust fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     records : the data by name.
     planned : whether the records have no values: standard deviations and intervals are those to expect.
 

@@ -40,8 +40,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        Arguments of :func:`.identify.identify` by name.
+    dict Arguments of :func:`.identify.identify` by name.
 
     Raises
     ------

@@ -106,8 +106,8 @@ class Problem:
     ) -> None:  # fmt: skip
         """Collect the data of all records and find the active unknowns.
 
-        cylinder : with the values that are fixed.
-        unknowns : with start, range and prior.
+        cylinder : cylinder with the values that are fixed.
+        unknowns : unknowns with start, range and prior.
         records : name -> record.
         robust : whether outliers count less.
         shifts : body -> shift factor over temperature.

@@ -154,9 +154,9 @@ def cylinder_of(
 ) -> Cylinder:
     """Return the cylinder with other values, at the load and the temperature of a record.
 
-    cylinder : with the values that are fixed.
+    cylinder : cylinder with the values that are fixed.
     values : name -> value of unknowns.
-    record : whose load, mass and temperature are taken; None: those of the cylinder.
+    record : record whose load, mass and temperature are taken; None: those of the cylinder.
     shifts : body -> shift factor over temperature.
 
     Raises

@@ -67,7 +67,9 @@ def loads_of(
 ) -> Loads:
     """Check and broadcast the loads of a call of :func:`.steady.steady`.
 
-    scene : parameters, on the slope.  force, torque : numbers, arrays or :class:`Feedback`.  slope : angle, rad.
+    scene : parameters, on the slope.
+    force, torque : numbers, arrays or :class:`Feedback`.
+    slope : angle, rad.
     V : given speeds, or None.  Raises ParameterError as ``steady`` does.
     Returns the :class:`Loads`, vectors of one length.
     """

@@ -216,8 +216,9 @@ def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
 def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
     """Find the zeros of a function between nodes, including pairs of zeros between neighbouring nodes.
 
-    function : vectorised function of one variable.  nodes : ascending, (n,).  noise : rounding error of the function
-    at the nodes; nodes with smaller values have no sign.
+    function : vectorised function of one variable.
+    nodes : ascending, (n,).
+    noise : rounding error of the function at the nodes; nodes with smaller values have no sign.
 
     Returns the zeros, ascending, bisected to the rounding of the nodes.  A pair of zeros is found where |function|
     has a minimum at a node.
@@ -238,7 +239,8 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
 def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
     """Return (lower ends, upper ends, whether the function rises) of the intervals in which y changes its sign.
 
-    x: points, ascending, (n,).  y: values of the function there.
+    x: points, ascending, (n,).
+    y: values of the function there.
     """
     at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)
     return x[at], x[at + 1], y[at + 1] > 0.0

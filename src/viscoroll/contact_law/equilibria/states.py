@@ -66,8 +66,10 @@ class States(NamedTuple):
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
         """Make the states from the law at them.
 
-        loads : the loads.  load : index of the load of each state.  sign : sign of V.  answers : rows of
-        :class:`Field` with slopes, in a frame where V > 0.
+        loads : the loads.
+        load : index of the load of each state.
+        sign : sign of V.
+        answers : rows of :class:`Field` with slopes, in a frame where V > 0.
         """
         rows = answers.copy()
         rows[[Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] *= sign
@@ -81,7 +83,9 @@ class States(NamedTuple):
 
         The contact is that of Carter; a disturbance decays as V' = -rate V, with omega in proportion to V.
 
-        loads : the loads.  load : index of the load of each state.  law : rows of the material.
+        loads : the loads.
+        load : index of the load of each state.
+        law : rows of the material.
         """
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
@@ -147,7 +151,10 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
 def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
     """Fields of the contact at V > 0 and delta, one row for each of ``names``.
 
-    law : rows of the material.  kappa, mu : parameters.  V : speeds, (n,).  delta : creepage.
+    law : rows of the material.
+    kappa, mu : parameters.
+    V : speeds, (n,).
+    delta : creepage.
     """
     return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
@@ -155,7 +162,9 @@ def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any
 def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
     """Return delta_0 at V > 0, the creepage at which Q = 0; 0.0 of half-spaces.
 
-    law : rows of the material.  kappa, mu : parameters.  V : speeds, (n,).
+    law : rows of the material.
+    kappa, mu : parameters.
+    V : speeds, (n,).
     """
     return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
 
@@ -194,8 +203,11 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
-    law : rows of the material.  loads : the loads.  load : index of the load of each state, (n,).  sign : sign of
-    the motion, in whose frame V > 0.  V : speeds, (n,).
+    law : rows of the material.
+    loads : the loads.
+    load : index of the load of each state, (n,).
+    sign : sign of the motion, in whose frame V > 0.
+    V : speeds, (n,).
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V

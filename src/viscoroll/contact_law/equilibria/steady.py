@@ -122,7 +122,8 @@ def steady(
 def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
     """Return the indices of the loads under which the cylinder can be at rest, (n,).
 
-    loads : the loads.  neutral : whether any speed is steady without a load (elastic bodies).
+    loads : the loads.
+    neutral : whether any speed is steady without a load (elastic bodies).
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
@@ -133,7 +134,9 @@ def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
 def _states_under_load(law: LawTable, loads: Loads) -> States:
     """Find all states of rolling under loads without a gain on omega; rest is not among them.
 
-    law : rows of the material.  loads : the loads.  Raises ParameterError for loads outside the range of the nodes.
+    law : rows of the material.
+    loads : the loads.
+    Raises ParameterError for loads outside the range of the nodes.
     """
     with np.errstate(over="ignore"):  # what is infinite is refused
         gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)

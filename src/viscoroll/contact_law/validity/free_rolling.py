@@ -163,7 +163,7 @@ class FreeRolling:
         """Evaluate a function of the curve of each material at its states.
 
         function: takes a curve, u, g and ``more`` of some states, (n,), and returns several arrays (n,).
-        elastic: its values for an elastic material, which has no curve.
+        elastic: values of the function for an elastic material, which has no curve.
         more: further arguments, broadcast to u.
         Returns the arrays in the shape of u.
         """
@@ -195,8 +195,9 @@ class FreeRolling:
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
             """Return the fields of :class:`Reach` for states of one material.
 
-            curve: free rolling of the material.  u: kappa V at the start, (n,).  g: gamma/(1 + j), (n,).  Both in the
-            material's own time.
+            curve: free rolling of the material.
+            u: kappa V at the start, (n,).
+            g: gamma/(1 + j), (n,).  Both in the material's own time.
             """
             end, below = np.empty(u.size), np.empty(u.size, bool)
             levels, group = np.unique(g, return_inverse=True)

@@ -76,7 +76,7 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 
     roller: scene or cylinder; a scene has no data to compare with.
     V: speeds, m/s, any shape; None for prescribed ones that are not known.
-    extent: (smallest, largest) of them, m/s, where the caller knows them.
+    extent: (smallest, largest) of the speeds, m/s, where the caller knows them.
     motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined.
     """
     data = roller.body_data
@@ -118,7 +118,7 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
 def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
     """Warn of motions of a run that start outside the measured band of a material.
 
-    share: their share of all motions, 0 to 1; 0 gives no warning.
+    share: fraction of all motions that start outside, 0 to 1; 0 gives no warning.
     records: what was measured of the bodies; contacts do not warn of them again.
     Returns whether a warning was given.
     """

@@ -103,7 +103,8 @@ def _finite_quantiles(values: NDArray) -> NDArray:
 def _ensemble_histogram(axes: Any, values: NDArray) -> None:
     """Draw the histogram of the motions of an ensemble; of few or equal values a point for each.
 
-    axes: axes of matplotlib.  values: values of a quantity, (motions,).
+    axes: axes of matplotlib.
+    values: values of a quantity, (motions,).
     """
     finite = values[np.isfinite(values)]
     axes.set_ylabel(f"motions, of {values.size}")
@@ -118,7 +119,9 @@ def _ensemble_histogram(axes: Any, values: NDArray) -> None:
 def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """Draw the histogram of a run at the last time.
 
-    axes: axes of matplotlib.  data: summaries of the run.  name: name of the quantity.
+    axes: axes of matplotlib.
+    data: summaries of the run.
+    name: name of the quantity.
     """
     counts = data[f"{name}_histogram"].values
     counts = counts[:, -1] if counts.ndim == 2 else counts
@@ -135,7 +138,8 @@ def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
 def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
     """Return (edges, counts) of bars of equal width, without the tails; one bar if all values are nearly equal.
 
-    low, high: ends of the bins of a run.  counts: motions in each, of which a bar gets the fraction that it overlaps.
+    low, high: ends of the bins of a run.
+    counts: motions in each, of which a bar gets the fraction that it overlaps.
     """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
@@ -179,7 +183,8 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
     """Return (title of a panel, index -> values over the inputs) at the last time with indices.
 
-    indices: as of :func:`sobol_bars`.  name: name of the quantity.
+    indices: as of :func:`sobol_bars`.
+    name: name of the quantity.
     """
     values = {key: indices[f"{name}_{key}"].values for index in _SOBOL for key in (index, f"{index}_conf")}
     if values["S1"].ndim == 1:

@@ -63,8 +63,12 @@ def relaxation_fit(fit: Any) -> Figure:
 def _series_fit(fit: Any, misfit: str, x: Any, columns: dict[str, Any], moduli: Any, label: str) -> Figure:
     """Draw data and the curves of a series.
 
-    fit: result of the fit.  misfit: words of the title.  x: frequencies or times.  columns: name of a modulus -> data
-    at x.  moduli: function of x that returns a tuple of curves, one for each column.  label: label of the axis of x.
+    fit: result of the fit.
+    misfit: words of the title.
+    x: frequencies or times.
+    columns: name of a modulus -> data at x.
+    moduli: function of x that returns a tuple of curves, one for each column.
+    label: label of the axis of x.
     """
     fine = np.geomspace(x[0], x[-1], _POINTS)
     figure, axes = new_figure(f"Prony series of {fit.prony.E.size} modes: {misfit}")

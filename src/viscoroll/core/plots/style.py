@@ -35,8 +35,10 @@ def new_figure(
 ) -> tuple[Figure, Any]:
     """Return (figure, its axes) without a change of matplotlib's global state.
 
-    title: line on top.  rows, columns: columns of axes.  size: width and height, inches.  options: keyword arguments
-    of ``Figure.subplots``.
+    title: line on top.
+    rows, columns: numbers of rows and columns of axes.
+    size: width and height, inches.
+    options: keyword arguments of ``Figure.subplots``.
     """
     from matplotlib.figure import Figure
 
@@ -50,7 +52,10 @@ def new_panels(
 ) -> tuple[Figure, list[Any]]:
     """Return (figure, list of axes of one size).
 
-    title: line on top.  count: number of axes.  per_row: largest number in a row.  size: size of each, inches.
+    title: line on top.
+    count: number of axes.
+    per_row: largest number in a row.
+    size: size of each, inches.
     options: of ``Figure.subplots``.
     """
     columns = min(per_row, count)
@@ -65,8 +70,10 @@ def new_panels(
 def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, float] | None, **line: Any) -> list[Any]:
     """Plot a curve, solid where |x| lies in a measured band and dashed outside.
 
-    axes: axes of matplotlib.  x, y: points of the curve.  band: lowest and highest measured |x|, None without.  line:
-    style.
+    axes: axes of matplotlib.
+    x, y: points of the curve.
+    band: lowest and highest measured |x|, None without.
+    line: style.
     Returns the lines of matplotlib.
     """
     if band is None:
@@ -112,7 +119,10 @@ def small_legend(axes: Any, **options: Any) -> None:
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
     """Plot quantiles over time: pairs of levels as bands, the middle one as a line.
 
-    axes: axes of matplotlib.  t: times, (n,).  levels: probabilities, ascending, (k,).  values: quantiles, (k, n).
+    axes: axes of matplotlib.
+    t: times, (n,).
+    levels: probabilities, ascending, (k,).
+    values: quantiles, (k, n).
     """
     for n in range(levels.size // 2):
         text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
@@ -129,7 +139,9 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
 def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
     """Return the label of an axis: symbol or name of a quantity, and its unit.
 
-    name: name of the quantity.  units: "1" of a dimensionless one.  symbol: LaTeX, where the table of symbols has none.
+    name: name of the quantity.
+    units: "1" of a dimensionless one.
+    symbol: LaTeX, where the table of symbols has none.
     """
     symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
     # A symbol such as p/E' stands for a ratio; in SI units the quantity is p.
@@ -153,7 +165,7 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     Parameters
     ----------
     figure : figure of matplotlib.
-    path : its suffix chooses the format.
+    path : path of the file, whose suffix chooses the format.
 
     Raises
     ------

@@ -43,7 +43,7 @@ class Reading(NamedTuple):
     """One way to read a heading.
 
     name : without unit and logarithm.
-    unit : in the heading or in the row of units, "" without.
+    unit : unit in the heading or in the row of units, "" without.
     log : whether the column is of logarithms to base 10.
     """
 

@@ -70,7 +70,7 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 def fault_of(cell: str, decimal: str) -> str:
     """Return why a cell cannot be read as a number, "" if it can.
 
-    cell : its text.
+    cell : text of the cell.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     """
     if _GAP.fullmatch(cell):

@@ -126,7 +126,7 @@ class _Layout:
     """Where the tables of a file are.
 
     path : path of the file.
-    lines : its lines with their cells.
+    lines : lines of the file with their cells.
     separator : separator of the cells.
     is_heading_line : as of :func:`read_table`.
     """

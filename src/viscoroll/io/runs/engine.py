@@ -119,7 +119,8 @@ def _evaluate_missing(
 ) -> Iterator[int]:
     """Submit the missing blocks, and yield the number of motions of each one that is finished.
 
-    store: the store of the run.  shared: the store, or dask's reference to it, as tasks take it.
+    store: the store of the run.
+    shared: the store, or dask's reference to it, as tasks take it.
     pool, workers: executor, and its number of workers.
     advance: function of the progress bar; it is called with the motions of blocks that were on disk.
     """
@@ -191,7 +192,9 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
     """Return a dask client; of "local" with workers of its own.
 
-    distributed: the module.  cluster: "local" or an address.  threads: number of local processes.
+    distributed: the module.
+    cluster: "local" or an address.
+    threads: number of local processes.
     """
     if cluster != "local":
         return distributed.Client(cluster, timeout=10)

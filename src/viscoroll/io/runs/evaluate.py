@@ -27,7 +27,8 @@ _STARTS = 1000
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
     """Return the inputs of the motions of a block, by name, each (motions,), in the units of the run.
 
-    run, block: the run, and the number of the block.  most: number of motions at most; None: all of the block.
+    run, block: the run, and the number of the block.
+    most: number of motions at most; None: all of the block.
     """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)

@@ -61,7 +61,8 @@ def identity(run: Run) -> str:
 def refuse_another(root: Path, run: Run, record: Record) -> None:
     """Raise FileError if a store is neither of a run nor of the same run with fewer motions.
 
-    root: folder of the store.  run: the run.
+    root: folder of the store.
+    run: the run.
     record: a record of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
     """
     of_a_block = record.summary is not None
@@ -80,7 +81,8 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
 def _no_extension(before: Run, run: Run) -> str:
     """Return why a store cannot be extended, and what to change in the run file; "" if it can.
 
-    before: the run of the store.  run: the same with another ``n``.
+    before: the run of the store.
+    run: the same with another ``n``.
     """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:

@@ -125,7 +125,8 @@ class Inputs:
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
         """Return the smallest and the largest draw of an input, (2,).
 
-        name: name of the input.  low, high: shares of the distribution to take as its ends.
+        name: name of the input.
+        low, high: shares of the distribution to take as its ends.
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))

@@ -151,7 +151,9 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
 def _points(count: int, base: int, seed: int) -> Floats:
     """Return points of the unit cube, (input, motion): A, B, and A with each row of B in turn.
 
-    count: number of inputs.  base: number of points of A and of B.  seed: seed of the sequence.
+    count: number of inputs.
+    base: number of points of A and of B.
+    seed: seed of the sequence.
     """
     A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
@@ -163,7 +165,8 @@ def _outcomes(
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
     """Roll all motions at points of the unit cube, block by block.
 
-    run: states the quantities.  cube: points of the unit cube, (input, motion).
+    run: run that states the quantities.
+    cube: points of the unit cube, (input, motion).
     threads: number of threads; None: all cores available.
     progress: whether a progress bar is drawn.
     Returns (quantity -> values, (t, motion); status code of each motion, (motion,)).
@@ -192,7 +195,8 @@ def _outcomes(
 def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     """Return (indices and half-widths, in rows as ``_INDICES``, over inputs; "") or (NaN, why there are none).
 
-    values: outcomes (A, B and mixed points, base point).  noise: part of a value that rtol leaves open.
+    values: outcomes (A, B and mixed points, base point).
+    noise: part of a value that rtol leaves open.
     seed: seed of the bootstrap.
     """
     from scipy.special import ndtri

@@ -137,7 +137,9 @@ def _roller_of(what: Any) -> Scene | Cylinder:
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
     """Return all fields on the nodes of a grid.
 
-    roller: roller of the grid.  axes: V, delta and perhaps alpha -> nodes.  method: "table" or "direct".
+    roller: roller of the grid.
+    axes: V, delta and perhaps alpha -> nodes.
+    method: "table" or "direct".
 
     Returns field -> values over all axes, or over V and alpha for fields that do not depend on the creepage.
     """
@@ -153,8 +155,10 @@ def _evaluate(
 ) -> dict[str, Floats]:
     """Return fields of the contact by name.
 
-    roller: roller of the grid.  points: V, and perhaps delta (else 0) and alpha (else that of the roller), which
-    broadcast. names: names of the fields.  method: "table" or "direct".
+    roller: roller of the grid.
+    points: V, and perhaps delta (else 0) and alpha (else that of the roller), which broadcast.
+    names: names of the fields.
+    method: "table" or "direct".
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
     creep = points.get("delta", np.zeros(1))
@@ -164,7 +168,8 @@ def _evaluate(
 def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
     """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields.
 
-    table: the grid.  roller: roller of the grid, for the exact values at random points.
+    table: the grid.
+    roller: roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)
     for key, linear in (("spline_error", False), ("linear_error", True)):
@@ -181,8 +186,10 @@ def errors_at(
 ) -> dict[str, Floats]:
     """Return the absolute errors of interpolation in a grid, field -> errors.
 
-    table: the grid.  roller: roller of the grid.  points: axis -> coordinates, (n,).  linear: whether interpolation
-    is linear, else by splines.
+    table: the grid.
+    roller: roller of the grid.
+    points: axis -> coordinates, (n,).
+    linear: whether interpolation is linear, else by splines.
     """
     exact = _evaluate(roller, points, schema.VOLUME + schema.PLANE)
     found = Interpolant(table, linear)(**points)
@@ -192,7 +199,9 @@ def errors_at(
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid, axis -> coordinates, (count,); of one node always that.
 
-    table: the grid.  count: number of points.  seed: seed of the generator.
+    table: the grid.
+    count: number of points.
+    seed: seed of the generator.
     """
     random = np.random.default_rng(seed)
     points = {}

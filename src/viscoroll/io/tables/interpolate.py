@@ -92,7 +92,7 @@ class Interpolant:
         at : a jitted function of numbers; it returns ``value``, ``dV``, ``ddelta`` and ``dalpha``, clipped as values
             of this class are, with slopes 0 there, and NaN outside of the axes.  For an axis that the field does not
             depend on any number may be given.
-        spline : its first argument.
+        spline : first argument of ``at``.
 
         Raises
         ------
@@ -126,7 +126,8 @@ class Interpolant:
     ) -> tuple[dict[str, Floats], tuple[int, ...]]:
         """Return (axis -> coordinates of the splines, broadcast; their shape).
 
-        points: axis -> what a caller gave.  names: fields to interpolate.
+        points: axis -> what a caller gave.
+        names: fields to interpolate.
         """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):

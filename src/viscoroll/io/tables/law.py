@@ -101,8 +101,7 @@ def measured_errors(
 
     Returns
     -------
-    dict of str to float
-        Function -> largest relative error, dimensionless.
+    dict of str to float Function -> largest relative error, dimensionless.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):
@@ -134,7 +133,9 @@ def measured_errors(
 def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Generator) -> dict[str, float]:
     """Return the largest errors of the law of a layer against its solve with more terms, at random speeds.
 
-    table: the law.  count: number of speeds, around the rates of the layer.  random: generator.
+    table: the law.
+    count: number of speeds, around the rates of the layer.
+    random: generator.
 
     Errors of share and press follow from those of the other functions and of L = 2 kappa delta_star/mu.
     Returns function -> largest relative error, dimensionless.
@@ -160,7 +161,9 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
 def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
     """Return a function of a law from its coefficients, at arguments before its fast limit.
 
-    table: the law.  function: index in FUNCTIONS.  x: kappa |V| or v, (n,).
+    table: the law.
+    function: index in FUNCTIONS.
+    x: kappa |V| or v, (n,).
     Returns values, (n,), dimensionless.
     """
     m, e = np.frexp(x)

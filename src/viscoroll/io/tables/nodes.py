@@ -102,8 +102,10 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     """Return the nodes of an axis as a new vector.
 
-    name: name of the axis.  nodes: what a caller gave.  bounds: ``unit``, ``low``, ``above`` and ``high`` of the
-    values.  Raises ParameterError for nodes that are out of range or do not increase strictly.
+    name: name of the axis.
+    nodes: what a caller gave.
+    bounds: ``unit``, ``low``, ``above`` and ``high`` of the values.
+    Raises ParameterError for nodes that are out of range or do not increase strictly.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():

@@ -68,7 +68,8 @@ def _r_power_series(terms: int) -> list[float]:
 def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     """Return the first coefficients a_n of the asymptotic series sum a_n x^-n, from the Riccati equations.
 
-    sign : -1 for r, +1 for k.  terms : number of coefficients.
+    sign : -1 for r, +1 for k.
+    terms : number of coefficients.
     Returns [a_0, a_1, ...], ``terms`` Decimals.
     """
     a = [Decimal(1)]

@@ -212,7 +212,8 @@ def _pipelines():
 def _link(library, module):
     """Add to a module of LLVM the libraries that a library calls, directly or not, each once.
 
-    library : numba's library.  module : LLVM's module, changed.
+    library : numba's library.
+    module : LLVM's module, changed.
     """
     from numba.core.codegen import JITCodeLibrary
 

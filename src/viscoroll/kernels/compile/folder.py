@@ -63,7 +63,9 @@ def read_private(path: Path) -> bytes:
 def write_private(path: Path, content: bytes) -> None:
     """Write a file of the cache, whole or not at all, which others may only read.
 
-    path : the file.  content : what is written.  Raises OSError.
+    path : the file.
+    content : what is written.
+    Raises OSError.
     """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")

@@ -175,8 +175,8 @@ def manifold_path(start, span, rate, table):
     """Return distance and angle along the slow manifold while the slow logarithm falls by ``span``.
 
     start : slow logarithm at the beginning.
-    span : its decrease.
-    rate : its decrease in unit time.
+    span : decrease of the slow logarithm.
+    rate : decrease of the slow logarithm in unit time gamma t.
     table : vector with all tables of the map.
 
     Returns (distance, angle): the difference of the remaining path, or the integral of V where that difference

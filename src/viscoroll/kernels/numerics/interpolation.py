@@ -156,7 +156,8 @@ def to_doubles(values) -> _Floats:
 def _unit_series(degree: int, *last: int) -> list[Decimal]:
     """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with ``degree`` zeros.
 
-    degree : how many polynomials are left out.  last : coefficients of the next ones.
+    degree : how many polynomials are left out.
+    last : coefficients of the next ones.
     """
     return [Decimal(c) for c in (*[0] * degree, *last)]
 

@@ -57,7 +57,8 @@ def _residual(equation, x, data):
 def brent(equation, data, low, high, floor):
     """Find the root x of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
 
-    equation, data : arguments of :func:`_residual`.  low, high : ends of the bracket.
+    equation, data : arguments of :func:`_residual`.
+    low, high : ends of the bracket.
     floor : absolute tolerance; the root is found to floor + 4e-16 |x|.
     Returns (root, status OK or NOT_CONVERGED).
 

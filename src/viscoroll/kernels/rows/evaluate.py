@@ -85,7 +85,8 @@ class LengthAndMoment(NamedTuple):
 def locate_octave(x, e0):
     """Return the position of x in rows that span one octave each.
 
-    x : argument, >= 0.  e0 : binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
+    x : argument, >= 0.
+    e0 : binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
 
     Returns (row, t, dt/dx): number of the row; argument of its polynomials, in [0, 1] in row 0, else in [-1, 1];
     slope of that argument.

@@ -38,7 +38,8 @@ _FAST = 1e-9
 def _evaluate_asymptotic(terms, x):
     """Return (value, first derivative, second derivative) of sum a_n x^-n.
 
-    terms : coefficients a_n, of which a_0 = 1.  x : argument, large.
+    terms : coefficients a_n, of which a_0 = 1.
+    x : argument, large.
     """
     w = 1.0 / x
     value = slope = second_derivative = 0.0
@@ -53,7 +54,9 @@ def _evaluate_asymptotic(terms, x):
 def _jet(rate, z, function):
     """Return the jet of a function of x = (rate - s) z at s = 0.
 
-    rate : a_i or b_j.  z : zeta.  function : (value, first derivative, second derivative) over x.
+    rate : a_i or b_j.
+    z : zeta.
+    function : (value, first derivative, second derivative) over x.
     """
     value, slope, second_derivative = function
     return pack(value, rate * slope, -z * slope, -slope - rate * z * second_derivative)

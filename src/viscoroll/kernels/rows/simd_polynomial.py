@@ -112,7 +112,8 @@ def evaluate_pair(table, start, t):
 def _join(sums, t, square):
     """Return the value at t from the four polynomials of the coefficients modulo four.
 
-    sums : their values at t^4, one vector.  square : t^2.
+    sums : their values at t^4, one vector.
+    square : t^2.
     """
     a, b, c, d = unpack(sums)
     return fma(square, fma(t, d, c), fma(t, b, a))
@@ -155,7 +156,9 @@ def _join_secant(sums, secants, t, s):
 def evaluate_secants(table, start, t, s):
     """Return p(t) and (p(t) - p(s))/(t - s) of one function p, and the same of its slope p', without cancellation.
 
-    table : vector of coefficients.  start : where those of the function begin.  t, s : arguments, dimensionless.
+    table : vector of coefficients.
+    start : where those of the function begin.
+    t, s : arguments, dimensionless.
 
     Returns (p(t), secant of p, p'(t), secant of p').
     """

@@ -88,7 +88,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     Parameters
     ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
-    M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
+        M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
     attributes: mu, and where V has a unit R in m and the load in N/m.
     alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.
 

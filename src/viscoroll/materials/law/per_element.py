@@ -113,7 +113,7 @@ def _lazy_record(
     kernels: module with the kernel ``make_part`` and the type SOURCE of the data that both kernels read.
     select: kernel that makes the law of one element the current one.
     rows, marks: numbers and marks of the record, which the kernels write.
-    cover_rows: likewise the numbers that covers have in addition; None for half-spaces.
+    cover_rows: the numbers that covers have in addition; None for half-spaces.
     kept: arrays behind addresses in fields, which live as long as the record.
     fields: the other fields of SOURCE, numbers or arrays, of which the address is passed.
     """
