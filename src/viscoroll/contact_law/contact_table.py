@@ -51,7 +51,8 @@ def evaluate_contact(
 
     Returns
     -------
-    dict of str to array The fields in the shape of the broadcast arguments; numbers if these are numbers.
+    dict of str to array
+        The fields in the shape of the broadcast arguments; numbers if these are numbers.
 
     Raises
     ------
@@ -193,7 +194,7 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
-    """Return fields of pure rolling (delta = 0) at kappa |V| = u and kappa = mu = 1, a row each.
+    """Return fields of pure rolling (delta = 0) at kappa |V| = u and kappa = mu = 1, one row for each name, (names, n).
 
     law: rows of the material.
     u: speeds, (n,).

@@ -113,7 +113,7 @@ def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats)
     scene: parameters of the roller.
     alpha: alphas, or of many materials their indices; points of one material lie together.
     points: record of the kernel, whose fields have one value, or one for each point.
-    p, tau: results, (n,).
+    p, tau: pressure and shear stress divided by E', (n,), written.
     """
     from ..kernels.rows.stress import new_memory_weights, stress_loop
 

@@ -76,8 +76,9 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     """Return (numbers of a value, its unit); the unit is None if it has none.
 
     name: name of the argument.
-    value: as of :func:`to_unit`.  Labels of xarray and pandas stay.  All elements of a list, or of an array of objects,
-    are converted to the unit of the first.
+    value: what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.  Labels
+    of xarray and pandas stay.  All elements of a list, or of an array of objects, are converted to the unit of the
+    first.
 
     Raises
     ------

@@ -252,6 +252,7 @@ def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Conte
     expected: kind of file in words, for errors.
     remedy: what to do about a damaged file, for errors.
     Raises FileError for a file that cannot be read or whose seal does not match it, and any error of h5py.
+    Returns the :class:`Content`.
     """
     import h5py
 

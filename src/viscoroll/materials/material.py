@@ -412,6 +412,7 @@ class Material(FromPrograms):
 
         t: s, >= 0, of any shape.
         times: times in units of T_ref, (times,).
+        Returns the ratios, dimensionless, of the shape of t with a last axis of the times.
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)

@@ -50,7 +50,7 @@ class Modes:
 
 
 def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
-    """Compute both forms from that of relaxation.
+    """Compute the :class:`Modes`, both forms of a series, from its relaxation form.
 
     E: strengths, (..., modes).
     tau: times, descending, (..., modes).
@@ -66,7 +66,7 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
 
 
 def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
-    """Compute both forms from that of creep.
+    """Compute the :class:`Modes`, both forms of a series, from its creep form.
 
     J: strengths, (..., modes).
     T: times, descending, (..., modes).
@@ -144,8 +144,9 @@ def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) 
 def _improve_distance(
     distance: NDArray, origin: NDArray, side: NDArray, seen: NDArray, weight: NDArray, constant: NDArray
 ) -> Floats:
-    """Return the distances after one step of Newton's method for weight[origin] = distance side (the rest of the
-    sum).
+    """Improve the distances of zeros from their poles by one step of Newton's method.
+
+    The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.
 
     distance: distance of each zero from its origin, (..., zeros).
     origin: index of the pole that each zero is measured from, (..., zeros).
@@ -153,6 +154,7 @@ def _improve_distance(
     seen: poles relative to the origin of each zero, [..., i, j].
     weight: weights of the poles, (..., poles).
     constant: the constant of the sum, (..., 1).
+    Returns the distances, (..., zeros), in the unit of the poles.
     """
     inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)

@@ -71,6 +71,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     method: "auto", "flow" or "integrate", as of :func:`viscoroll.ensemble`.
     speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
     Raises ParameterError for method "flow" where no map applies.
+    Returns the :class:`Solution`.
     """
     scene = batch.problem.scene
     free = not batch.problem.driven and scene.like_bodies

@@ -184,6 +184,7 @@ def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
 
     low, high: times between which it does, in T_ref.
     is_before: the condition.
+    Returns (last time before, first time behind), in T_ref.
     """
     low, high = float(low), float(high)
     while low < (middle := 0.5 * (low + high)) < high:
@@ -221,7 +222,7 @@ def fit_callable(
 
 
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
-    """Return good pieces of which no two neighbours could be one.
+    """Fit a callable by pieces as long as the tolerance allows: no two neighbours could be one.
 
     sampled: the callable.
     end: last time, in T_ref.
@@ -282,6 +283,7 @@ def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
 
     before, behind: the neighbours.
     between: the piece.
+    Returns the time, in T_ref.
     """
 
     def is_above(t: float) -> bool:

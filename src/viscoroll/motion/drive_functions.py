@@ -114,6 +114,7 @@ class DriveFunctions:
 
         name: name of the speed.
         Raises ParameterError where it jumps.
+        Returns two arrays with one value for each motion that has its own speed, dimensionless.
         """
         speed, firsts, sizes = self.functions[name], [], []
         for part in self._blocks(count_motions(speed)):

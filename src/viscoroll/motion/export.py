@@ -56,7 +56,7 @@ def provenance(title: str) -> dict[str, str]:
 def _dataset(
     result: RollResult, title: str, dims: tuple[str, ...], variables: dict[str, Any], about: dict[str, Any]
 ) -> xr.Dataset:
-    """Return the dataset of a result.
+    """Return the dataset of a motion or an ensemble.
 
     result: motion or ensemble, whose rows, drive and roller are put into the dataset.
     title: title of the dataset.

@@ -98,6 +98,7 @@ def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Flo
     sign : sign of omega - V.
     V : speeds at onset, (n,).
     gamma : time scale of each motion, (n,).
+    Returns (V, delta), (n,) each, dimensionless.
     """
     _, _, mu, j = problem.parameters
     state = problem.contact_states(V, np.zeros(V.shape))

@@ -57,13 +57,14 @@ class SlowManifold(NamedTuple):
 
 
 def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
-    """Fill the tables of the slow manifold, and return it.
+    """Fill the tables of the slow manifold.
 
     problem : the scene.
     parts : views of the tables.
 
     One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and loss are
     integrals from V -> 0 upward.
+    Returns the :class:`SlowManifold`.
     """
     rows, V, delta = _integrate_manifold(problem)
     slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]

@@ -43,6 +43,7 @@ class Nodes:
         slopes : values of the integrand, (rows, nodes).
         half : half the length of each row.
         start : value at the left end.
+        Returns the integral, (rows, nodes).
         """
         whole = _applied(self._integrals, slopes) * np.asarray(half)[..., None]
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]

@@ -98,6 +98,8 @@ class Histogram(msgspec.Struct):
     def _at_rank(self, ranks: Integers) -> Floats:
         """Return the values of ranks from 0, as if those of each bin were evenly spread.
 
+        ranks: ranks among the values in ascending order, from 0, (k,).
+        Returns the values, (k,), in the unit of the quantity.
         The bin of zero is no interval of values: it holds 0 and values below 1e-310, and all of them count as 0.
         """
         below, above = edges_of(self.bins)

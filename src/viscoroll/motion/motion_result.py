@@ -268,6 +268,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
 
     problem: checked problem of one motion.
     times: output times, ascending, in the unit of its roller; the motion is integrated to its end in any case.
+    Returns the :class:`Motion`.
     """
     scale, end = problem.roller.scale, problem.end
     T, t = scale["t"], np.minimum(times / scale["t"], end)

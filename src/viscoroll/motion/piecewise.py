@@ -63,6 +63,7 @@ def check_function(
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is neither a number, a schedule nor a callable; values that are not finite or below
     ``low``; a callable that polynomials do not follow.
+    Returns the function as :class:`TimeFunction`: a number, an array, a schedule, or a fit as :class:`Piecewise`.
     """
     if isinstance(function, Feedback):
         function = function.value
@@ -142,6 +143,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     name: name of the argument, for the refusal.
     speed: prescribed speed, dimensionless.
     Raises ParameterError where the speed jumps.
+    Returns :class:`Piecewise`, dimensionless.
     """
     lengths = speed.ends - speed.starts
     first, last = values_at_start(speed.terms), speed.terms.sum(axis=-1)

@@ -199,6 +199,7 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
     histograms: one for each output time, or one.
     levels: levels of the quantiles, in [0, 1].
     si: whether the units are those of a cylinder.
+    Returns name of the variable -> variable of xarray.
     """
     about, times = QUANTITIES[name].about(si), ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))

@@ -87,6 +87,7 @@ def _numbers_of_member(text: str) -> Any:
     """Return a float, or the array of a range; raise ArgumentTypeError.
 
     text: a member of the list of :func:`numbers`.
+    Returns a float, or an array (n,).
     """
     try:
         low, *rest = text.split(":")

@@ -107,7 +107,7 @@ def fit(arguments: Namespace) -> int:
 
 
 def _columns(texts: list[str] | None) -> dict[str, str]:
-    """Return quantity -> heading of the options --column; raise ParameterError.
+    """Return the options --column as a dict, quantity -> heading; raise ParameterError for another form.
 
     texts: the options, each "NAME=HEADING"; None without.
     """

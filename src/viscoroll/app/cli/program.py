@@ -72,9 +72,9 @@ class _StoreOnce(argparse.Action):
 
 
 def _converted(kind: type, words: str, text: str) -> Any:
-    """Return the value of an argument.
+    """Convert the text of an argument to a value; raises ArgumentTypeError where that fails.
 
-    kind: its type.
+    kind: type of the value.
     words: the type in words, for the error.
     text: the argument.
     """

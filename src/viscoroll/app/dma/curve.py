@@ -149,7 +149,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     """Check columns and sort them by the first.
 
     kind : :class:`Curve` or :class:`Relaxation`.
-    columns : its fields by the names under which they were given, in their order.
+    columns : fields of the curve by the names under which the caller gave them, in the order of ``kind``.
     fewest : least number of points.
     Returns the curve.
 
@@ -181,7 +181,7 @@ def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int 
 
 
 def thinned(data: _Data) -> _Data:
-    """Return the means of logarithmic bins where there are more than :data:`MOST_POINTS`, else the data as they are.
+    """Average a curve of more than :data:`MOST_POINTS` points in logarithmic bins; return a shorter curve as it is.
 
     data : a curve.
     In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of

@@ -78,8 +78,8 @@ def master_curve(
 
     Returns
     -------
-    tuple The master curve, a :class:`Curve` at the reference temperature; the :class:`Shifts` of the
-        temperatures.
+    tuple
+        The master curve, a :class:`Curve` at the reference temperature; the :class:`Shifts` of the temperatures.
 
     Raises
     ------

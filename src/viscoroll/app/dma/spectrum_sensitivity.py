@@ -71,6 +71,7 @@ def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats
 
     prony : series of the fit.
     slow, fast : lowest and highest frequency of the data, times T_ref.
+    Returns kappa V and kappa M, (n,) each, dimensionless.
     """
     low, high = np.log10(slow / np.sqrt(prony.alpha)), np.log10(fast)
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))

@@ -101,7 +101,7 @@ class Meaning(NamedTuple):
 def meanings(heading: str, row: str = "") -> list[Meaning]:
     """Return all quantities that a heading may name, the likeliest first; none where a word is not in the vocabulary.
 
-    heading : as the file has it, with its unit or without.
+    heading : text of the heading, with its unit or without.
     row : the cell of a row of units for this column, "" without.
     """
     found = [(_quantity(name), unit, log) for name, unit, log in readings(heading, row)]

@@ -187,6 +187,7 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     problem : the least squares.
     u : coordinates of the minimum.
     Ridges of a valley lie across that direction.
+    Returns two vectors of coordinates, (unknowns,).
     """
     if np.abs(u - problem.start).max() < _NEAR:
         return []

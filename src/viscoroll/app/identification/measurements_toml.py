@@ -40,7 +40,8 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 
     Returns
     -------
-    dict Arguments of :func:`.identify.identify` by name.
+    dict
+        Arguments of :func:`.identify.identify` by name.
 
     Raises
     ------

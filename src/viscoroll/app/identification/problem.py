@@ -287,6 +287,7 @@ class Problem:
         """Return statistics of the residuals of each column, by the words "quantity of record".
 
         u : coordinates of the unknowns.
+        Returns "quantity of record" -> :class:`Noise`.
         """
         found, r = {}, self.residuals(u)
         for column in self.columns:

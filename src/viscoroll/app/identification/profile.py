@@ -116,6 +116,7 @@ class Likelihood:
         powers : powers of the coordinates, shape (unknowns,).
         delta_chi2 : the bound.
         Beyond the ends of the interval the search goes on from other minima, the start, and the ends of other unknowns.
+        Returns the :class:`Profile`.
         """
         return self._profiles(delta_chi2, *powers.tolist())
 
@@ -124,6 +125,7 @@ class Likelihood:
 
         delta_chi2 : bound of the rise of chi2 above the best.
         Where a side is open, all are computed again with the ends of the others as further starts.
+        Returns index of the unknown -> :class:`Profile`.
         """
         found = {i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active}
         if self.ends or not any(None in profile.ends for profile in found.values()):
@@ -138,6 +140,7 @@ class Likelihood:
         """Return the indices of unknowns with a wide interval, and of those that are correlated with them.
 
         delta_chi2 : bound of the rise of chi2 above the best.
+        Returns the indices, ascending.
         """
         wide = []
         for i, profile in self.axes(delta_chi2).items():

@@ -141,7 +141,7 @@ def _phases(fit: Any) -> Iterator[str]:
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
-    """Return a ``fit`` as a dataset.
+    """Return an identification, ``fit``, as a dataset.
 
     Values are over ``unknown``; each record's coordinates, data, fit and sigma over an axis of its own.
     """

@@ -82,7 +82,7 @@ class Unknown(NamedTuple):
 def unknowns_of(
     cylinder: Cylinder, requested: Mapping[str, Any], records: Mapping[str, Record], priors: Mapping[str, Any]
 ) -> list[Unknown]:
-    """Return the unknowns that are requested, and those that records leave open.
+    """Return the unknowns that the caller requests, and those that records leave open, as a list of :class:`Unknown`.
 
     cylinder : the cylinder from whose inputs the search starts.
     requested : name -> range.
@@ -192,7 +192,7 @@ def _inputs(body: Material) -> dict[str, float]:
 
 
 def _with_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
-    """Return a material with other values.
+    """Return a material in which unknowns have other values.
 
     body : the material.
     prefix : prefix of the names of its unknowns, "" or "base_".

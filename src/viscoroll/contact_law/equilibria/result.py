@@ -226,6 +226,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     reasons : data of the loads without equilibrium.
     scale : units of the roller, which the result has.
     labels : labels of the arguments, or None.
+    Returns the :class:`Steady`, padded with NaN where loads have fewer equilibria than others.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

@@ -58,7 +58,7 @@ class _ScanProblem(NamedTuple):
     """One load in the frame of the motion.
 
     law : rows of the material.  load_rows : force and torque as rows of (value at rest, gain on V, gain on omega).
-    kappa, mu : parameters.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
     """
 
     law: LawTable

@@ -70,6 +70,7 @@ class States(NamedTuple):
         load : index of the load of each state.
         sign : sign of V.
         answers : rows of :class:`Field` with slopes, in a frame where V > 0.
+        Returns the :class:`States`.
         """
         rows = answers.copy()
         rows[[Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] *= sign
@@ -149,10 +150,10 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
 
 
 def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
-    """Fields of the contact at V > 0 and delta, one row for each of ``names``.
+    """Return fields of the contact at V > 0 and delta, one row for each of ``names``, dimensionless.
 
     law : rows of the material.
-    kappa, mu : parameters.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
     V : speeds, (n,).
     delta : creepage.
     """
@@ -163,8 +164,9 @@ def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
     """Return delta_0 at V > 0, the creepage at which Q = 0; 0.0 of half-spaces.
 
     law : rows of the material.
-    kappa, mu : parameters.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
     V : speeds, (n,).
+    Returns the creepage, (n,), dimensionless.
     """
     return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
 

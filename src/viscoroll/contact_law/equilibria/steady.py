@@ -137,6 +137,7 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     law : rows of the material.
     loads : the loads.
     Raises ParameterError for loads outside the range of the nodes.
+    Returns the :class:`States`, unsorted.
     """
     with np.errstate(over="ignore"):  # what is infinite is refused
         gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)

@@ -183,7 +183,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
     """Return (title of a panel, index -> values over the inputs) at the last time with indices.
 
-    indices: as of :func:`sobol_bars`.
+    indices: Sobol indices of a run, a dataset.
     name: name of the quantity.
     """
     values = {key: indices[f"{name}_{key}"].values for index in _SOBOL for key in (index, f"{index}_conf")}

@@ -56,7 +56,7 @@ def new_panels(
     count: number of axes.
     per_row: largest number in a row.
     size: size of each, inches.
-    options: of ``Figure.subplots``.
+    options: keyword arguments of ``Figure.subplots``.
     """
     columns = min(per_row, count)
     rows = -(-count // columns)

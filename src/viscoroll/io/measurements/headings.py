@@ -56,7 +56,7 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     """Return all ways to read a heading, the likeliest first: as a name alone, then with a unit in brackets or at
     its end.
 
-    heading : as the file has it, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)".
+    heading : text of the heading, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)".
     row : the cell of a row of units for this column, "" without; a heading without a unit has this one.
     """
     log = False

@@ -17,8 +17,10 @@ def named_table(
 ) -> Table:
     """Read a table whose headings are the line that has one of the given names, with a unit or without.
 
-    path, decimal, encoding : as of :func:`read_table`.
+    path : path of the file.
     names : names of columns.
+    decimal : decimal mark, "." or ","; None: the one that the file has.
+    encoding : name of the encoding; None: by the first bytes of the file.
     Returns the table; raises the errors of :func:`read_table`.
     """
     return read_table(

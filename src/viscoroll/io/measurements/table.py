@@ -89,7 +89,7 @@ def read_table(
     path : a text file in UTF-8, UTF-16 or Latin-1.
     is_heading_line : a function that returns whether the cells of a line are headings.
     decimal : "." or ","; default: the mark that is there, both are refused.
-    encoding : as Python calls it; default: by the first bytes.
+    encoding : name of the encoding, as Python calls it; default: by the first bytes.
 
     Returns
     -------

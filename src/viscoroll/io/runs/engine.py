@@ -190,7 +190,7 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
-    """Return a dask client; of "local" with workers of its own.
+    """Return a client of dask: of a running scheduler, or of workers that are started on this machine.
 
     distributed: the module.
     cluster: "local" or an address.

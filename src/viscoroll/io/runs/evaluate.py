@@ -103,6 +103,7 @@ def _fraction_outside(run: Run) -> float:
     """Return the fraction of motions whose transit frequency at the start is outside a measured band.
 
     run: a run in SI units, whose first motions are examined.  A start at rest is inside: M is 0 there.
+    Returns the fraction, 0 to 1.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))
     roller: Any = roller_of(run.path, content)

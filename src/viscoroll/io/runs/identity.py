@@ -37,7 +37,10 @@ def about(run: Run) -> dict[str, Any]:
 
 
 def _software() -> dict[str, str]:
-    """Return the versions of the packages that the bits of a result depend on, and a digest of the kernels."""
+    """Return the versions of the packages that the bits of a result depend on, and a digest of the kernels.
+
+    Returns package -> version, and "kernels" -> digest.
+    """
     import numba
     import scipy
 
@@ -82,7 +85,7 @@ def _no_extension(before: Run, run: Run) -> str:
     """Return why a store cannot be extended, and what to change in the run file; "" if it can.
 
     before: the run of the store.
-    run: the same with another ``n``.
+    run: the run that differs from it in ``n``.
     """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:

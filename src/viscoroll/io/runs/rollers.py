@@ -113,7 +113,7 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
 
 
 def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Solid]:
-    """Return (the material of the first motion, the material of all motions, which differ if it is a Solid).
+    """Return the material of the first motion and that of all motions, which is a Solid if motions differ.
 
     path: path of the run file.
     name: "material" or "base".

@@ -214,7 +214,7 @@ class Run:
         return -(-self.settings.n // self.block)
 
     def edges(self, block: int) -> tuple[int, int]:
-        """Return the first motion of a block and the first of the next.
+        """Return the index of the first motion of a block, and of the first motion of the next block.
 
         Examples
         --------

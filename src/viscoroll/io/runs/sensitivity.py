@@ -193,11 +193,12 @@ def _outcomes(
 
 
 def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
-    """Return (indices and half-widths, in rows as ``_INDICES``, over inputs; "") or (NaN, why there are none).
+    """Estimate the Sobol indices of one quantity at one time, with their bootstrap intervals.
 
     values: outcomes (A, B and mixed points, base point).
     noise: part of a value that rtol leaves open.
     seed: seed of the bootstrap.
+    Returns (indices and half-widths, in rows as ``_INDICES``, over inputs; "" or, with NaN, why there are no indices).
     """
     from scipy.special import ndtri
 

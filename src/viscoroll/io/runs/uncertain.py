@@ -69,10 +69,11 @@ class _Reader:
         return {key: self.part(value, name, key, (key,)) if key in keys else value for key, value in section.items()}
 
     def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
-        """Return a value, or the :class:`Input` in its place; of a list or table, all its members so.
+        """Return a value of the file, or an :class:`Input` if it is uncertain; of a list or table, each member in this
+        way.
 
-        value: what stands at a key.
-        section, key: where it stands; of a member of a table "section.key" and its key.
+        value: value at a key of the file.
+        section, key: section and key of the value; of a member of a table "section.key" and its key.
         words: keys from the section down to it, and positions in lists, of which its name is made.
         """
         if isinstance(value, list):

@@ -197,11 +197,12 @@ def errors_at(
 
 
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
-    """Return random points in random cells of a grid, axis -> coordinates, (count,); of one node always that.
+    """Return random points in random cells of a grid; along an axis of one node they all have its coordinate.
 
     table: the grid.
     count: number of points.
     seed: seed of the generator.
+    Returns axis -> coordinates, (count,), in the units of the grid.
     """
     random = np.random.default_rng(seed)
     points = {}

@@ -101,7 +101,8 @@ def measured_errors(
 
     Returns
     -------
-    dict of str to float Function -> largest relative error, dimensionless.
+    dict of str to float
+        Function -> largest relative error, dimensionless.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):

@@ -106,6 +106,7 @@ def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     nodes: what a caller gave.
     bounds: ``unit``, ``low``, ``above`` and ``high`` of the values.
     Raises ParameterError for nodes that are out of range or do not increase strictly.
+    Returns the nodes, (n,), strictly increasing, in the unit of ``bounds``.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():

@@ -33,7 +33,7 @@ def _initial_u(size, slow, turns):
     law.
 
     size : |delta|/delta_star of the start, negative beyond delta = 0.
-    slow : the same on the slow manifold at the speed of the start, with the same sign convention.
+    slow : |delta|/delta_star on the slow manifold at the speed of the start, with the same sign.
     turns : whether motions of this family pass delta = 0 (then the layer has a split there).
 
     Returns u, dimensionless.  Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction

@@ -137,7 +137,7 @@ def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
     """Return the powers of t in shifted Chebyshev polynomials T_m(scale t - shift), m < n, computed in doubles.
 
     n : number of polynomials.
-    shift, scale : of the argument, dimensionless.
+    shift, scale : shift and scale of the argument, dimensionless.
     Returns (n, n), [m, k]: the coefficient of t^k in T_m(scale t - shift).
     """
     matrix = np.zeros((n, n))

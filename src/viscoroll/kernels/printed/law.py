@@ -34,7 +34,7 @@ _EPS = 2.0**-52
 
 @kernel
 def _residual(equation, x, data):
-    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it.
+    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it; its root is sought.
 
     equation : _EQ_6 or _EQ_10; numba cannot cache a caller that passes a function.
     x : lam in Eq. (6), beta in Eq. (10).

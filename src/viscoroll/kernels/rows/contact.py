@@ -164,13 +164,14 @@ def signed_traction(u, L, free_creep, state, law):
 
 @inline_kernel
 def Q_slopes(u, L, dL, free_creep, state, law):
-    """Return (dQ/dV, dQ/ddelta, dQ/domega); the first at fixed delta or omega, whichever ``state`` has.
+    """Return the slopes of the traction Q.
 
     u : kappa |V|.
     L, dL : 2 kappa delta_star/mu and its slope with respect to u.
     free_creep : 2 kappa delta_0, from the creepage of free rolling.
     state : :class:`State`: V, kappa, mu, and delta or omega.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns (dQ/dV, dQ/ddelta, dQ/domega), dimensionless; the first at fixed delta or omega, whichever ``state`` has.
     """
     _, delta, D = _split_creep(L, free_creep, state, law)
     if D == np.inf:

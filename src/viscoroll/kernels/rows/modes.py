@@ -69,7 +69,7 @@ def _write_ratio_jets(z, series, work):
 
     z : zeta, half transit time of the contact, > 0, dimensionless.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace`, written.
+    work : :class:`Workspace` of the series, written.
     """
     for i in range(series.a.size):
         a = series.a[i]

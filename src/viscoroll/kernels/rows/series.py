@@ -116,7 +116,7 @@ def evaluate_ratios(places, series, work):
 
     places : vector of four z > 0.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace`, written.
+    work : :class:`Workspace` of the series, written.
     """
     z = unpack(places)
     for at in range(LANES * series.a.size):
@@ -213,7 +213,7 @@ def solve_modes(jets, series, work):
 
     jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace` with the ratios 1/r and k, written.
+    work : :class:`Workspace` of the series with the ratios 1/r and k, written.
 
     The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor:
     the second pass leaves one with both, and the third none.
@@ -261,7 +261,7 @@ def _split_moment(jets, lam2, series, work):
     jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     lam2 : lam^2, square of the contact length divided by l0, vector of four.
     series : :class:`Series`: rates and strengths of the modes, with weights of the half-space.
-    work : its :class:`Workspace` with X in place of y.
+    work : :class:`Workspace` of the series with X in place of y.
 
     Returns (part of the half-space, part of the cylinder), vectors of four.
     """
@@ -291,7 +291,7 @@ def evaluate_functions(jets, z, series, work):
     jets : whether vectors are jets.
     z : vector of four z, or the jet of one.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace` with the ratios at z, written.
+    work : :class:`Workspace` of the series with the ratios at z, written.
 
     Returns (g, h, sum X_i i2_i), vectors of four.  The moments of the two bodies are scaled so that their sum is m:
     they differ from it by roundings of alpha times the size of one.

@@ -40,7 +40,7 @@ _COVER_NUMBERS = ("e0", "alpha", "T_ref")
 
 
 def law_table_of(material: Any, base: Any = None) -> LawTable:
-    """Return the law of a material as users give it; raises ParameterError.
+    """Return the :class:`LawTable` of any kind of material that a user may give; raises ParameterError.
 
     material: Prony, Bodies, alpha, Material, Pair, or a LawTable, which is returned.
     base: Material of the half-space, only beside a Material; default: that of the cylinder.

@@ -127,6 +127,7 @@ def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover:
     alpha: instantaneous divided by long-time stiffness.
     fast_limit: W and C of the fast limit, of both bodies, half-space and cylinder, shape (3, 2).
     cover: rows of a cover of finite thickness; None for half-spaces.
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.rows.record import E0, ROW_COUNT, ROW_SIZE, Law
 

@@ -58,7 +58,7 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
 
     They then read rows that are close in memory: states in random order take half as long again.
 
-    alpha, kappa, V: of the states, dimensionless, shape (n,), or one for all.
+    alpha, kappa, V: parameters and speed of the states, dimensionless, shape (n,), or one for all.
     Returns indices (n,); none for a single state.
     """
     octaves = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
@@ -116,6 +116,7 @@ def _lazy_record(
     cover_rows: the numbers that covers have in addition; None for half-spaces.
     kept: arrays behind addresses in fields, which live as long as the record.
     fields: the other fields of SOURCE, numbers or arrays, of which the address is passed.
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.compile.intrinsics import function_address
     from ...kernels.rows.record import Law
