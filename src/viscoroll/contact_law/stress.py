@@ -97,7 +97,7 @@ def stress(
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
         points = Points(mirrored, *(read(start, stop) for read in readers))
-        _fill(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
+        _compute_stresses(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
         tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, p.size, _BLOCK)
@@ -107,7 +107,7 @@ def stress(
     return Values(found, given, si=scale.si, title="Stresses", labels=labels)
 
 
-def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
+def _compute_stresses(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """Compute the stresses at points, material by material.
 
     scene: parameters of the roller.

@@ -257,7 +257,7 @@ def _gains(drive: Drive) -> Floats:
 def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: threshold, dimensionless; 0 for none.  Where nothing drives, speeds below it stay below.
+    rest: rest threshold, the speed below which the motion ends, dimensionless; 0 for none.
     functions: functions of the drive, or None.
     """
     if rest > 0.0 and functions is not None and functions.acts_at_end:

@@ -70,11 +70,11 @@ def fill_layers(
     slow_log_at_V = slow.slow_log[first - layout.LOW :][: layout.OCTAVES]
     above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
-    excess = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
+    excess = [_pad(_COARSE.powers(value)) for value in (x, angle, lost)]
     asymptote[:] = np.concatenate(
         [
-            interleave_pairs(slow_log_at_V + _padded(above), rates),
-            _padded(split_powers),
+            interleave_pairs(slow_log_at_V + _pad(above), rates),
+            _pad(split_powers),
             interleave_pairs(*excess[:2]),
             excess[2],
         ],
@@ -164,7 +164,7 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
     return powers
 
 
-def _padded(powers: Floats) -> Floats:
+def _pad(powers: Floats) -> Floats:
     """Pad coefficients with zeros to the number of powers of functions of one variable.
 
     powers : coefficients, (rows, powers).

@@ -35,7 +35,7 @@ class Nodes:
         values : at the nodes, along the last axis.
         Chebyshev coefficients are computed between, which limits the rounding errors.
         """
-        return _applied(self._powers, _applied(self._chebyshev, values))
+        return _multiply(self._powers, _multiply(self._chebyshev, values))
 
     def integrals(self, slopes: Floats, half: Any, start: Any = 0.0) -> Floats:
         """Return the integral at the nodes, from a value at the left end of the first row.
@@ -45,7 +45,7 @@ class Nodes:
         start : value at the left end.
         Returns the integral, (rows, nodes).
         """
-        whole = _applied(self._integrals, slopes) * np.asarray(half)[..., None]
+        whole = _multiply(self._integrals, slopes) * np.asarray(half)[..., None]
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
         return whole[..., :-1] + (start + rises)[..., None]
 
@@ -55,10 +55,10 @@ class Nodes:
         slopes : values of the integrand, (..., rows, nodes).
         half : half the length of each row.
         """
-        return (_applied(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
+        return (_multiply(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
 
 
-def _applied(matrix: Floats, values: Floats) -> Floats:
+def _multiply(matrix: Floats, values: Floats) -> Floats:
     """Apply a matrix along the last axis, without BLAS, whose last bits differ between machines.
 
     matrix : (m, n).

@@ -43,7 +43,7 @@ class Parser(argparse.ArgumentParser):
         # argparse takes a value like -1:1:5 or -1e-3 for an option unless it matches this
         self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
         for kind, words in ((float, "a number"), (int, "a whole number")):
-            self.register("type", kind, partial(_converted, kind, words))
+            self.register("type", kind, partial(_convert_argument, kind, words))
         self.register("action", None, _StoreOnce)
 
     def error(self, message: str) -> NoReturn:
@@ -71,7 +71,7 @@ class _StoreOnce(argparse.Action):
         setattr(namespace, self.dest, values)
 
 
-def _converted(kind: type, words: str, text: str) -> Any:
+def _convert_argument(kind: type, words: str, text: str) -> Any:
     """Convert the text of an argument to a value; raises ArgumentTypeError where that fails.
 
     kind: type of the value.

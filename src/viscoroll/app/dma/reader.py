@@ -89,12 +89,14 @@ def read_dma(
     notes = [f"{table.parts} tables"] * (table.parts > 1)
     # as rheometers write; instruments of tension name E
     beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
-    mode, pair, columns_of_quantity = _choose(table, found, others)
+    mode, pair, columns_of_quantity = _choose_columns(table, found, others)
     if not mode:
         mode = "shear" if beside else "tension"
         reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
         notes.append(f"{mode} is assumed, since {reason}")
-    numbers = {quantity: _agreeing(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()}
+    numbers = {
+        quantity: _agreeing_numbers(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()
+    }
     temperature = numbers.get("temperature")
     if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
         temperature = None
@@ -168,7 +170,7 @@ def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
     return len(quantities) > 1 or not set(named.values()).isdisjoint(filter(None, cells))
 
 
-def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
+def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
     """Choose the columns that are read.
 
     table : the table that has the columns; the message lists its headings.
@@ -202,7 +204,7 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
     raise FileError(table.path, f"no column was found for {missing}{problems}; headings: {headings}; give columns=")
 
 
-def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
+def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
     """Return the numbers of the first of several columns of one quantity; the others must agree with it.
 
     table : the table that has the columns.

@@ -50,7 +50,7 @@ def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
     return Spectrum(E, prony.E * E, prony.tau * T_ref)
 
 
-def _relative(data: Data, constant: float, modes: Floats) -> Floats:
+def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
     """Return the matrix of the least squares: responses of a constant and of modes, divided by the measured moduli.
 
     data : the curve, with ``rows`` moduli at n points.
@@ -72,7 +72,7 @@ def _residuals(data: Data, values: Floats) -> Floats:
     Returns shape (rows n,), dimensionless.
     """
     count = values.size // 2
-    return _relative(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
+    return _relative_columns(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
 
 
 def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
@@ -95,7 +95,7 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
     """
     from scipy.optimize import nnls
 
-    columns, floor = _relative(data, 1.0, data.responses(tau)), _floor(data)
+    columns, floor = _relative_columns(data, 1.0, data.responses(tau)), _least_modulus(data)
     size = np.sqrt((columns * columns).sum(axis=0))
     found, _ = nnls(columns / size, 1.0 - floor * columns[:, 0], maxiter=100 * size.size)
     order = np.argsort(-tau, kind="stable")
@@ -106,7 +106,7 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
 def has_plateau(data: Data, spectrum: Spectrum) -> bool:
     """Return whether the least squares give a long-time modulus above the least that is allowed."""
-    return spectrum.E > 1.0001 * _floor(data)
+    return spectrum.E > 1.0001 * _least_modulus(data)
 
 
 def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
@@ -123,7 +123,7 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
         return spectrum
     start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
     low, high = start - _RANGE, start + _RANGE
-    low[0], high[0] = np.log(_floor(data)), np.inf
+    low[0], high[0] = np.log(_least_modulus(data)), np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
     return on_times(data, np.exp(_minimize(data, start, low, high, calls)[1 + count :]))
 
@@ -197,9 +197,9 @@ def _slopes(logs: Floats, data: Data) -> Floats:
     strength, tau = values[1 : 1 + count], values[1 + count :]
     responses = data.responses(tau)
     by_times = data.slopes(tau, responses) * strength
-    return _relative(data, values[0], np.concatenate([responses * strength, by_times], axis=2))
+    return _relative_columns(data, values[0], np.concatenate([responses * strength, by_times], axis=2))
 
 
-def _floor(data: Data) -> float:
+def _least_modulus(data: Data) -> float:
     """Return the least long-time modulus that is allowed, :data:`FLOOR` of the lowest modulus of the first row."""
     return FLOOR * float(data.values[0].min())

@@ -106,10 +106,10 @@ def unknowns_of(
                 ranges.setdefault(f"{name}:{record_name}", span)
     check_names("unknown", ranges, starts, "an input")
     check_names("prior", priors, ranges, "an unknown")
-    return [_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
+    return [_make_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
 
 
-def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
+def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     """Check range and prior of an unknown, and return it as :class:`Unknown`.
 
     name, start : name and start value of the unknown.
@@ -117,7 +117,7 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     prior : value and standard deviation known beforehand, or None.
     Raises ParameterError for a range or a prior that is none.
     """
-    low, high = _pair("unknown", name, span)
+    low, high = _check_pair("unknown", name, span)
     if not low <= start <= high:
         raise ParameterError(
             f"unknown {name}", f"({low:g}, {high:g})", f"a range that contains the initial guess, {start:.6g}"
@@ -126,12 +126,12 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     unknown = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
     if prior is None:
         return unknown
-    mean, sd = _pair("prior", name, prior)
+    mean, sd = _check_pair("prior", name, prior)
     sd = check_number(f"standard deviation of prior {name}", sd, above=0.0)
     return unknown._replace(mean=float(unknown.to_u(mean)), sd=sd / (unknown.unit or 1.0))
 
 
-def _pair(argument: str, name: str, numbers: Any) -> list[float]:
+def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
     """Return two numbers, each a value that the unknown may have.
 
     argument : "unknown" or "prior", of :func:`.identify.identify`.
@@ -167,7 +167,7 @@ def cylinder_of(
     changes: dict[str, Any] = {name: values[name] for name in _OF_CYLINDER if name in values}
     changes |= {} if record is None else record.overrides
     for section, body in _bodies(cylinder).items():
-        changed = _with_values(body, _PREFIX[section], values)
+        changed = _replace_values(body, _PREFIX[section], values)
         if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
             if section not in shifts:
                 allowed = f"given with a shift of the {section}, as vr.WLF(T0=20.0)"
@@ -191,7 +191,7 @@ def _inputs(body: Material) -> dict[str, float]:
     return {name: getattr(body, name) for name in _OF_MATERIAL} | modes
 
 
-def _with_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
+def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
     """Return a material in which unknowns have other values.
 
     body : the material.

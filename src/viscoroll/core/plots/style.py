@@ -72,8 +72,8 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
 
     axes: axes of matplotlib.
     x, y: points of the curve.
-    band: lowest and highest measured |x|, None without.
-    line: style.
+    band: lowest and highest measured |x|; None: the curve is solid everywhere.
+    line: keyword arguments of ``Axes.plot``, the style of the line.
     Returns the lines of matplotlib.
     """
     if band is None:

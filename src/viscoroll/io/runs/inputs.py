@@ -153,20 +153,20 @@ class Inputs:
 
         values: name of an input -> number or (n,).
         """
-        return _filled(self.content, values)
+        return _fill_in(self.content, values)
 
 
-def _filled(part: Any, values: Mapping[str, Any]) -> Any:
+def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
     """Return a part of the content with values in place of its inputs; in a list "same" repeats the number before."""
     if isinstance(part, Input):
         return values[part.name]
     if isinstance(part, dict):
-        return {key: _filled(member, values) for key, member in part.items()}
+        return {key: _fill_in(member, values) for key, member in part.items()}
     if not isinstance(part, list):
         return part
     numbers: list[Any] = []
     for member in part:
-        numbers.append(numbers[-1] if numbers and member == SAME else _filled(member, values))
+        numbers.append(numbers[-1] if numbers and member == SAME else _fill_in(member, values))
     return numbers
 
 

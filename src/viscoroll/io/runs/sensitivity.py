@@ -91,7 +91,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 
     from .identity import about
 
-    names = _independent(run.inputs)
+    names = _independent_inputs(run.inputs)
     progress = check_bool("progress", progress)
     base = (
         1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
@@ -133,7 +133,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     )  # fmt: skip
 
 
-def _independent(inputs: Inputs) -> tuple[str, ...]:
+def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
     """Return the names of the uncertain inputs; raise ParameterError if there are none or they are not independent."""
     if not inputs.uncertain:
         raise ParameterError("run file", "no uncertain input", "one with a distribution")

@@ -105,7 +105,8 @@ def _rounding_scale_of_V(step, work):
 def error_scales(step, regime, work):
     """Return (scale of V, scale of the second unknown) by which errors of a step are divided, dimensionless.
 
-    Speeds are measured by the largest one of the step, V in full slip by itself; d by its weight.
+    An error of a speed is divided by the largest speed of the step, that of V in full slip by the largest V; an error
+    of d is multiplied by its weight.
 
     step: Step, the trial step.
     regime: Regime, that of the step.
