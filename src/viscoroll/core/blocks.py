@@ -154,10 +154,12 @@ def run_blocks(
 def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int) -> None:
     """Run all blocks on a pool, and await them in order.
 
+    After an error no further block starts.
+
     pool: threads.
     work: function of (start, stop).
     edges: (start, stop) of each block.
-    most: blocks that wait at the same time.  After an error no further block starts.
+    most: blocks that wait at the same time.
     """
     waiting: deque[Future[None]] = deque()
     try:

@@ -160,9 +160,10 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """Return the function that gives the kernel's law of some motions.
 
+    The function takes alphas and indices of motions, and returns (law; whether bodies differ).
+
     scene: parameters of the motions.
     unsteady: whether the added mass acts; then several materials are requested for one motion at a time.
-    The function takes alphas and indices of motions, and returns (law; whether bodies differ).
     """
     several: Any = scene.material_array
     if several is None and not np.ndim(scene.alpha):

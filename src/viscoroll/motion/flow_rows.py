@@ -32,8 +32,9 @@ class Nodes:
     def powers(self, values: Floats) -> Floats:
         """Return the coefficients of the powers of t in [-1, 1] of the polynomials through values at the nodes.
 
-        values : at the nodes, along the last axis.
         Chebyshev coefficients are computed between, which limits the rounding errors.
+
+        values : at the nodes, along the last axis.
         """
         return _multiply(self._powers, _multiply(self._chebyshev, values))
 

@@ -105,8 +105,9 @@ def _numbers_of_member(text: str) -> Any:
 def roller_of_argument(text: str) -> Any:
     """Return the scene or the cylinder of a TOML file, or the preset of a name.
 
-    text: path of the file, or the name. Raises ParameterError for an unknown preset; FileError for a file that
-    cannot be read, or whose name does not end in .toml.
+    text: path of the file, or the name.
+    Raises ParameterError for an unknown preset; FileError for a file that cannot be read, or whose name does not end in
+    .toml.
     """
     from ...io.config import preset, read_roller
 

@@ -61,7 +61,8 @@ def _figure_of_netcdf(path: str) -> Any:
 def _figure_of_toml(path: str) -> Any:
     """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material.
 
-    path: path of a TOML file.  Raises FileError.
+    path: path of a TOML file.
+    Raises FileError.
     """
     import numpy as np
 

@@ -59,10 +59,12 @@ class _StoreOnce(argparse.Action):
         """Store the value of an option or a positional argument; raise ArgumentError where the option had one
         before.
 
+        The signature is that of ``argparse.Action``.
+
         parser: not used.
         namespace: values of all arguments; its ``stored`` is the set of those that have a value.
         values: the value.
-        name: name of the option; None of a positional argument. The signature is that of ``argparse.Action``.
+        name: name of the option; None of a positional argument.
         """
         stored = vars(namespace).setdefault("stored", set())
         if name is not None and self.dest in stored:
@@ -164,7 +166,9 @@ def _run(argv: Sequence[str]) -> int:
 def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """Print a warning in one line.
 
-    message: the warning.  Other arguments are not used: the signature is that of ``warnings.showwarning``.
+    Other arguments are not used: the signature is that of ``warnings.showwarning``.
+
+    message: the warning.
     """
     _print_line(f"warning: {message}")
 
@@ -193,7 +197,8 @@ def _print_line(message: object) -> None:
 def _discard(stream: TextIO) -> None:
     """Discard the buffer and all further text of a stream that cannot be written.
 
-    stream: standard output or standard error.
     The interpreter would try to write it at its end, and exit with its own code.
+
+    stream: standard output or standard error.
     """
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -104,9 +104,11 @@ def roll(arguments: Namespace) -> None:
 def steady(arguments: Namespace) -> None:
     """Print or write the equilibria of rolling under each load, and why a load has none.
 
+    A load without an equilibrium is a warning where the output is no text.
+
     arguments: parsed command line with scene, a file or a preset; force, torque, slope and V, numbers, vectors or None;
-    output and format, as of :func:`.output.deliver`. Raises ParameterError and FileError.  A load without an
-    equilibrium is a warning where the output is no text.
+    output and format, as of :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 

@@ -81,7 +81,8 @@ def build(arguments: Namespace) -> None:
 def info(arguments: Namespace) -> None:
     """Print what a table file contains.
 
-    arguments: parsed command line with file, path of a law or a grid.  Raises FileError.
+    arguments: parsed command line with file, path of a law or a grid.
+    Raises FileError.
     """
     print(vr.tables.info(arguments.file))
 
@@ -132,9 +133,11 @@ def export(arguments: Namespace) -> None:
 def fmu(arguments: Namespace) -> None:
     """Build an FMU of a cylinder or a law.
 
+    A dimensionless scene gives its law alone, with a warning.
+
     arguments: parsed command line with file, of a cylinder, a material or a law; model, "Roller" or "ContactElement";
-    fmi, 2 or 3; output, path of the FMU. Raises ParameterError, FileError and MissingDependencyError.  A dimensionless
-    scene gives its law alone, with a warning.
+    fmi, 2 or 3; output, path of the FMU.
+    Raises ParameterError, FileError and MissingDependencyError.
     """
     from ...core.sections import read_toml
     from ...io.config import SCENES, read_law_source, read_roller

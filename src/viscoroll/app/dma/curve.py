@@ -183,9 +183,10 @@ def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int 
 def thinned(data: _Data) -> _Data:
     """Average a curve of more than :data:`MOST_POINTS` points in logarithmic bins; return a shorter curve as it is.
 
+    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of measurement that is 0
+    on average stays so.
+
     data : a curve.
-    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of
-    measurement that is 0 on average stays so.
     """
     x = np.log(data[0])
     if x.size <= MOST_POINTS:

@@ -17,8 +17,9 @@ _NU = 0.49
 
 
 def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
-    """Return the title and the lines that ``print(fit)`` shows of a
-    :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """Return the title and the lines that ``print(fit)`` shows.
+
+    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"

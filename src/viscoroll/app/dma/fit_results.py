@@ -267,8 +267,9 @@ class Fit(SeriesFit):
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
         """Return storage and loss modulus of the fit in the unit of the data, of the shape of ``omega``.
 
-        omega : angular frequencies, rad/s.
         They are E' and E'', or G' and G'' where ``mode`` is "shear".
+
+        omega : angular frequencies, rad/s.
 
         Examples
         --------

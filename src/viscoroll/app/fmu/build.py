@@ -108,7 +108,9 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
 def _contact_length_of_cover(table: LawTable) -> float:
     """Return the contact length at rest that the law of a cover is for, in m; 0.0 if the FMU need not check it.
 
-    table: a law.  It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.
+    It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.
+
+    table: a law.
     """
     if table.cover is None or table.pair is None:
         return 0.0
@@ -167,8 +169,10 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
 def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
     """Return the C text of the variables: their references, names, kinds and start values; reference 0 is time.
 
+    Kinds are 0 (cannot be set), 1 (any finite number) and 2 (above 0).
+
     variables: variables of the model, in the order of their references.
-    starts: start values by name. Kinds are 0 (cannot be set), 1 (any finite number) and 2 (above 0).
+    starts: start values by name.
     """
     rows = [("time", 0, 0.0)]
     rows += [(v.name, 0 if v.start is None else 1 + v.positive, starts.get(v.name, 0.0)) for v in variables]
@@ -185,10 +189,12 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
 def _stubs(source: str, header: str, version: int) -> str:
     """Return C definitions of the functions of the standard that fmu.c leaves out.
 
+    A change of mode returns OK; a function that gets or sets values returns OK for none and an error for some; every
+    other one returns an error, or NULL.
+
     source: text of fmu.c.
     header: text of the standard's header of function types.
-    version: 2 or 3. A change of mode returns OK; a function that gets or sets values returns OK for none and an error
-    for some; every other one returns an error, or NULL.
+    version: 2 or 3.
     """
     lines = []
     plain = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)

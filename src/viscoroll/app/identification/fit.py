@@ -253,8 +253,9 @@ class Identification(Result):
     def residuals(self, values: Mapping[str, float]) -> Floats:
         """Return residuals over sigma of all records, in their order, and of the prior, shape (residuals,).
 
-        values : name -> value of unknowns; others are at their start.
         For optimisers and samplers of other packages; a motion that fails has residuals of 1e6.
+
+        values : name -> value of unknowns; others are at their start.
         """
         return self._problem.residuals(self._coordinates(values))
 

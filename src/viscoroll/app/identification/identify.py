@@ -184,9 +184,10 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     """Return two starts on either side of a minimum far from the start, along the direction that is determined
     least.
 
+    Ridges of a valley lie across that direction.
+
     problem : the least squares.
     u : coordinates of the minimum.
-    Ridges of a valley lie across that direction.
     Returns two vectors of coordinates, (unknowns,).
     """
     if np.abs(u - problem.start).max() < _NEAR:

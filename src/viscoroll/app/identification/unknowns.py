@@ -194,10 +194,11 @@ def _inputs(body: Material) -> dict[str, float]:
 def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
     """Return a material in which unknowns have other values.
 
+    With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
+
     body : the material.
     prefix : prefix of the names of its unknowns, "" or "base_".
     values : name -> value of unknowns, of other bodies too.
-    With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
     """
     old = _inputs(body)
     new = {name: values.get(prefix + name, value) for name, value in old.items()}

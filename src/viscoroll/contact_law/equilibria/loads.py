@@ -70,7 +70,8 @@ def loads_of(
     scene : parameters, on the slope.
     force, torque : numbers, arrays or :class:`Feedback`.
     slope : angle, rad.
-    V : given speeds, or None.  Raises ParameterError as ``steady`` does.
+    V : given speeds, or None.
+    Raises ParameterError as ``steady`` does.
     Returns the :class:`Loads`, vectors of one length.
     """
     if type(scene.alpha) is not float:

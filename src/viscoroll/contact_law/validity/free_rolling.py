@@ -195,9 +195,11 @@ class FreeRolling:
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
             """Return the fields of :class:`Reach` for states of one material.
 
+            Both in the material's own time.
+
             curve: free rolling of the material.
             u: kappa V at the start, (n,).
-            g: gamma/(1 + j), (n,).  Both in the material's own time.
+            g: gamma/(1 + j), (n,).
             """
             end, below = np.empty(u.size), np.empty(u.size, bool)
             levels, group = np.unique(g, return_inverse=True)

@@ -155,8 +155,9 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
 def sobol_bars(indices: xr.Dataset) -> Figure:
     """Draw first-order and total index of every input with its confidence interval, a panel for each quantity.
 
-    indices: indices of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file. Quantities
-    over time are shown at the last time with indices.  Inputs have one order, the largest total index first.
+    Quantities over time are shown at the last time with indices.  Inputs have one order, the largest total index first.
+
+    indices: indices of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file.
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
     shown = [_last_indices(indices, name) for name in names]

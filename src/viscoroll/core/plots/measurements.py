@@ -21,7 +21,8 @@ _POINTS = 400
 def master_curve(material: Any) -> Figure:
     """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right.
 
-    material: a :class:`Material`.  Raises ParameterError for a rigid body, which has no curves.
+    material: a :class:`Material`.
+    Raises ParameterError for a rigid body, which has no curves.
     """
     if material.is_rigid:
         raise ParameterError("material", "rigid", "one of a finite modulus")

@@ -140,8 +140,10 @@ def motion(data: xr.Dataset) -> Figure:
 def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
     """Return (times, values) of a quantity of a motion, with the corners and both sides of the jumps of its schedule.
 
+    Loads beside the schedule, as a feedback and that of the slope, have no jumps.
+
     data: the motion.
-    name: name of the quantity.  Loads beside the schedule, as a feedback and that of the slope, have no jumps.
+    name: name of the quantity.
     """
     t, values = data["t"].values, data[name].values
     if f"drive_{name}_time" not in data:

@@ -78,7 +78,9 @@ def readings(heading: str, row: str = "") -> list[Reading]:
 def may_be_unit(text: str) -> bool:
     """Return whether a text may be a unit, for pint to decide: short, of symbols and their powers.
 
-    text : without brackets.  Sums and towers of powers, of which pint computes the value, are none.
+    Sums and towers of powers, of which pint computes the value, are none.
+
+    text : without brackets.
     """
     rest = _POWERS.sub("", re.sub(r"^\s*1\s*/", "", text))
     return (

@@ -102,8 +102,9 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 def _time_of_laws(run: Run) -> float:
     """Return the seconds that the laws of the covers of the first block take; 0.0 of half-spaces.
 
-    run: run of covers of one thickness over l0, which have one law, or of many, which have some for each octave. One
-    law is computed, and its time multiplied.
+    One law is computed, and its time multiplied.
+
+    run: run of covers of one thickness over l0, which have one law, or of many, which have some for each octave.
     """
     from ...kernels.rows.thickness_axis import NODES
     from ...materials.law.cover_rows import cover_rows

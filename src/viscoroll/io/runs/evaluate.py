@@ -86,8 +86,10 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 def warn_of_materials(run: Run) -> None:
     """Warn of the share of motions that start outside the measured bands of the materials, or as their medians do.
 
-    run: the run.  Where it is in SI units with a start speed, the starts are compared with the bands; in any case
-    the motion of the medians is rolled, which may warn too.
+    Where it is in SI units with a start speed, the starts are compared with the bands; in any case the motion of the
+    medians is rolled, which may warn too.
+
+    run: the run.
     """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)
@@ -102,7 +104,9 @@ def warn_of_materials(run: Run) -> None:
 def _fraction_outside(run: Run) -> float:
     """Return the fraction of motions whose transit frequency at the start is outside a measured band.
 
-    run: a run in SI units, whose first motions are examined.  A start at rest is inside: M is 0 there.
+    A start at rest is inside: M is 0 there.
+
+    run: a run in SI units, whose first motions are examined.
     Returns the fraction, 0 to 1.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))

@@ -99,8 +99,10 @@ def _largest_size(array: Any) -> int:
 def _reserve(path: Path, size: int) -> None:
     """Lengthen a file, so that HDF5, which may crash on a full disk, does not meet one.
 
+    HDF5 cuts off at its end what it did not use.
+
     path: path of the file.
-    size: number of bytes to add. HDF5 cuts off at its end what it did not use.
+    size: number of bytes to add.
     Raises OSError if the disk is full.
     """
     with path.open("r+b") as file:

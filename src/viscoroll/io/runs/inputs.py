@@ -54,8 +54,9 @@ class Distribution:
     def ppf(self, u: Floats) -> Floats:
         """Return the quantiles of the truncated distribution.
 
-        u: probabilities in (0, 1), of any shape.
         An upper tail is inverted from above, by the survival function, so that it keeps its digits.
+
+        u: probabilities in (0, 1), of any shape.
         """
         law = self.law
         if (self.low, self.high) == law.support():

@@ -94,7 +94,8 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return the loads of the section [drive] as keywords of :func:`viscoroll.ensemble`.
 
-    content: sections with numbers or arrays (n,).  Raises ParameterError.
+    content: sections with numbers or arrays (n,).
+    Raises ParameterError.
     """
     drive = content.get("drive", {})
     return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}
@@ -154,11 +155,12 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
 
 
 def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
-    """Return the factors of the relaxation times at the temperature of each motion, (n,), over those at the first.
+    """Return the factors of the relaxation times at the temperature of each motion, relative to those at the first.
 
     path: path of the run file.
     name: "material" or "base".
-    section: content of that section.  None if the temperature is certain.
+    section: content of that section.
+    Returns the factors, dimensionless, (n,); None if the temperature is certain.
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None

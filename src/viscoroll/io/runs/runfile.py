@@ -296,8 +296,9 @@ def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
 def _check_inputs(run: Run) -> None:
     """Raise FileError for inputs that a motion refuses, before anything is drawn.
 
-    run: the run.
     Checked are the medians, the ends of each input beside the medians of the others, and combinations of ends.
+
+    run: the run.
     """
     inputs, medians = run.inputs, run.inputs.medians
     _check_motions(run, medians)

@@ -49,7 +49,8 @@ class Interpolant:
         """Check a table and choose its axes and bounds; splines are computed at the first use of a field.
 
         table : the grid, dataset of a file or of ``build``.
-        linear : whether interpolation is linear, else by cubic splines.  Raises FileError if it is not a table.
+        linear : whether interpolation is linear, else by cubic splines.
+        Raises FileError if it is not a table.
         """
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)

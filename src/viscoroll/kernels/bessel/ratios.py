@@ -84,7 +84,9 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
 def _tail(sign: int) -> np.ndarray:
     """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the argument.
 
-    sign : -1 for r, +1 for k. The polynomial goes through the asymptotic series at Chebyshev nodes.
+    The polynomial goes through the asymptotic series at Chebyshev nodes.
+
+    sign : -1 for r, +1 for k.
     Returns coefficients of ascending powers of 1/x or 1/z, (terms,), dimensionless.
     """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]

@@ -78,9 +78,10 @@ class DiskCache:
     def exclusive(self, signature, codegen) -> Iterator[None]:
         """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE`.
 
+        If the code is stored already, or if no lock can be made, nobody waits.
+
         signature : types of the arguments.
-        codegen : numba's code generator, which knows the processor. If the code is stored already, or if no lock can be
-        made, nobody waits.
+        codegen : numba's code generator, which knows the processor.
         """
         path = self._path(signature, codegen)
         if path.exists():

@@ -88,12 +88,12 @@ def _d_at_zero_omega(scene):
 
 @kernel
 def _spin_against_brake(load, scene):
-    """Return how omega starts under a brake as V grows from 0 in partial slip.
+    """Return the sign with which omega grows from 0 under a brake, or that the brake holds it, as V grows from 0.
 
     load: Load, at V = 0, with a brake.
     scene: Scene, parameters of Eq. (22).
-    Returns (sign of omega, whether the brake holds omega at 0 instead): so it does where mu > 2 kappa and the traction
-    at omega = 0 leaves less torque than the brake can take.
+    Returns (sign of omega, whether the brake holds omega at 0 instead).  The brake holds it where mu > 2 kappa and the
+    torque that the traction at omega = 0 leaves is below that of the brake.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:

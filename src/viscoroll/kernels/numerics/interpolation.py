@@ -123,7 +123,8 @@ def chebyshev(n: int) -> list[Decimal]:
 def to_chebyshev(n: int) -> _Floats:
     """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1).
 
-    n : number of nodes.  Returns doubles, (n, n), [term, node].
+    n : number of nodes.
+    Returns doubles, (n, n), [term, node].
     """
     x = np.array(chebyshev(n))
     terms = [1 + 0 * x, x]

@@ -40,11 +40,12 @@ def _evaluate_N(u, law):
 def _evaluate_added_mass(law, V, kappa, gamma):
     """Return (gamma N, its slope with respect to V, its integral with respect to V) of a law that has N.
 
+    The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
+
     law : :class:`Law` of the material, with polynomials of N.
     V : speed of the axis.
     kappa : slenderness R/l0.
-    gamma : mass parameter, Eq. (4), dimensionless.  The integral begins at V = 0 or, where V = 0 is out of reach, at
-    infinity.
+    gamma : mass parameter, Eq. (4), dimensionless.
     """
     count = law.marks[ROW_COUNT]
     row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
@@ -61,11 +62,12 @@ def added_mass(law, V, kappa, gamma):
     """Return (gamma N, its slope with respect to V, its integral with respect to V), zeros of a law of steady
     rolling.
 
+    The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
+
     law : :class:`Law` of the material: polynomials of each octave.
     V : speed.
     kappa : slenderness R/l0.
-    gamma : mass parameter, Eq. (4), dimensionless. The integral begins at V = 0 or, where V = 0 is out of reach, at
-    infinity.
+    gamma : mass parameter, Eq. (4), dimensionless.
     """
     return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
 

@@ -1,8 +1,8 @@
 """Rows for one alpha after another, by the axis of alpha: polynomials in ln alpha, without root finding.
 
-For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 + c_1 s + c_2 s^2 + c_3 s^3) for
-g = 0, 1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V
-and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
+For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 + c_1 s + c_2 s^2 + c_3 s^3) for g = 0,
+1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V and
+epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
 would lose digits near alpha = 2^N, and a T_j for every coefficient would take a third more loads.  The higher a power
 of t, the fewer groups change a digit.  So a block of twelve coefficients has one or two groups in most rows, and only
 the first block has four.

@@ -58,10 +58,11 @@ def traction_over_mu(u, L, D, law):
 def _cancels(traction, D, L):
     """Return whether 1 - w^2 H/F^2 has lost digits, so that the mean slope must be used.
 
+    Beyond D = L/2 the two arguments v1 and v2 may be more than one row apart, and the difference stays.
+
     traction : |Q|/mu as that difference.
     D : 2 kappa |delta|/mu.
-    L : 2 kappa delta_star/mu. Beyond D = L/2 the two arguments v1 and v2 may be more than one row apart, and the
-    difference stays.
+    L : 2 kappa delta_star/mu.
     """
     return traction < 0.1 and D < 0.5 * L
 

@@ -370,12 +370,13 @@ def _ln_from_end(node, row, over_v, grid):
 def _collect_points(row, first, count, over_v, grid):
     """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
 
+    Arguments are ln u or ln v, counted from the end of the octave.
+
     row : index of the row that spans the octave.
     first : index of the first function at a node.
     count : number of functions, 1 or 2.
     over_v : True if they are functions of v, False for u.
-    grid : :class:`Grid` of function values over ln z of the selected material.  Arguments are ln u or ln v, counted
-    from the end of the octave.
+    grid : :class:`Grid` of function values over ln z of the selected material.
     """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
