@@ -12,9 +12,21 @@ import math
 
 import numpy as np
 
-from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, fma, integers_at, record_at, record_type
-from ..compile.jit import inline_kernel, kernel
-from ..numerics.simd4 import LANES, broadcast, fma4, make_load, pack, store
+from llvmlite import ir
+from numba.core import cgutils, types
+
+from ..compile.intrinsics import (
+    bits_to_float,
+    float_to_bits,
+    floats_at,
+    fma,
+    integers_at,
+    make_intrinsic,
+    record_at,
+    record_type,
+)  # fmt: skip
+from ..compile.jit import kernel
+from ..numerics.simd4 import broadcast_value, fma_vectors, vector_pointers
 from .contact_states import element
 from .record import (
     ALPHA,
@@ -32,14 +44,15 @@ from .record import (
 
 #: Largest number of Chebyshev polynomials of s: the 17th changes no digit of a double.
 ALPHA_TERMS = 16
-#: Vectors of a block: with more of them fewer terms in s are negligible, with less the ends of loops count.
-_BLOCK_VECTORS = 3
-#: Numbers of a block, half of a part.
-BLOCK_SIZE = _BLOCK_VECTORS * LANES
+#: Numbers of a block, a vector: with more of them fewer terms in s are negligible, with less the ends of sums count.
+#: Processors without vectors of eight numbers take two of four.
+BLOCK_SIZE = 8
+#: Blocks of a part.
+PART_BLOCKS = PART_SIZE // BLOCK_SIZE
 #: Terms of a group, a cubic polynomial in s.
 GROUP = 4
 #: Groups of the blocks of (L, M/V), (lam, epsilon), H/F^2 and eta/F in most rows; bodies are alike and not on the axis.
-SHORT = (4, 2, 2, 1), (4, 2, 2, 1), (4, 2), (4, 2)
+SHORT = (4, 4, 3, 2, 2, 1), (4, 4, 3, 2, 2, 1), (4, 3, 2), (4, 3, 2)
 #: Functions of a row, or pairs of them, on the axis.
 ALPHA_FUNCTIONS = len(SHORT)
 #: Groups of a block in the other rows.
@@ -64,8 +77,48 @@ _BIAS = 1023
 _MANTISSA = (1 << 52) - 1
 #: C divided by W of the fast limit, where the one creep time is the unit.
 _FAST_RATIO = math.log(2.0) - float(np.euler_gamma)
-#: (array, start) -> the numbers of a block.
-_load_block = make_load(_BLOCK_VECTORS)
+#: LLVM's type of a block.
+_BLOCK = ir.VectorType(ir.DoubleType(), BLOCK_SIZE)
+
+
+def _make_sum(lengths):
+    """Return a kernel that writes a part or two of a row: of each block the sum of cubic polynomials in s times T_4g(s).
+
+    lengths : number of groups of each block; loops of a length that varies would cost more than they save.
+
+    The kernel takes (axis, s, c, rows, to): vector of the coefficients, in each block the group of the highest degree
+    first; s, T_4(s), T_8(s) and T_12(s); the factor of two in four numbers; the vector that is written; the position
+    there of the first number.
+    """
+
+    def lower(context, builder, signature, arguments):
+        axis, numbers, c, rows, to = arguments
+        kinds = signature.args
+        power, *chebyshev = (broadcast_value(builder, x, _BLOCK) for x in cgutils.unpack_tuple(builder, numbers))
+        square = builder.fmul(power, power)
+        factor = ir.Constant(_BLOCK, [1.0] * BLOCK_SIZE)
+        for n in (2, 3, 6, 7):
+            factor = builder.insert_element(factor, c, ir.IntType(32)(n))
+        start = types.int64, ir.Constant(ir.IntType(64), 0)
+        terms = vector_pointers(context, builder, kinds[0], axis, start[1], GROUP * sum(lengths), _BLOCK)
+        # one after the other: a load before the store of another block would have to be kept
+        terms = (builder.load(term, align=8) for term in terms)
+        for length, target in zip(lengths, vector_pointers(context, builder, kinds[3], rows, to, len(lengths), _BLOCK)):
+            total = ir.Constant(_BLOCK, [0.0] * BLOCK_SIZE)
+            for T in [*chebyshev[length - 2 :: -1] * (length > 1), ir.Constant(_BLOCK, [1.0] * BLOCK_SIZE)]:
+                constant, linear, quadratic, cubic = (next(terms) for _ in range(GROUP))
+                low = fma_vectors(builder, linear, power, constant)
+                high = fma_vectors(builder, cubic, power, quadratic)
+                total = fma_vectors(builder, fma_vectors(builder, high, square, low), T, total)
+            builder.store(builder.fmul(total, factor), target, align=8)
+        return context.get_dummy_value()
+
+    return make_intrinsic(lower, types.void, None, types.UniTuple(types.float64, 4), types.float64, None, types.int64)
+
+
+_sum_short_pair, _sum_full_pair, _sum_short, _sum_full = map(
+    _make_sum, (SHORT[0], [FULL] * 2 * PART_BLOCKS, SHORT[2], [FULL] * PART_BLOCKS)
+)
 
 
 @kernel(allocates=True)
@@ -134,45 +187,12 @@ def make_part(number, source):
             rows[k] = 0.0
         rows[start] = 1.0
     elif pair:
-        factor = pack(1.0, 1.0, c, c)
-        if groups < 4 * FULL:
-            _sum_block(axis, 0, 4, s, factor, rows, start)
-            _sum_block(axis, 4 * size, 2, s, factor, rows, start + BLOCK_SIZE)
-            _sum_block(axis, 6 * size, 2, s, factor, rows, start + 2 * BLOCK_SIZE)
-            _sum_block(axis, 8 * size, 1, s, factor, rows, start + 3 * BLOCK_SIZE)
+        if groups < 2 * PART_BLOCKS * FULL:
+            _sum_short_pair(axis, s, c, rows, start)
         else:
-            for n in range(4):
-                _sum_block(axis, n * FULL * size, FULL, s, factor, rows, start + n * BLOCK_SIZE)
+            _sum_full_pair(axis, s, c, rows, start)
+    elif groups < PART_BLOCKS * FULL:
+        _sum_short(axis, s, 1.0, rows, start)
     else:
-        factor = broadcast(1.0)
-        _sum_block(axis, 0, 4, s, factor, rows, start)
-        if groups < 2 * FULL:
-            _sum_block(axis, 4 * size, 2, s, factor, rows, start + BLOCK_SIZE)
-        else:
-            _sum_block(axis, 4 * size, FULL, s, factor, rows, start + BLOCK_SIZE)
+        _sum_full(axis, s, 1.0, rows, start)
     marks[number] = marks[VERSION]
-
-
-@inline_kernel
-def _sum_block(axis, first, groups, s, factor, rows, to):
-    """Write twelve coefficients of a row: the sum of groups, cubic polynomials in s times T_4g(s).
-
-    axis : coefficients of the terms in s for the octave of alpha, a vector.
-    first : position in ``axis`` where those of the block begin, the group of the highest degree first.
-    groups : number of groups, a literal number: loops of a length that varies cost more than they save.
-    s : s, T_4(s), T_8(s) and T_12(s); s = 2 log2(alpha/2^N) - 1.
-    factor : vector by which every vector of results is multiplied.
-    rows : written.
-    to : position in ``rows`` of the first coefficient that is written.
-    """
-    power = broadcast(s[0])
-    square = power * power
-    zero = broadcast(0.0)
-    total = zero, zero, zero
-    for group in range(groups):
-        at = first + BLOCK_SIZE * GROUP * group
-        low = fma4(_load_block(axis, at + BLOCK_SIZE), power, _load_block(axis, at))
-        high = fma4(_load_block(axis, at + 3 * BLOCK_SIZE), power, _load_block(axis, at + 2 * BLOCK_SIZE))
-        cubic = fma4(high, square, low)
-        total = fma4(cubic, broadcast(s[groups - 1 - group] if group < groups - 1 else 1.0), total)
-    store(rows, to, fma4(total, factor, zero))

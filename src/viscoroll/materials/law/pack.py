@@ -110,13 +110,20 @@ def interleave_pairs(a: Floats, b: Floats) -> Floats:
     return both.reshape(len(a), -1)
 
 
+def _aligned(numbers: Floats) -> Floats:
+    room = np.empty(numbers.size + 8)
+    first = -room.ctypes.data // 8 % 8
+    room[first : first + numbers.size] = numbers
+    return room[first : first + numbers.size]
+
+
 def allocate_rows(count: int) -> tuple[Floats, Integers]:
     """Return numbers and marks of a record of ``count`` rows, with those in front, zeroed; no material is selected."""
     from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE, SELECTED
 
     marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
     marks[SELECTED] = -1
-    return np.zeros((count + 1) * ROW_SIZE), marks
+    return _aligned(np.zeros((count + 1) * ROW_SIZE)), marks
 
 
 def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:
@@ -274,7 +281,7 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
             lengths = (FULL,) * len(short) if needs_all else short
             numbers += [block[FULL - length :].ravel() for block, length in zip(blocks, lengths)]
             counts.append(sum(lengths))
-    return AxisRows(lock_array(np.concatenate(numbers)), lock_array(np.append(0, np.cumsum(counts))), rows)
+    return AxisRows(lock_array(_aligned(np.concatenate(numbers))), lock_array(np.append(0, np.cumsum(counts))), rows)
 
 
 def _grouped_terms(terms: Floats, size: int) -> Floats:
