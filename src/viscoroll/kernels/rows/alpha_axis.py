@@ -4,14 +4,13 @@ For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 
 g = 0, 1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V
 and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
 would lose digits near alpha = 2^N, and a T_j for every coefficient would take a third more loads.  The higher a power
-of t, the fewer groups change a digit.  So a block of twelve coefficients has one or two groups in most rows, and only
-the first block has four.
+of t, the fewer groups change a digit.  So of the blocks of eight coefficients only the first ones have all four groups
+in most rows.
 """
 
 import math
 
 import numpy as np
-
 from llvmlite import ir
 from numba.core import cgutils, types
 
@@ -47,7 +46,7 @@ ALPHA_TERMS = 16
 #: Numbers of a block, a vector: with more of them fewer terms in s are negligible, with less the ends of sums count.
 #: Processors without vectors of eight numbers take two of four.
 BLOCK_SIZE = 8
-#: Blocks of a part.
+#: Blocks of a part, the coefficients of one polynomial.
 PART_BLOCKS = PART_SIZE // BLOCK_SIZE
 #: Terms of a group, a cubic polynomial in s.
 GROUP = 4
@@ -82,43 +81,46 @@ _BLOCK = ir.VectorType(ir.DoubleType(), BLOCK_SIZE)
 
 
 def _make_sum(lengths):
-    """Return a kernel that writes a part or two of a row: of each block the sum of cubic polynomials in s times T_4g(s).
+    """Return a kernel that writes one part of a row, or two: in each block the sum of cubic polynomials times T_4g(s).
 
-    lengths : number of groups of each block; loops of a length that varies would cost more than they save.
+    lengths : number of groups of each block; loops of a length that varies cost more than they save.
 
-    The kernel takes (axis, s, c, rows, to): vector of the coefficients, in each block the group of the highest degree
-    first; s, T_4(s), T_8(s) and T_12(s); the factor of two in four numbers; the vector that is written; the position
-    there of the first number.
+    The kernel takes (axis, first, s, c, rows, to).  axis, first : vector of coefficients, and where those of the part
+    begin; of each block the group of the highest degree first.  s : s, T_4(s), T_8(s) and T_12(s).  c : factor of the
+    second function of a pair; 1 of a single function.  rows, to : vector that is written, and where.
     """
 
     def lower(context, builder, signature, arguments):
-        axis, numbers, c, rows, to = arguments
-        kinds = signature.args
+        axis, first, numbers, c, rows, to = arguments
+        one, zero = (ir.Constant(_BLOCK, [x] * BLOCK_SIZE) for x in (1.0, 0.0))
         power, *chebyshev = (broadcast_value(builder, x, _BLOCK) for x in cgutils.unpack_tuple(builder, numbers))
         square = builder.fmul(power, power)
-        factor = ir.Constant(_BLOCK, [1.0] * BLOCK_SIZE)
+        factor = one
         for n in (2, 3, 6, 7):
             factor = builder.insert_element(factor, c, ir.IntType(32)(n))
-        start = types.int64, ir.Constant(ir.IntType(64), 0)
-        terms = vector_pointers(context, builder, kinds[0], axis, start[1], GROUP * sum(lengths), _BLOCK)
-        # one after the other: a load before the store of another block would have to be kept
-        terms = (builder.load(term, align=8) for term in terms)
-        for length, target in zip(lengths, vector_pointers(context, builder, kinds[3], rows, to, len(lengths), _BLOCK)):
-            total = ir.Constant(_BLOCK, [0.0] * BLOCK_SIZE)
-            for T in [*chebyshev[length - 2 :: -1] * (length > 1), ir.Constant(_BLOCK, [1.0] * BLOCK_SIZE)]:
-                constant, linear, quadratic, cubic = (next(terms) for _ in range(GROUP))
-                low = fma_vectors(builder, linear, power, constant)
-                high = fma_vectors(builder, cubic, power, quadratic)
+        count = GROUP * sum(lengths)
+        pointers = vector_pointers(context, builder, signature.args[0], axis, first, count, _BLOCK)
+        # one load after the other: what is loaded before the store of another block has to be kept in registers
+        terms = (builder.load(pointer, align=8) for pointer in pointers)
+        targets = vector_pointers(context, builder, signature.args[4], rows, to, len(lengths), _BLOCK)
+        for length, target in zip(lengths, targets):
+            total = zero
+            for T in reversed([one, *chebyshev][:length]):
+                low, linear, high, cubic = (next(terms) for _ in range(GROUP))
+                low = fma_vectors(builder, linear, power, low)
+                high = fma_vectors(builder, cubic, power, high)
                 total = fma_vectors(builder, fma_vectors(builder, high, square, low), T, total)
             builder.store(builder.fmul(total, factor), target, align=8)
         return context.get_dummy_value()
 
-    return make_intrinsic(lower, types.void, None, types.UniTuple(types.float64, 4), types.float64, None, types.int64)
+    numbers = types.UniTuple(types.float64, FULL)
+    return make_intrinsic(lower, types.void, None, types.int64, numbers, types.float64, None, types.int64)
 
 
-_sum_short_pair, _sum_full_pair, _sum_short, _sum_full = map(
-    _make_sum, (SHORT[0], [FULL] * 2 * PART_BLOCKS, SHORT[2], [FULL] * PART_BLOCKS)
-)
+_sum_short_pair = _make_sum(SHORT[0])
+_sum_full_pair = _make_sum([FULL] * 2 * PART_BLOCKS)
+_sum_short = _make_sum(SHORT[2])
+_sum_full = _make_sum([FULL] * PART_BLOCKS)
 
 
 @kernel(allocates=True)
@@ -176,10 +178,10 @@ def make_part(number, source):
     pair = part < H_OVER_F2 // PART_SIZE
     function = row * ALPHA_FUNCTIONS + (part >> 1 if pair else part - ALPHA_FUNCTIONS)
     begins = integers_at(marks[_AXIS + 1], function + 2)
-    first = begins[function]
-    groups = begins[function + 1] - first
     size = BLOCK_SIZE * GROUP
-    axis = floats_at(marks[_AXIS] + 8 * size * first, size * groups)
+    first = size * begins[function]
+    stop = size * begins[function + 1]
+    axis = floats_at(marks[_AXIS], stop)
     # read once: stores to rows could change them for all that the compiler knows
     s = rows[_S], rows[_S + 1], rows[_S + 2], rows[_S + 3]
     if c == 0.0:
@@ -187,12 +189,12 @@ def make_part(number, source):
             rows[k] = 0.0
         rows[start] = 1.0
     elif pair:
-        if groups < 2 * PART_BLOCKS * FULL:
-            _sum_short_pair(axis, s, c, rows, start)
+        if stop - first < 2 * PART_SIZE * ALPHA_TERMS:
+            _sum_short_pair(axis, first, s, c, rows, start)
         else:
-            _sum_full_pair(axis, s, c, rows, start)
-    elif groups < PART_BLOCKS * FULL:
-        _sum_short(axis, s, 1.0, rows, start)
+            _sum_full_pair(axis, first, s, c, rows, start)
+    elif stop - first < PART_SIZE * ALPHA_TERMS:
+        _sum_short(axis, first, s, 1.0, rows, start)
     else:
-        _sum_full(axis, s, 1.0, rows, start)
+        _sum_full(axis, first, s, 1.0, rows, start)
     marks[number] = marks[VERSION]
