@@ -365,9 +365,9 @@ class Material(FromPrograms):
         >>> import viscoroll as vr
         >>> vr.Material.elastic(2.1e11, 0.3).to_netcdf("steel.nc")
         """
-        from .material_netcdf import save_material
+        from ..core.files import write_dataset
 
-        save_material(self, path)
+        write_dataset(self.to_xarray(), path, sealed=True)
 
     @classmethod
     def from_netcdf(cls, path: str | PathLike[str]) -> Material:

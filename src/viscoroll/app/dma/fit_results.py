@@ -14,14 +14,14 @@ from ...contact_law.validity.assumptions import Assumption, assess_measured_band
 from ...core.array_types import Booleans, Floats, Numbers
 from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.plots.measurements import moduli_fit, relaxation_fit
+from ...core.plots.measurements import series_fit
 from ...core.results import Result, SummaryRow
 from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 from .curve import UNITS, Curve, KramersKronig, Relaxation
-from .fit_report import of_dynamic, of_relaxation, summarize_fit
+from .fit_report import of_dynamic, of_relaxation, summarize_fit, symbol_of
 from .master_curve import Shifts
 from .spectrum import FLOOR, Data, spectrum_of
 
@@ -81,6 +81,17 @@ class SeriesFit(Result):
     def data(self) -> Data:
         """The data that were fitted."""
         raise NotImplementedError
+
+    @property
+    def symbols(self) -> list[str]:
+        """Symbols of the measured moduli: E' and E'', or E(t); G in place of E where they are of shear."""
+        signs = ["(t)"] if self.data._fields[0] == "t" else ["'", "''"]
+        return [symbol_of(self) + sign for sign in signs]
+
+    def misfit_text(self, digits: int) -> str:
+        """Return the misfit of each modulus in per cent with a number of ``digits`` behind the decimal point."""
+        pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
+        return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
 
     @property
     def largest_misfit(self) -> float:
@@ -222,7 +233,7 @@ class SeriesFit(Result):
         about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
         return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
 
-    _summary = summarize_fit
+    _summary, _figure = summarize_fit, series_fit
 
     def _rows(self) -> list[SummaryRow]:
         """Return the lines of the report on misfit and data."""
@@ -282,7 +293,7 @@ class Fit(SeriesFit):
         storage, loss = self._moduli(omega)
         return storage, loss
 
-    _rows, _figure = of_dynamic, moduli_fit
+    _rows = of_dynamic
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -332,4 +343,4 @@ class RelaxationFit(SeriesFit):
         """
         return self._moduli(t)[0]
 
-    _rows, _figure = of_relaxation, relaxation_fit
+    _rows = of_relaxation
