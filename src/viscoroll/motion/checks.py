@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from typing import Any
 
 import numpy as np
@@ -37,6 +39,16 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
         found = f"{times[n]:.6g}, {times[n + 1]:.6g} at rows {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
     return times
+
+
+def refuse_end(end: float, T: float) -> None:
+    """Raise ParameterError for a last output time that is infinite in T_ref.
+
+    end: last output time, s.
+    T: T_ref, s.
+    """
+    if end / T == math.inf:
+        raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
 
 
 def require_single(**arguments: Any) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +19,7 @@ from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError
 from ..core.scale import HasUnits
 from ..materials.law.table import law_table
-from .checks import controls, in_words, require_single
+from .checks import controls, in_words, refuse_end, require_single
 from .drive import LOSSES, ROWS, STATES, Drive
 from .drive_functions import DriveFunctions, DrivenStart, KernelDrive, prepare_drive, refuse_rest, undriven
 
@@ -110,9 +109,7 @@ def make_problem(
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     try:
         limits, last = controls(rtol, make_dimensionless("rest", rest, scale), max_steps), float(end) / scale["t"]
-        if last == math.inf:
-            largest = sys.float_info.max * min(scale["t"], 1.0)
-            raise ParameterError("t", float(end), f"less than {largest:.3g}")
+        refuse_end(float(end), scale["t"])
         V0, omega0 = make_dimensionless("V0", start[0], scale), make_dimensionless("omega0", start[1], scale)
         spacing = None if resolve is None else make_dimensionless("resolve", resolve, scale)
         prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
