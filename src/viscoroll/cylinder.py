@@ -303,10 +303,10 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
 
     R: radius, m.
     m: mass per length, kg/m.
-    load: N/m.
+    load: force per length that presses the cylinder on the base, N/m.
     E_prime: contact modulus, Pa.
     T_ref: unit of time, s.
-    law: alpha, one or one for each, or a material of a scene, with times divided by ``T_ref``.
+    law: alpha, a number or (n,), or a material of a scene, with times divided by ``T_ref``.
     mu, j: friction and moment of inertia, dimensionless.
     Raises ParameterError by the names of the scene's parameters.
     """

@@ -91,15 +91,16 @@ def _rate_differences(times: NDArray) -> Floats:
 
 
 def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """Return gap[..., j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum
-    weight_j/(pole_j - s).
+    """Return the gaps between the zeros s_i of constant + sum weight_j/(pole_j - s) and its poles, to full relative
+    accuracy.
 
     The sum increases from pole to pole: one zero lies between two neighbours, and one right of the last if
     ``constant`` > 0.
 
     spread: pole_j - pole_l, [..., j, l]; poles are ascending.
-    weight: positive, (..., poles).
-    constant: >= 0, (...).
+    weight: weights of the poles, positive, (..., poles).
+    constant: the constant, >= 0, (...).
+    Returns gap[..., j, i] = s_i - pole_j.
     """
     poles, constant = weight.shape[-1], constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)

@@ -256,9 +256,9 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 
 
 def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
-    """Return the pieces without the short ones that contain a corner: their neighbours then meet in it.
+    """Return the pieces without the short ones that contain a corner; their neighbours are extended to the corner.
 
-    pieces: consecutive.
+    pieces: consecutive pieces of the fit.
     sampled: the callable.
     """
     merged: list[Piece] = []

@@ -159,10 +159,11 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
 
 
 def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
-    """Return the fields of an :class:`Ensemble` in the units of its roller, by name.
+    """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its roller.
 
     batch: motions of the ensemble.
-    solution: solution, dimensionless.
+    solution: motions, dimensionless.
+    Returns the fields by name.
     """
     found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))

@@ -115,8 +115,8 @@ def _layer_motions(
     problem : the scene.
     sign : sign of omega - V at onset.
     V0 : speeds at onset, (octaves, nodes).
-    k0 : relaxation rates there.
-    split : splits there.
+    k0 : relaxation rates of omega - V at these onsets, (octaves, nodes).
+    split : values of E at which the table is split, near delta = 0 (:func:`_split_powers`), (octaves, nodes).
 
     Returns V and delta, (octave, node of V, octave of u, node of u), and V at the end of the layer, (octave, node of
     V).

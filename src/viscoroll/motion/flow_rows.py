@@ -42,8 +42,8 @@ class Nodes:
         """Return the integral at the nodes, from a value at the left end of the first row.
 
         slopes : values of the integrand, (rows, nodes).
-        half : half the length of each row.
-        start : value at the left end.
+        half : half the length of each row, a number or (rows,).
+        start : value of the integral at the left end of the first row.
         Returns the integral, (rows, nodes).
         """
         whole = _multiply(self._integrals, slopes) * np.asarray(half)[..., None]

@@ -48,14 +48,14 @@ class ExtendedGridFit:
 def fit_on_extended_grid(
     data: Data, prony: Prony, E: float, T_ref: float, grid: tuple[float, float], decades: float
 ) -> ExtendedGridFit:
-    """Fit strengths on the times of a fit and on a wider grid, no time left out.
+    """Fit strengths on the times of a fit and of a wider grid together; no mode is left out.
 
     data : the curve.
     prony, E, T_ref : series, long-time modulus and reference time of the fit.
     grid : shortest and longest time of its grid.
     decades : number of decades by which the grid becomes wider on either side.
-    Returns the wider fit.  With as few modes as possible
-    those outside the data would be left out first, though the data allow them.
+    Returns the wider fit.  A fit with as few modes as possible would leave out those outside the data first, though the
+    data allow them.
     """
     reach = 10.0**decades
     times = grid_of_times((max(grid[0] / reach, data.shortest), grid[1] * reach), _TIMES)

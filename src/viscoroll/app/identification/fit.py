@@ -167,9 +167,9 @@ class Identification(Result):
         """Return products of powers of the :attr:`undetermined` unknowns that the data determine, with their
         intervals.
 
-        First those that hold over the whole intervals: exponents in which all points that fit lie nearest to each
-        other, and the profile of just these.  Then, where it is much narrower, what holds near the values found
-        alone, by the slopes there.
+        First the products that hold over the whole intervals are returned; their exponents are those on which all
+        points that fit agree best, and their intervals are profiles.  Then follow products with much narrower intervals
+        that hold near the values found only, by the slopes there.
 
         level : confidence level, in (0, 0.9999].
         Returns a list of :class:`Product`, the best determined first.
@@ -222,7 +222,8 @@ class Identification(Result):
         """Predict the quantities of a record, with confidence bands.
 
         record : the record.
-        record_name : its name among the data, by which its own unknowns are found; "" of another record.
+        record_name : name of the record among the data, which its own unknowns bear; "" of a record that was not
+        fitted.
         level : confidence level of the bands, in (0, 0.9999].
         draws : number of random values of the unknowns from which the bands are taken; 0: from slopes.
         seed : seed of the draws.

@@ -267,7 +267,7 @@ class Problem:
     def estimate_sigma(self, best: Minimum) -> Minimum:
         """Estimate each standard deviation that was not given from its residuals and fit again, until both converge.
 
-        best : minimum with the standard deviations of today.
+        best : minimum with the present standard deviations.
         Returns the minimum with the estimated ones.
         """
         estimated = [column for column in self.columns if column.estimated]

@@ -174,7 +174,7 @@ class Steady(Values):
     message = reason
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return (title, rows): of one load its equilibria, of several their number."""
+        """Return title and rows of the printed report: of one load its equilibria, of several loads their number."""
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
             speeds = SummaryRow("V", format_value(np.asarray(self.V)), unit_of(self._attributes("V")))

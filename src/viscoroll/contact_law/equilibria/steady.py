@@ -123,7 +123,7 @@ def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
     """Return the indices of the loads under which the cylinder can be at rest, (n,).
 
     loads : the loads.
-    neutral : whether any speed is steady without a load (elastic bodies).
+    neutral : whether every speed is steady without a load, as of elastic bodies.
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]

@@ -94,7 +94,7 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 def _warn_of_band(data: BodyData, V: Any) -> None:
     """Warn of transit frequencies outside the measured band, once for each material in a process.
 
-    data: of a cylinder with measured bodies.
+    data: data of the bodies of a cylinder, of which at least one was measured.
     V: speeds, m/s, any shape.
     """
     records = data.records.values()
@@ -157,7 +157,7 @@ def warn_of_start(
     One motion from two floats costs one or two microseconds; of many some, evenly spaced, are examined.
 
     roller: scene or cylinder, on its slope.
-    scene: its dimensionless parameters.
+    scene: dimensionless parameters of the roller.
     start: the start speeds as the caller gave them, m/s and rad/s for a cylinder; None for prescribed ones.
     V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
     driven: whether something drives the motions, or they are rolled with the added mass N.
@@ -179,13 +179,13 @@ def warn_of_start(
 def _start_faults(
     material: Any, kappa: float, mu: float, gamma: float, j: float, V0: float, omega0: float, driven: bool
 ) -> list[str]:
-    """Return the faults of the model for one motion.
+    """Return sentences on what the model does not describe in one motion, judged by its start.
 
-    material: its alpha, Prony series or bodies.
+    material: alpha, Prony series or bodies of the roller.
     kappa, mu, gamma, j: parameters of the scene, dimensionless.
     V0, omega0: start speeds, dimensionless.
     driven: whether something drives the motion, or it is rolled with the added mass N.
-    Returns sentences without numbers.
+    Returns the sentences, without numbers; none where the model describes the motion.
     """
     faults: list[str] = []
     one_time = type(material) is float
@@ -242,7 +242,7 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
 
 @lru_cache(maxsize=64)
 def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tuple[list[float], list[bool]]:
-    """Tabulate over kappa V whether a free motion from there is too slow for the law of steady rolling.
+    """Tabulate whether a free motion that starts at kappa V is too slow for the law of steady rolling.
 
     material: alpha, Prony series or bodies, not elastic.
     gamma, j: parameters of the scene, dimensionless.

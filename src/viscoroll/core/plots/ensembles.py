@@ -136,10 +136,11 @@ def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
 
 
 def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
-    """Return (edges, counts) of bars of equal width, without the tails; one bar if all values are nearly equal.
+    """Combine the bins of a run to bars of equal width, without the tails; one bar if all values are nearly equal.
 
     low, high: ends of the bins of a run.
-    counts: motions in each, of which a bar gets the fraction that it overlaps.
+    counts: motions in each bin, of which a bar gets the fraction that it overlaps.
+    Returns (edges of the bars, counts of motions).
     """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])

@@ -156,7 +156,8 @@ class _Layout:
         return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
 
     def heads(self) -> list[int]:
-        """Return the index of the line of headings of each table; a file without gets a line of "column 0" and so on.
+        """Return the index of the line of headings of each table of the file; without headings columns are "column 0",
+        "column 1" ...
 
         Raises FileError for a line of headings that is cut by other separators, and for numbers above the headings.
         """
@@ -182,9 +183,10 @@ class _Layout:
         return [0]
 
     def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
-        """Read a table.
+        """Read one table of the file.
 
-        head, end : indices of its line of headings, and of that of the next table or the end of the file.
+        head, end : index of its line of headings, and of the first line behind it: the headings of the next table, or
+        the end of the file.
         Returns (headings, units, rows); raises FileError for a line among the rows that is none, and for rows of
         another number of cells.
         """
@@ -212,10 +214,11 @@ class _Layout:
         return next((cells for cells in cuts if len(cells) == self.width), cuts[0])
 
     def units(self, between: list[Line], width: int) -> list[str]:
-        """Return the row of units, of whose texts at least half are units; "" for each column without one.
+        """Find the row of units between headings and numbers: a line in which at least half of the texts are units.
 
         between : lines between headings and numbers.
         width : number of columns.
+        Returns the unit of each column, "" for a column without one.
         """
         found = [""] * width
         for line in between:

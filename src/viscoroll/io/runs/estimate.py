@@ -62,8 +62,8 @@ class Estimate:
 def estimate(run: Run, threads: int | None = None) -> Estimate:
     """Roll some motions of the first block and scale their time, memory and size up to the run.
 
-    They are rolled twice and the second time counts: what a process does once, as to compile, to import and to
-    compute laws, would be scaled up with them.  The laws of covers are added once.
+    They are rolled twice, and the second time counts: the first one contains what a process does once, as to compile,
+    to import and to compute laws.  The laws of covers are added once.
 
     Parameters
     ----------

@@ -27,7 +27,8 @@ _STARTS = 1000
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
     """Return the inputs of the motions of a block, by name, each (motions,), in the units of the run.
 
-    run, block: the run, and the number of the block.
+    run: the run.
+    block: number of the block.
     most: number of motions at most; None: all of the block.
     """
     start, stop = run.edges(block)
@@ -74,9 +75,11 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
 
 def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
-    """Return (inputs by name, motions) of a block.
+    """Draw the inputs of a block, and compute its motions.
 
-    run, block: the run, and the number of the block.
+    run: the run.
+    block: number of the block.
+    Returns (inputs by name, each (motions,), in the units of the run; motions).
     """
     start, stop = run.edges(block)
     values = block_inputs(run, block)
@@ -84,10 +87,10 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 
 
 def warn_of_materials(run: Run) -> None:
-    """Warn of the share of motions that start outside the measured bands of the materials, or as their medians do.
+    """Warn of motions of a run outside the measured bands of its materials, judged by their starts and by their median.
 
-    Where it is in SI units with a start speed, the starts are compared with the bands; in any case the motion of the
-    medians is rolled, which may warn too.
+    The starts of a run in SI units with a start speed are compared with the bands.  In any case the motion of the
+    median inputs is computed, which may warn too.
 
     run: the run.
     """

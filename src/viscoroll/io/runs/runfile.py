@@ -294,9 +294,9 @@ def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
 
 
 def _check_inputs(run: Run) -> None:
-    """Raise FileError for inputs that a motion refuses, before anything is drawn.
+    """Raise FileError for values of inputs that a motion refuses, before anything is drawn.
 
-    Checked are the medians, the ends of each input beside the medians of the others, and combinations of ends.
+    It checks the medians, the ends of each input with the others at their medians, and combinations of ends.
 
     run: the run.
     """

@@ -176,7 +176,8 @@ class BlockContent(NamedTuple):
 def block_content(run: Run, block: int) -> BlockContent:
     """Roll the motions of a block, and make the files and the summary that the store keeps of it.
 
-    run, block: the run, and the number of the block.
+    run: the run.
+    block: number of the block.
     Returns the :class:`BlockContent`.
     """
     values, motions = roll_block(run, block)

@@ -143,7 +143,7 @@ def _add_feedback_to_matrix(work):
 
 @inline_kernel
 def _newton_iteration(refactor, coupled, step, regime, work):
-    """Do one Newton iteration at nodes 1 ... N.
+    """Do one Newton iteration of both collocation equations at nodes 1 ... N, and update the unknowns.
 
     refactor: bool, whether to evaluate and invert the Newton matrices again.
     coupled: bool, whether p' depends on the second unknown, so that the system of p contains feedback.

@@ -187,7 +187,7 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
     v: 1/F(eta), shape (n,).
     alpha: value for v -> infinity.
     fast: W and C of the fast limit.
-    Returns two arrays (n,).
+    Returns (values, derivatives), (n,) each, dimensionless.
     """
     last = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
     (value,), (slope,) = rows.read(press[None], last)
