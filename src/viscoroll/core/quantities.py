@@ -178,10 +178,11 @@ def _is_quantity(value: Any) -> bool:
 
 
 def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
-    """Return (numbers of a list, unit of the first); elements in other units are converted.
+    """Split the unit from the elements of a list; elements in other units than the first are converted.
 
     name: name of the argument.
     values: the list.
+    Returns (numbers, unit of the first element; None without unit).
     """
     parts = [split_unit(name, value) for value in values]
     units = list(dict.fromkeys(unit for _, unit in parts))
@@ -200,6 +201,7 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
 
     name: name of the argument.
     value: the array.
+    Returns (array with its labels, unit; None without unit).
     """
     is_xarray = hasattr(value, "dims")
     data = value.data if is_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())

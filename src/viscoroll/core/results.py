@@ -132,7 +132,7 @@ def column_name(name: str, unit: str) -> str:
 
 
 def format_value(value: Any) -> str:
-    """Return a number, a short array, or shape and range of a long one as text.
+    """Return a number or a short array as text; of a long array its shape and range.
 
     value: number, text or array.
     """

@@ -113,8 +113,8 @@ class FromPrograms:
 
         Parameters
         ----------
-        E, nu : of the elastic node, Pa: the long-time values (static stiffness "Long-term").  Without ``K`` nu is
-            taken constant in time.
+        E, nu : Young's modulus, Pa, and Poisson's ratio of the elastic node: the long-time values (static stiffness
+            "Long-term").  Without ``K`` nu is taken constant in time.
         G : shear moduli G_m of the branches, Pa, >= 0.
         tau : their relaxation times tau_m, s, > 0.
         K : bulk moduli of the branches, Pa, >= 0, at the same times; zeros where only deviatoric strains are

@@ -89,7 +89,7 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     """Return start speeds, checked: floats as they are, else arrays.
 
-    V0, omega0: dimensionless, numbers or arrays.
+    V0, omega0: start speeds, dimensionless, numbers or arrays.
     Raises ParameterError unless both are finite and at most 1e100 in size, and the larger is 0 or at least 1e-300.
     """
     low, high = SPEED_RANGE

@@ -120,10 +120,10 @@ class _Sampled:
         return float(self.values(np.array([t]))[0])
 
     def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
-        """Fit a piece.
+        """Fit the callable between two times by one polynomial.
 
         start, stop: ends of the piece, in T_ref.
-        so_far: largest value before it.
+        so_far: largest value of the callable before the piece, dimensionless.
         Returns (the piece, None if its fit is not good; where to cut it, None for its middle).
         """
         middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
@@ -159,9 +159,10 @@ class _Sampled:
     def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
         """Return the neighbouring doubles between which the callable jumps.
 
-        t, values: ascending times of a piece and the values there, (n,).
+        t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,).
         allowed: error allowed to a fit at its end.
-        Returns None unless one jump is most of the variation.
+        Returns (last time before the jump, first time behind it), in T_ref; None unless one jump is most of the
+        variation.
         """
         change = np.abs(np.diff(values))
         n = int(change.argmax())

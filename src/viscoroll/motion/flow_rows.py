@@ -34,7 +34,8 @@ class Nodes:
 
         Chebyshev coefficients are computed between, which limits the rounding errors.
 
-        values : at the nodes, along the last axis.
+        values : values at the nodes, (..., nodes).
+        Returns the coefficients, (..., powers), ascending.
         """
         return _multiply(self._powers, _multiply(self._chebyshev, values))
 
@@ -101,6 +102,7 @@ class Rows:
 
         powers : coefficients, (row, power).
         target : values, of the shape of ``x``; the upper end is returned for values beyond it.
+        Returns the arguments, of the shape of ``target``.
         """
         slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]
         x = np.interp(np.log(target), np.log(self.value(powers, self.x).ravel()), self.x.ravel())

@@ -230,7 +230,7 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
     """Return the index of the piece that acts at each time: the last that starts by then.
 
     begins: when pieces start, (1 or m, k), ascending, the first at 0.
-    times: (m, n), >= 0.
+    times: times in the unit of ``begins``, (m, n), >= 0.
     Returns (m, n), in 0 ... k - 1.  Takes memory in proportion to its input, and n log k steps.
     """
     if len(begins) == 1:

@@ -131,7 +131,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """Return whether the added mass acts; raises ParameterError where N, or the part of either body, is not known.
 
     unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
-    scene: parameters.
+    scene: dimensionless parameters of the roller.
     """
     if not check_bool("unsteady", unsteady):
         return False
@@ -160,10 +160,10 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    start: speeds and drive, dimensionless.
-    scene: parameters.
+    start: start speeds and drive, dimensionless.
+    scene: dimensionless parameters of the roller.
     rested: time of the standstill, in T_ref.
-    Returns (V0, omega0, whether the cylinder stays in its indentation).
+    Returns (V0, omega0, whether the cylinder stays in its indentation); the speeds are dimensionless.
     Raises ParameterError for a prescribed speed, or a start in full slip, whose cost is not known.
     """
     if rested == 0.0:

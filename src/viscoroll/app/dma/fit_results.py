@@ -141,7 +141,7 @@ class SeriesFit(Result):
         ----------
         nu : Poisson's ratio, constant in time.
         name : name of the material, free text.
-        density : kg/m^3.
+        density : density, kg/m^3; None: not known.
         thickness : thickness of the layer, m; None for a half-space.
 
         Raises

@@ -118,7 +118,7 @@ def _leave_out_mode(
     """Return a spectrum with one mode less; None if none of the best candidates, with refined times, is acceptable.
 
     data : the curve.
-    spectrum : the spectrum from which a mode is left out.
+    spectrum : spectrum of the curve from which a mode is left out.
     ends : shortest and longest time that is allowed.
     good : function that returns whether a spectrum is acceptable; None: any is.
     """

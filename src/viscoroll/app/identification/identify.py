@@ -168,8 +168,9 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
     """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
 
     problem : the least squares.
-    count : number of starts, and one more, from which the first search began.
+    count : number of starts plus 1, as the first search began from the start of the problem.
     seed : seed of the hypercube.
+    Yields coordinates of a start, (unknowns,).
     """
     from scipy.stats import qmc
 

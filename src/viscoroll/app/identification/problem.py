@@ -233,7 +233,7 @@ class Problem:
 
         u : coordinates of the point.
         fixed : powers of a combination of coordinates that keeps its value at u; None: all are free.
-        tolerance : relative, of chi2, coordinates and gradient.
+        tolerance : relative tolerance of chi2, coordinates and gradient.
         steps : largest number of evaluations.
         Returns the minimum.
         """

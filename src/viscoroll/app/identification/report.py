@@ -79,7 +79,7 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
-    """Return the words on the products that the data determine.
+    """Return a sentence on the products of unknowns that the data determine.
 
     found : products, of :meth:`viscoroll.app.identification.Identification.products`.
     """

@@ -149,7 +149,7 @@ class BodyData:
     def wave_ratio(self, speed: Any, density: float | None) -> WaveRatio:
         """Return the ratio of a speed to the slowest shear wave of both bodies, by their long-time shear moduli.
 
-        speed: m/s, any shape.
+        speed: the speed, m/s, any shape.
         density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
         """
         bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, density)]

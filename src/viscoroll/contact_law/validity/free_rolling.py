@@ -139,7 +139,10 @@ class FreeRolling:
         return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays})
 
     def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
-        """Yield each material that occurs, and the flat index of its states."""
+        """Yield each material that occurs, and its states.
+
+        Yields (alpha or series in its own time, index of numpy that selects its states in the flat arrays).
+        """
         if len(self.materials) == 1:
             yield self.materials[0], slice(None)
             return

@@ -102,9 +102,9 @@ class Curve:
         The last term is the elastic and potential energy that is released as the contact shrinks.  Under a load P the
         elastic energy and the height of a contact of half length a and compliance C hold C ln(1/a), so that they differ
         between rest and fast rolling, both of the instantaneous compliance 1/alpha, by ln(a_rest/a_fast)/(4 alpha).
-        After a long rest that is
-        sqrt(alpha): ln(alpha)/(8 alpha); without a rest the contact starts as short as it rolls, and it is 0.  Between
-        the two the term is taken in proportion to the relaxation of the slowest mode; it is below 0.05 for every alpha.
+        After a long rest that ratio is sqrt(alpha), and the term is ln(alpha)/(8 alpha); without a rest the contact
+        starts as short as it rolls, and the term is 0.  Between the two the term is taken in proportion to the
+        relaxation of the slowest mode; it is below 0.05 for every alpha.
 
         u: kappa V at the start, (n,).
         distance: distance travelled until rest, in units of l0, (n,).

@@ -212,9 +212,10 @@ def _start_faults(
 
 
 def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
-    """Return the faults of the three motions of an ensemble that are worst by bounds of each fault.
+    """Return the faults of the model in those motions of an ensemble, three at most, in which they are largest by
+    simple bounds.
 
-    scene: parameters, numbers or arrays (n,).
+    scene: dimensionless parameters of the roller, numbers or arrays (n,).
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
     driven: whether something drives the motions, or they are rolled with the added mass N.
     Returns different sentences without numbers.

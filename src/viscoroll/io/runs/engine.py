@@ -150,8 +150,8 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
 
     store: store of the run.
     cluster: None (threads of this process), "local" or the address of a scheduler.
-    threads: number of threads or local processes; None: all cores available. Gives (executor, number of workers, the
-    store as tasks take it).  Raises ParameterError or FileError.
+    threads: number of threads or local processes; None: all cores available.
+    Yields (executor, number of workers, the store as tasks take it).  Raises ParameterError or FileError.
     """
     if cluster is None:
         interrupted = threading.Event()
@@ -211,8 +211,9 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
     """Draw the progress of a run; a context manager.
 
     run: run whose motions are counted.
-    progress: False, True (a bar) or "lines" (a line every half minute). Gives a function of a number of motions; those
-    that were ``on_disk`` do not count in the rate.
+    progress: False, True (a bar) or "lines" (a line every half minute).
+    Yields a function (number of motions, on_disk=False) that advances it; motions that were on disk do not count in the
+    rate.
     """
     from tqdm import tqdm
 

@@ -53,8 +53,10 @@ def _software() -> dict[str, str]:
 def identity(run: Run) -> str:
     """Return the SHA-256 of all that the blocks of a run depend on, whatever their number, and of the software.
 
-    run: two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata
-    depend on the number of motions, or ``n`` changes their method or the size of their blocks.
+    Two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata depend
+    on the number of motions, or ``n`` changes their method or the size of their blocks.
+
+    run: the run.
     """
     n = run.settings.n if run.settings.design == "latin" else None
     text = json.dumps([run.digest, run.method, run.block, n, _software()])

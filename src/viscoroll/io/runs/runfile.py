@@ -351,10 +351,10 @@ def _begin_motions(run: Run, values: dict[str, Any]) -> None:
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
     """Return the ``digest`` of a :class:`Run`; comments and the order of keys do not change it.
 
-    settings: section [run].
+    settings: content of the section [run].
     times: output times.
     content: sections as read.
-    materials: certain materials as TOML.
+    materials: materials without uncertain inputs, as TOML.
     inputs: uncertain inputs, whose samples count.
     """
     kept = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _NOT_IN_DIGEST}

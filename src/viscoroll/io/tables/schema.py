@@ -62,7 +62,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
 
     name: name of the quantity.
     dims: axes of the variable.
-    values: array.
+    values: array of its values, over ``dims``.
     si: whether it is in SI units, else dimensionless.
     """
     import xarray as xr
