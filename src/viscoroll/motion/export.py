@@ -60,8 +60,9 @@ def _dataset(
 
     result: motion or ensemble, whose rows, drive and roller are put into the dataset.
     title: title of the dataset.
-    dims: dimensions of the rows.
-    variables, about: further variables and attributes.
+    dims: names of the dimensions of the rows, ("t",) or ("motion", "t").
+    variables: further variables by name, as xarray takes them.
+    about: further attributes by name.
     """
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims

@@ -209,7 +209,7 @@ def _mode(mode: Any) -> Mode:
 def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
     """Fit a series to measured moduli.
 
-    curve : all that was measured.
+    curve : measured moduli over frequency or time, all points.
     modes : largest number of modes; None: as few as the misfit needs.
     misfit : root mean square of the relative errors that each modulus may have.
     Returns (the data that were fitted, perhaps thinned; the fields of a fit that state its data and its series, by

@@ -74,9 +74,9 @@ def write_column(column, speeds, code, forces, work):
     """Write speeds, regime and forces to one output column.
 
     column: int, index of the output time.
-    speeds: (V, omega, delta), dimensionless, not oriented.
+    speeds: (V, omega, delta), dimensionless, in fixed directions, not in those of the regime.
     code: int, regime in the outputs.
-    forces: (force, torque), dimensionless, not oriented.
+    forces: (force, torque), dimensionless, in fixed directions too.
     work: Workspace, whose outputs are written.
     """
     out, (V, omega, delta), (force, torque) = work.outputs, speeds, forces

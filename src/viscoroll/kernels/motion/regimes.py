@@ -224,8 +224,9 @@ def enter_segment(state, regime, step_state, work):
 
 @kernel
 def initial_regime(V, omega, step_state, work):
-    """Return state and regime of a start with V or omega not 0, by Condition (9) of full slip; a brake is not
-    considered yet.
+    """Return state and regime at the start of a motion from V or omega other than 0; a brake is considered later.
+
+    The regime is full slip where |omega - V| is at least delta_star |V|, Eq. (9).
 
     V, omega: float, initial speeds, dimensionless.
     step_state: StepState, at the start.

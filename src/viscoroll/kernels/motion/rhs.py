@@ -97,7 +97,7 @@ class Rates(NamedTuple):
 
 @inline_kernel
 def applied_forces(V, omega, load, regime):
-    """Return the applied force and torques, feedback included, oriented by the regime, dimensionless.
+    """Return the applied force and torques, feedback included, in the direction of the regime, dimensionless.
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
     load: Load, the drive.
@@ -119,7 +119,7 @@ def required_forces(V, omega, rates, load, regime, j):
     load: Load, the drive.
     regime: Regime, at that state.
     j: float, moment of inertia, dimensionless.
-    Returns (force, torque of the motor, torque of the brake), oriented by the regime, dimensionless.
+    Returns (force, torque of the motor, torque of the brake), in the direction of the regime, dimensionless.
     """
     force, torque, _ = applied_forces(V, omega, load, regime)
     brake = -load.brake * regime.spin_sign
