@@ -247,12 +247,13 @@ _BEFORE_THE_SPLIT = ("contact", "stress", "validity", "resistance_extrema")
 def resolve_model(
     roller: Any, call: str, *, moves: bool = False, slope: Any = None
 ) -> tuple[Roller, Parameters, Scale]:
-    """Return (the roller on its slope, its dimensionless parameters, its scale) of a call.
+    """Check the first argument of a call, and return the roller on its slope with its parameters and its scale.
 
     roller: the first argument of the call.
     call: name of the function that is called, for errors.
-    moves: whether it needs gamma.
+    moves: whether the function needs gamma, which only a roller that moves has.
     slope: angle, rad; None: level.
+    Returns (roller, dimensionless parameters, scale).
     Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma.
     """
     if not isinstance(roller, Roller):

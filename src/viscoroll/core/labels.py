@@ -39,10 +39,11 @@ class Labels(NamedTuple):
         return self.wrap(name, values, further) if fits else values
 
     def renamed_coords(self, names: tuple[str, ...], prefix: str) -> tuple[tuple[str, ...], dict[str, Any]]:
-        """Return (axes, coordinates) for a dataset whose variables have some of their names.
+        """Return axes and coordinates for a dataset in which variables have the names of some axes or coordinates.
 
         names: names of the variables.
         prefix: word put before an axis or a coordinate of the same name.
+        Returns (names of the axes, name -> coordinate).
         """
         new = {name: f"{prefix}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
         coords = {new[name]: (tuple(new[dim] for dim in dims), values) for name, (dims, values) in self.coords.items()}
@@ -107,7 +108,11 @@ def _loaded_type(module: str, name: str) -> Any:
 
 
 def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
-    """Return (name -> values, labels) of arrays of xarray, broadcast; raise ParameterError if coordinates differ."""
+    """Broadcast arrays of xarray, and separate their values from their labels.
+
+    arrays: name -> array.
+    Returns (name -> values, labels).  Raises ParameterError if coordinates differ.
+    """
     import xarray as xr
 
     try:
@@ -127,7 +132,11 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
 
 
 def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
-    """Return (name -> values, labels) of series of pandas; raise ParameterError if their indices differ."""
+    """Separate the values of series of pandas from their labels.
+
+    series: name -> series.
+    Returns (name -> values, labels).  Raises ParameterError if the indices differ.
+    """
     import pandas as pd
 
     first, *others = series.values()

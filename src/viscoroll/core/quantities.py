@@ -73,13 +73,15 @@ def to_unit(name: str, value: Any, target: str) -> Any:
 
 
 def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
-    """Return (numbers of a value, its unit); the unit is None if it has none.
+    """Split a value into its numbers and its unit.
 
     Labels of xarray and pandas stay.  All elements of a list, or of an array of objects, are converted to the unit of
     the first.
 
     name: name of the argument.
     value: what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.
+
+    Returns (numbers, unit; None without unit).
 
     Raises
     ------
@@ -195,7 +197,7 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
 
 
 def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
-    """Return (labelled numbers, their unit) of an array of xarray, a series or an index of pandas.
+    """Split the unit from an array of xarray, a series or an index of pandas.
 
     The unit is that of the elements, of the attribute ``units``, or in the title of a column, as results write it.
 

@@ -277,10 +277,11 @@ class Values(Result):
 
 
 def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """Return (names of all axes, values of the axes along which one argument alone varies).
+    """Name the axes of a result by the arguments that vary along them.
 
     given: name -> argument.
     shape: shape of arguments and results, broadcast.
+    Returns (names of all axes, name -> values of an axis along which one argument alone varies).
     """
     dims, values = [], {}
     for axis, size in enumerate(shape, -len(shape)):

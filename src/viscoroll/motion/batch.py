@@ -94,7 +94,9 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
 
 
 def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowResult | None:
-    """Look motions up in the flow map of their scene, which counts in the material's own time.
+    """Look motions up in the flow map of their scene.
+
+    The map counts in the material's own time, to which the motions are converted.
 
     batch: motions of one scene.
     speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
@@ -172,8 +174,11 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
         return lambda alpha, index: law
 
     def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
-        """Return (law as the kernel takes it, whether bodies differ) for motions; alpha: their alphas; index: their
-        indices.
+        """Return the law of some motions as the kernel takes it.
+
+        alpha: alphas of the motions.
+        index: indices of the motions.
+        Returns (law, whether the bodies differ).
         """
         if several is not None:
             index = np.minimum(index, len(several) - 1)

@@ -110,11 +110,11 @@ class DriveFunctions:
         return [slice(first, first + step) for first in range(0, max(count, 1), step)]
 
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
-        """Return (value at t = 0, largest size) of a prescribed speed, of every motion that has its own.
+        """Return the value of a prescribed speed at t = 0, and its largest size.
 
         name: name of the speed.
         Raises ParameterError where it jumps.
-        Returns two arrays with one value for each motion that has its own speed, dimensionless.
+        Returns (values, largest sizes), with one number for each motion that has its own speed, dimensionless.
         """
         speed, firsts, sizes = self.functions[name], [], []
         for part in self._blocks(count_motions(speed)):

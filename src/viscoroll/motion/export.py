@@ -87,11 +87,11 @@ def _dataset(
 
 
 def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return (variables ``drive_force`` and the like, with the times of schedules; attributes for callables) of a
-    result.
+    """Describe the drive of a result by variables and attributes of its dataset.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
     motions have times of their own (motion, drive_force_corner); gains of a feedback are attributes.
+    Returns (variables ``drive_force`` and the like, with the times of schedules; attributes for callables and gains).
     """
     variables: dict[str, Any] = {}
     texts: dict[str, Any] = {}

@@ -92,7 +92,7 @@ def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
 
 
 def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Floats) -> tuple[Floats, Floats]:
-    """Return (V, delta) in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip.
+    """Return the state in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip.
 
     problem : the scene.
     sign : sign of omega - V.

@@ -42,11 +42,12 @@ class SlowManifold(NamedTuple):
     slow_log: Floats
 
     def path_between(self, start: Floats, span: Floats, rate: float) -> tuple[Floats, Floats]:
-        """Return (distance, angle) along the manifold, as ``manifold_path`` of :mod:`..kernels.flow.lookup`.
+        """Return distance and angle of a motion along the slow manifold, while its slow logarithm decreases.
 
         start : slow logarithms at the beginning.
         span : decrease of the slow logarithms.
-        rate : decrease in unit time.
+        rate : decrease of the slow logarithm in unit time.
+        Returns (distance, angle), of the shape of ``start``.
         """
         end, value = start - span, self.rows.value
         x, angle = (value(powers, start) - value(powers, end) for powers in self.path)

@@ -112,8 +112,8 @@ def has_plateau(data: Data, spectrum: Spectrum) -> bool:
 def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
     """Refine a spectrum by varying its times too.
 
-    data : the curve.
-    spectrum : the start.
+    data : the measured moduli.
+    spectrum : spectrum from which the search starts.
     ends : shortest and longest time that is allowed.
     calls : largest number of evaluations of the residuals.
     Returns the refined spectrum.

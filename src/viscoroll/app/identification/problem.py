@@ -219,10 +219,10 @@ class Problem:
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return (residuals, their derivatives), each row times the square root of its weight in chi2.
+        """Return the residuals and their derivatives, each row multiplied by the square root of its weight in chi2.
 
         u : coordinates of the unknowns, shape (unknowns,).
-        Returns shapes (n,) and (n, unknowns), dimensionless.
+        Returns (residuals, (n,); derivatives with respect to the coordinates, (n, unknowns)), dimensionless.
         """
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)

@@ -237,10 +237,11 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
 
 
 def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
-    """Return (lower ends, upper ends, whether the function rises) of the intervals in which y changes its sign.
+    """Find the intervals between points in which a function changes its sign.
 
     x: points, ascending, (n,).
     y: values of the function there.
+    Returns (lower ends, upper ends, whether the function rises), (intervals,) each.
     """
     at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)
     return x[at], x[at + 1], y[at + 1] > 0.0

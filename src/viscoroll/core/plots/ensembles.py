@@ -183,10 +183,11 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 
 
 def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
-    """Return (title of a panel, index -> values over the inputs) at the last time with indices.
+    """Return the Sobol indices of a quantity at the last time that has any.
 
     indices: Sobol indices of a run, a dataset.
     name: name of the quantity.
+    Returns (title of the panel, name of the index -> values over the inputs).
     """
     values = {key: indices[f"{name}_{key}"].values for index in _SOBOL for key in (index, f"{index}_conf")}
     if values["S1"].ndim == 1:

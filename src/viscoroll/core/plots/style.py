@@ -33,12 +33,13 @@ THIN = {"color": "0.7", "linewidth": 0.6}
 def new_figure(
     title: str, rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 4.2), **options: Any
 ) -> tuple[Figure, Any]:
-    """Return (figure, its axes) without a change of matplotlib's global state.
+    """Make a figure without a change of matplotlib's global state.
 
     title: line on top.
     rows, columns: numbers of rows and columns of axes.
     size: width and height, inches.
     options: keyword arguments of ``Figure.subplots``.
+    Returns (figure, its axes: one, or an array of them).
     """
     from matplotlib.figure import Figure
 
@@ -50,13 +51,14 @@ def new_figure(
 def new_panels(
     title: str, count: int, per_row: int, size: tuple[float, float], **options: bool
 ) -> tuple[Figure, list[Any]]:
-    """Return (figure, list of axes of one size).
+    """Make a figure with several axes of one size, row after row.
 
     title: line on top.
     count: number of axes.
     per_row: largest number in a row.
     size: size of each, inches.
     options: keyword arguments of ``Figure.subplots``.
+    Returns (figure, list of its axes).
     """
     columns = min(per_row, count)
     rows = -(-count // columns)

@@ -91,7 +91,7 @@ def may_be_unit(text: str) -> bool:
 
 
 def conversion(unit: str, wanted: str) -> tuple[float, float]:
-    """Return (factor, offset) of a unit as files spell it: wanted = factor * number + offset.
+    """Return factor and offset of the conversion of a unit as files spell it: wanted = factor * number + offset.
 
     unit : "" and "-" of a ratio; "mpa", "U/min", "C", "Nm" are read as MPa, rpm, degC, N m where pint's own reading
     has another dimension.

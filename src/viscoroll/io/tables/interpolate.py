@@ -125,10 +125,11 @@ class Interpolant:
     def _map_points(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
     ) -> tuple[dict[str, Floats], tuple[int, ...]]:
-        """Return (axis -> coordinates of the splines, broadcast; their shape).
+        """Check the points of a call, and convert them to the coordinates of the splines.
 
-        points: axis -> what a caller gave.
+        points: axis -> coordinates that the caller gave.
         names: fields to interpolate.
+        Returns (axis -> coordinates in the shape of the points; that shape).
         """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):
@@ -154,7 +155,11 @@ class Interpolant:
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
-        """Return (axes of more than one node, spline over them; without axes the value) of the field ``name``."""
+        """Return the spline of a field, computed at its first use.
+
+        name: name of the field.
+        Returns (axes of more than one node, spline over them; without axes the value of the field).
+        """
         if name not in self._splines:
             field = self._table[name].squeeze()
             dims = tuple(map(str, field.dims))

@@ -216,10 +216,11 @@ def evaluate_integral(v, first, nodes, row):
 
 @kernel
 def row_range(row, nodes):
-    """Return (smallest, largest) of the values of a row at all nodes.
+    """Return the smallest and the largest of the values of a row at all nodes.
 
     row: int, index in ``nodes`` of the row.
     nodes: Workspace.nodes.
+    Returns (smallest, largest), in the unit of the row.
     """
     smallest = largest = nodes[row]
     for i in range(1, N + 1):

@@ -103,7 +103,7 @@ def _rounding_scale_of_V(step, work):
 
 @inline_kernel
 def error_scales(step, regime, work):
-    """Return (scale of V, scale of the second unknown) by which errors of a step are divided, dimensionless.
+    """Return the scales by which errors of V and of the second unknown on a step are divided.
 
     An error of a speed is divided by the largest speed of the step, that of V in full slip by the largest V; an error
     of d is multiplied by its weight.
@@ -111,6 +111,7 @@ def error_scales(step, regime, work):
     step: Step, the trial step.
     regime: Regime, that of the step.
     work: Workspace, with the unknowns at its nodes.
+    Returns (scale of V, scale of the second unknown), dimensionless.
     """
     nodes, largest_speed, largest_V, V_change = work.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):

@@ -107,23 +107,25 @@ def excess_slip(slip, V, scene):
 
 @inline_kernel
 def added_inertia(V, scene):
-    """Return (n = gamma N, its derivative in V, its integral over V from 0) of the added mass N V', dimensionless.
+    """Return the factor n = gamma N of the added mass N V', with its derivative and its integral.
 
     The equations are in docs/theory_materials.md, Slowly changing speed; all are 0 for a law without added mass.
 
     V: float, speed of the axis, dimensionless.
     scene: Scene, parameters of Eq. (22).
+    Returns (n, its derivative in V, its integral over V from 0), dimensionless.
     """
     return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
 
 
 @inline_kernel
 def omega_and_delta(state, regime, scene):
-    """Return (omega, creepage delta of Eq. (5)) of a state, dimensionless; delta is infinite at V = 0 in full slip.
+    """Return angular velocity and creepage, Eq. (5), of a state.
 
     state: State, the unknowns.
     regime: Regime, which tells what the second unknown is.
     scene: Scene, parameters of Eq. (22).
+    Returns (omega, delta), dimensionless; delta is infinite at V = 0 in full slip.
     """
     if not regime.full_slip:
         delta = creepage(state.V, state.omega_or_d, scene)

@@ -47,12 +47,12 @@ def _temme_k0(terms: int = 10) -> list[list[float]]:
 
 
 def _temme_k1(terms: int = 10) -> list[list[float]]:
-    """Return the first coefficients of q^n, q = z^2/4, of two series that add up to z K1(z).
+    """Return the first coefficients of q^n, q = z^2/4, of the two series of which z K1(z) consists.
 
     z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... + 1/n.
 
     terms : number of coefficients of each series.
-    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1].
+    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of floats.
     """
     i0, k0 = _temme_k0(terms)
     return [

@@ -38,7 +38,7 @@ def _evaluate_N(u, law):
 
 @kernel
 def _evaluate_added_mass(law, V, kappa, gamma):
-    """Return (gamma N, its slope with respect to V, its integral with respect to V) of a law that has N.
+    """Return the factor gamma N of the added mass, with its slope and its integral, for a law that has N.
 
     The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
 
@@ -46,6 +46,7 @@ def _evaluate_added_mass(law, V, kappa, gamma):
     V : speed of the axis.
     kappa : slenderness R/l0.
     gamma : mass parameter, Eq. (4), dimensionless.
+    Returns (gamma N, its slope with respect to V, its integral with respect to V), dimensionless.
     """
     count = law.marks[ROW_COUNT]
     row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
@@ -59,8 +60,7 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 
 @inline_kernel
 def added_mass(law, V, kappa, gamma):
-    """Return (gamma N, its slope with respect to V, its integral with respect to V), zeros of a law of steady
-    rolling.
+    """Return the factor gamma N of the added mass, with its slope and its integral.
 
     The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
 
@@ -68,6 +68,8 @@ def added_mass(law, V, kappa, gamma):
     V : speed.
     kappa : slenderness R/l0.
     gamma : mass parameter, Eq. (4), dimensionless.
+    Returns (gamma N, its slope with respect to V, its integral with respect to V), dimensionless; zeros for a law of
+    steady rolling.
     """
     return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
 

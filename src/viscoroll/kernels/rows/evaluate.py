@@ -171,11 +171,12 @@ def moment_factor(position, u, scale, state):
 
 @inline_kernel
 def lam_and_epsilon(position, u, law):
-    """Return (lam, epsilon): length of the contact divided by l0, and its shift in half lengths.
+    """Return length and shift of the contact at u, Eqs. (6) and (8).
 
     position : :class:`RowPosition` of u: row and argument t in it.
     u : kappa |V|.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns (lam, epsilon): length divided by l0; shift in half contact lengths.
     """
     if in_fast_limit(position):
         _, shift, _ = _fast_terms(u, FAST_TOTAL, law)

@@ -36,10 +36,11 @@ _FAST = 1e-9
 
 @kernel
 def _evaluate_asymptotic(terms, x):
-    """Return (value, first derivative, second derivative) of sum a_n x^-n.
+    """Evaluate the asymptotic series sum a_n x^-n with its derivatives.
 
     terms : coefficients a_n, of which a_0 = 1.
     x : argument, large.
+    Returns (value, first derivative, second derivative).
     """
     w = 1.0 / x
     value = slope = second_derivative = 0.0

@@ -33,6 +33,7 @@ def record_of_alphas(alpha: Floats) -> Any:
     The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
 
     alpha: one value for each element, or one for all, >= 1.
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.rows import alpha_axis
     from ...kernels.rows.record import E0
@@ -72,6 +73,7 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
 
     materials: many series, pairs or covers.
     which: index of the material of each element, shape (n,).
+    Returns :class:`...kernels.rows.record.Law`.
     """
     used, index = np.unique(which, return_inverse=True)
     index = np.ascontiguousarray(index, dtype=np.int64)
@@ -139,6 +141,7 @@ def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
     thickness: thickness of each cover, divided by l0, shape (covers,).
     covers: covers of which all but the thickness is taken.
     index: index of the cover of each element, shape (n,).
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.numerics.interpolation import to_chebyshev
     from ...kernels.rows import thickness_axis
