@@ -30,7 +30,7 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     """Return a function that gives the elements of a block of a broadcast array.
 
     array: numbers that broadcast to ``shape``.
-    shape: shape of all work.
+    shape: shape to which all arrays of the work broadcast.
 
     Returns a function (start, stop) -> vector of the elements start to stop of the flattened broadcast array; of a
     single number always that number, (1,).  Vectors are views where memory allows it, else copies, and read-only,

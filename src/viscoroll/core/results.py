@@ -66,8 +66,7 @@ class Result:
         path : file to save it in, with a suffix that matplotlib knows; default: none.
 
         Returns
-        -------
-        matplotlib.figure.Figure
+        ------- matplotlib.figure.Figure
 
         Raises
         ------

@@ -226,8 +226,7 @@ class Material(FromPrograms):
         omega : angular frequencies, rad/s, >= 0, of any shape.
 
         Returns
-        -------
-        number or array, Pa, of the shape of ``omega``
+        ------- number or array, Pa, of the shape of ``omega``
 
         Raises
         ------
@@ -278,8 +277,7 @@ class Material(FromPrograms):
         t : times, s, >= 0, of any shape.
 
         Returns
-        -------
-        number or array, Pa, of the shape of ``t``
+        ------- number or array, Pa, of the shape of ``t``
 
         Raises
         ------

@@ -84,7 +84,8 @@ _LATER_REJECTION = 0.4
 def moderate_speed(scene):
     """Return the V that divides slow from fast rolling, dimensionless.
 
-    It is 1/kappa divided by the longest time of the material, or half of that, read off the first row of the law.
+    It is between 0.5 and 1 times 1/kappa divided by the longest time of the material, by the octave of the first row of
+    the law.
 
     scene: Scene, parameters of Eq. (22).
     """
