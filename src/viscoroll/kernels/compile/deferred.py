@@ -23,16 +23,19 @@ from .notice import announce_compiling
 
 #: Whether kernels are compiled in this way; False after a failure.
 _deferring = True
-#: Passes of numba that search a kernel for what kernels do not have: closures, and overloads to be inlined.
-_NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift")
+#: Passes of numba that search a kernel for what kernels do not have: closures, overloads to be inlined, expressions of
+#: whole arrays.
+_NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift", "NopythonRewrites")
 
 
 @contextmanager
-def _memoized_types(typing):
-    """Keep, within a ``with`` block, the types of operations on numbers, which numba resolves again at each sum of
-    floats.
+def _memoized_types(typing, target):
+    """Keep, within a ``with`` block, two results that numba computes again for each statement.
+
+    These are the types of operations on numbers, and the sizes of LLVM's types, for each of which LLVM parses a module.
 
     typing : numba's typing context.
+    target : numba's target context.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -43,15 +46,18 @@ def _memoized_types(typing):
     def resolve_function_type(function, args, kws):
         if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
             return plain(function, args, kws)
+        if not all(isinstance(kind, types.Literal) for kind in args):  # numba resolves again for every literal integer
+            args = tuple(map(types.unliteral, args))
         if (function, args) not in resolved:
             resolved[function, args] = plain(function, args, kws)
         return resolved[function, args]
 
     typing.resolve_function_type = resolve_function_type
+    target.get_abi_sizeof = lru_cache(maxsize=None)(target.get_abi_sizeof)
     try:
         yield
     finally:
-        del typing.resolve_function_type
+        del typing.resolve_function_type, target.get_abi_sizeof
 
 
 @contextmanager
@@ -86,7 +92,7 @@ class EntryPipeline:
         if not _deferring:
             return Compiler(*self._context).compile_extra(function)
         try:
-            with _memoized_types(self._context[0]):
+            with _memoized_types(*self._context[:2]):
                 return _pipelines()[1](*self._context).compile_extra(function)
         except Exception as error:
             reason = error
@@ -237,6 +243,10 @@ def _pipeline(library_class: type):
 
         def __eq__(self, other):
             return isinstance(other, ShortFlags) and self._values == other._values
+
+        def values(self):
+            """Return the flags that are set, for the events of numba, to which nobody listens."""
+            return self._values
 
     class Compiler(CompilerBase):
         def __init__(self, typing, target, library, args, returns, flags, types_):
