@@ -162,6 +162,14 @@ def _pipelines():
         def set_env(self, name, environment):
             """Do nothing: there is no code yet."""
 
+        def add_llvm_module(self, module):
+            """Take a module over, which numba would link into an empty one; further ones are linked into it."""
+            if next(iter(self._final_module.functions), None) is None:
+                self._optimize_functions(module)
+                self._final_module = module
+            else:
+                super().add_llvm_module(module)
+
         def _optimize_functions(self, module):
             """Optimise nothing: LLVM works on the whole alone."""
             module.data_layout = self._codegen._data_layout
