@@ -46,8 +46,8 @@ _FAST = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
 #: kappa V, dimensionless, from which on (kappa V)^2 N of one relaxation time is at least 0.6/16 of 1 - 1/alpha; at
 #: lower speeds N passes 0.  The least found is 0.64/16, at this speed and alpha near 1.
 _LEAST_FAST_ROLLING = 1.0
-#: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, below which the error of V exceeds 10 % at the start
-#: already, for one relaxation time and kappa V above that speed.
+#: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, below which the error of V exceeds 10 % at the
+#: start already, for one relaxation time and kappa V above that speed.
 _SLOW = 0.6 / 16.0 / STEADY_LIMIT
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256
@@ -215,7 +215,7 @@ def _start_faults(
     return faults
 
 
-def _is_too_slow(material: float | Prony | Bodies, u: float, gamma: float, j: float) -> bool:
+def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
     """Return whether a free motion from a speed is too slow for the law of steady rolling.
 
     Bounds of N decide most motions: the table of :func:`_slow_starts` takes a second where its kernels are not compiled

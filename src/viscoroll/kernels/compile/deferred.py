@@ -16,7 +16,7 @@ from functools import lru_cache
 from typing import Any, Callable
 
 import numba
-from numba.core import types
+from numba.core import base, types
 from numba.core.compiler import Compiler
 
 from .notice import announce_compiling
@@ -30,9 +30,10 @@ _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "Wit
 
 @contextmanager
 def _memoized_types(typing, target):
-    """Keep, within a ``with`` block, two results that numba computes again for each statement.
+    """Keep, within a ``with`` block, results that numba computes again for each statement.
 
-    These are the types of operations on numbers, and the sizes of LLVM's types, for each of which LLVM parses a module.
+    These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
+    a module, and the signatures of numba's own functions that lower a statement.
 
     typing : numba's typing context.
     target : numba's target context.
@@ -53,11 +54,14 @@ def _memoized_types(typing, target):
         return resolved[function, args]
 
     typing.resolve_function_type = resolve_function_type
+    typing.resolve_getattr = lru_cache(maxsize=None)(typing.resolve_getattr)
     target.get_abi_sizeof = lru_cache(maxsize=None)(target.get_abi_sizeof)
+    has_location, base._has_loc = base._has_loc, lru_cache(maxsize=None)(base._has_loc)
     try:
         yield
     finally:
-        del typing.resolve_function_type, target.get_abi_sizeof
+        del typing.resolve_function_type, typing.resolve_getattr, target.get_abi_sizeof
+        base._has_loc = has_location
 
 
 @contextmanager
