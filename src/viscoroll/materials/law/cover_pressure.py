@@ -92,7 +92,7 @@ def _pressure_products(modes: CoverModes, z: float, state: CoverState) -> tuple[
     step = np.minimum(modes.layer_b[:, None] * z * (x[:-1] - x[1:]), _DECAYED)
     decay, gone = np.exp(-step), -np.expm1(-step)
     # for a linear p: its value at the near end, and its increase towards the far end, times the mean distance
-    mean = np.where(step > 1e-3, gone / step - decay, step * (0.5 - step / 3.0))
+    mean = gone / step - decay
     f, reach = gone * p[1:] + (p[:-1] - p[1:]) * mean, 1
     while reach < _INTERVALS:  # f_{k+1} = decay_k f_k + gain_k, for all k at once by doubling
         f[:, reach:] += decay[:, reach:] * f[:, :-reach].copy()

@@ -44,7 +44,7 @@ _BEYOND = 42
 #: loses digits there, not to be amplified at 0
 _END_NODES = 52
 #: degree of these polynomials
-_END_DEGREE = 10
+_END_DEGREE = 12
 #: the secant method ends where the product of the last two relative errors of the load is below this: the next step
 #: then leaves an error below rounding
 _LOAD_ERRORS = 1e-14
@@ -143,10 +143,13 @@ def _solve_node(
             slope = min(max((error - previous[1]) / (y - previous[0]), 0.5), 8.0)
         step = -error / slope
         if previous is not None and abs(error * previous[1]) < _LOAD_ERRORS:
-            values = values + (values - previous[2]) * (step / (y - previous[0]))
-            values[_FREE] += 2.0 * u * local_strain(modes, z, state)
+            # also the local strain is extrapolated by the last step, lest it jump from node to node
+            part = step / (y - previous[0])
+            values = values + (values - previous[2]) * part
+            local, before = (local_strain(modes, *each) for each in ((z, state), previous[3]))
+            values[_FREE] += 2.0 * u * (local + (local - before) * part)
             return values, y + step, slope
-        previous = y, error, values
+        previous = y, error, values, (z, state)
         y += min(max(step, -0.7), 0.7) if abs(step) > _LEAST_STEP else math.copysign(_LEAST_STEP, step)
     raise ParameterError("thickness", f"{thickness:g} (over l0)", "larger: the load of the layer was not met")
 
@@ -221,11 +224,11 @@ def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: 
 
 
 def _fit_end(y: Floats, values: Floats, limits: Floats, wanted: Floats) -> tuple[Floats, Floats, Floats]:
-    """Fit values = limit + y P(y) with a polynomial P of degree 10, by least squares.
+    """Fit values = limit + y P(y) with a polynomial P of degree 12, by least squares.
 
     y: nodes in [0.05, 1], (n,).
     values: at the nodes, (5, n).
-    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial of degree 10 is taken.
+    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial of degree 12 is taken.
     wanted: points in [0, 1], (m,).
     Returns (limits, (5,); (values - limit)/y at the nodes, (5, n); values and derivatives with respect to ln y at
     the points, (2, 5, m)).
@@ -241,7 +244,7 @@ def _fit_end(y: Floats, values: Floats, limits: Floats, wanted: Floats) -> tuple
 
 
 def _value_at_0(y: Floats, values: Floats) -> float:
-    """Return the value at 0 of the polynomial of degree 10 that fits ``values`` at nodes ``y`` in [0.05, 1]."""
+    """Return the value at 0 of the polynomial of degree 12 that fits ``values`` at nodes ``y`` in [0.05, 1]."""
     return float(np.polynomial.chebyshev.Chebyshev.fit(y, values, _END_DEGREE, [0.0, 1.0])(0.0))
 
 

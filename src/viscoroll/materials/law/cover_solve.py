@@ -42,15 +42,18 @@ LARGEST_THETA = 6.0
 _STEP = 0.3
 #: factor of ln(1 + e^s) in that substitution
 _SCALE = 0.6
-#: ends of that rule in s, beyond which the integrands are below rounding
-_ENDS = -26.0, 20.0 / 0.6
+#: ends of that rule in s: above the last one the integrands are below rounding; the first one, u = 2.5e-18, is far
+#: below the poles u = i beta/theta of slow memories at the speeds of the fastest ones: with 3e-12 epsilon was wrong by
+#: 1e-8 where rates are eight decades apart
+_ENDS = -40.0, 20.0 / 0.6
 #: step of the trapezoidal rule in s for integrals over t = 2 ln(1 + e^s), the memory of one polynomial
 _DECAY_STEP = 0.14
 #: factor of ln(1 + e^s) in that substitution
 _DECAY_SCALE = 2.0
 #: ends of that rule in s
 _DECAY_ENDS = -33.0, 18.0
-#: alpha_i from which on ratios of Bessel functions I_n/I_0 of the orders used here are 1 to rounding
+#: alpha_i from which on ratios of Bessel functions I_n/I_0 of the orders used here fall as exp(-n^2/(2 alpha_i)) to
+#: rounding; scipy has no values beyond 1e9
 LARGE_ALPHA = 1e8
 #: beta_j from which on the memory of a polynomial vanishes to rounding
 _LARGE_BETA = 1e12
@@ -258,7 +261,8 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
 
     a, b, e, _, _, Q = modes.series
     alpha, beta = np.minimum(a * z, LARGE_ALPHA), b * z
-    ratio = ive(np.arange(N + 1)[:, None], alpha) / ive(0, alpha)
+    n = np.arange(N + 1)[:, None]
+    ratio = ive(n, alpha) / ive(0, alpha) * np.exp(0.5 * n * n * (1.0 / alpha - 1.0 / (a * z)))
     root, k = np.sqrt(ratio[1]), k0e(beta) / k1e(beta)
     B = np.eye(root.size) + root[:, None] * ((Q.T * k) @ Q) * root
     x = np.linalg.solve(B, np.column_stack([root * e, root[:, None] * Q.T]))
