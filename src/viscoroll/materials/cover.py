@@ -32,7 +32,7 @@ class Cover(Bodies):
     ----------
     series : the layer's :class:`Prony` series, times in units of T_ref; or its alpha >= 1, with T_epsilon for the
         unit of time.
-    nu : Poisson's ratio of the layer, in [0, 0.5], constant in time.
+    nu : Poisson's ratio of the layer, in [0, 0.5], constant in time; a number, or one for each thickness, (n,).
     thickness : h/l0, dimensionless, > 0; l0 is the contact length at rest that the same bodies would have as
         half-spaces.  Half the contact at rest may be at most six thicknesses long.  An array (n,) makes n covers, of
         which ``cover[i]`` is one, for an array parameter of a scene or for the motions of an ensemble.
@@ -68,7 +68,7 @@ class Cover(Bodies):
     nu is near 1/2 (``make prove``; :func:`viscoroll.validity` states it).
     """
 
-    nu: float = 0.5
+    nu: Any = 0.5
     thickness: Any = 1.0
     on: Literal["cylinder", "base"] = "cylinder"
     other_nu: float = 0.5
@@ -77,7 +77,7 @@ class Cover(Bodies):
         self,
         series: Prony | float,
         *,
-        nu: float,
+        nu: ArrayLike,
         thickness: ArrayLike,
         on: Literal["cylinder", "base"] = "cylinder",
         part: float = 1.0,
@@ -100,17 +100,21 @@ class Cover(Bodies):
             raise ParameterError("series", f"{series!r:.60}", "a Prony series of one material, or an alpha")
         if on not in ("cylinder", "base"):
             raise ParameterError("on", repr(on), "'cylinder' or 'base'")
-        ratios = {"nu": nu, "other_nu": other_nu}
-        values: dict[str, Any] = {name: check_number(name, nu, low=0.0, high=0.5) for name, nu in ratios.items()}
+        ratio, other_nu = (
+            check_array("nu", nu, low=0.0, high=0.5),
+            check_number("other_nu", other_nu, low=0.0, high=0.5),
+        )
         part = check_number("part", part, above=0.0, high=1.0)
         given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
         if given.ndim > 1:
             raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
+        if ratio.shape not in ((), given.shape):
+            raise ParameterError("nu", f"of shape {ratio.shape}", "a number, or one for each thickness, (n,)")
         other = Prony.elastic() if other is None else other
         bodies = (series, other) if on == "cylinder" else (other, series)
         share = part if on == "cylinder" else 1.0 - part
-        values |= dict(zip(("cylinder", "base"), bodies, strict=True), share=share, thickness=read_only(given), on=on)
-        self.__dict__.update(values)
+        values: Any = dict(zip(("cylinder", "base"), bodies, strict=True), share=share, on=on, other_nu=other_nu)
+        self.__dict__.update(values, thickness=read_only(given), nu=read_only(ratio))
         super().__post_init__()
         self.__dict__["shape"] = given.shape
 
@@ -140,20 +144,21 @@ class Cover(Bodies):
             allowed = f"rigid or elastic: how M and slip are split, which {call} needs, is not known; contact gives M"
             raise ParameterError("body beside the layer", "one that relaxes", allowed)
 
-    def of_thickness(self, thickness: ArrayLike) -> Cover:
-        """Return the same bodies with another ``thickness``, divided by l0, a number or an array (n,)."""
+    def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
+        """Return the same bodies with another ``thickness``, divided by l0, and ``nu``, numbers or arrays (n,)."""
         more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
-        return Cover(self.layer, nu=self.nu, thickness=thickness, **more)
+        return Cover(self.layer, nu=self.nu if nu is None else nu, thickness=thickness, **more)
 
     def __getitem__(self, which: Any) -> Cover:
-        return self.of_thickness(self.thickness[which])
+        return self.of_thickness(self.thickness[which], self.nu[which] if np.ndim(self.nu) else self.nu)
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
-        thickness = np.shape(self.thickness), np.asarray(self.thickness).tobytes()
-        return self.layer, self.nu, thickness, self.on, self.part, self.other_nu, self.other
+        numbers = (np.shape(self.thickness), *(np.asarray(each).tobytes() for each in (self.thickness, self.nu)))
+        return self.layer, numbers, self.on, self.part, self.other_nu, self.other
 
     def __repr__(self) -> str:
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
         other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
-        return f"Cover({self.layer!r}, nu={self.nu!r}, thickness={format_value(self.thickness)}, on={self.on!r}{other})"
+        nu, thickness = format_value(self.nu), format_value(self.thickness)
+        return f"Cover({self.layer!r}, nu={nu}, thickness={thickness}, on={self.on!r}{other})"

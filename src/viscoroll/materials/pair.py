@@ -159,15 +159,16 @@ class Pair:
         Raises
         ------
         ParameterError
-            Many series, Poisson's ratios or parts of the compliance.
+            Many series or parts of the compliance.
         """
         on = self.covered
         assert on is not None
         layer, other = (self.cylinder, self.half_space) if on == "cylinder" else (self.half_space, self.cylinder)
         parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
-        if layer.prony.shape or np.ndim(layer.nu) or np.ptp(parts) > 0.0:
+        if layer.prony.shape or np.ptp(parts) > 0.0:
             allowed = (
-                "one series, nu and compliance share where a body has a thickness: only the thickness and l0 may vary"
+                "one series and compliance share where a body has a thickness: only the thickness, l0 and, beside a "
+                "rigid body, nu may vary"
             )
             raise ParameterError(on, "of many materials", allowed)
         series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))

@@ -79,8 +79,8 @@ def _dataset(
     if (series := result.scene.series) is not None:  # the unit of time is its own
         attrs |= {"relaxation_strengths": series.E, "relaxation_times": series.tau}
     if (cover := result.scene.cover) is not None:
-        attrs |= {} if cover.shape else {"cover_thickness_over_l0": cover.thickness}
-        attrs |= {"cover_on": cover.on, "cover_nu": cover.nu}
+        numbers = {"cover_thickness_over_l0": cover.thickness, "cover_nu": cover.nu}
+        attrs |= {"cover_on": cover.on} | {name: number for name, number in numbers.items() if not np.ndim(number)}
     if si:
         attrs |= {name: getattr(result.roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
     return xr.Dataset(data | variables | drives, {"t": ("t", result.t, column_attributes("t", si))}, attrs)

@@ -48,11 +48,11 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
     assert cover is not None
     state = evaluate_contact(scene, np.abs(V), np.zeros(()), False, ("lam", "epsilon"))
     theta = 0.5 * state["lam"] / cover.thickness
-    most, thickness = float(np.interp(cover.nu, _NU, _MOST_THETA)), float(np.min(cover.thickness))
+    most, thickness = np.interp(cover.nu, _NU, _MOST_THETA), float(np.min(cover.thickness))
     error, coupled = stated_error(thickness), np.interp(thickness, _COUPLED_THICKNESS, _COUPLED)
     sentence = (
         f"h/l0 = {thickness:.3g}: half the contact length is up to {float(np.max(theta, initial=0.0)):.2g} times the "
-        f"thickness; up to {most:.3g} times is allowed, where the contact sticks in front and slips behind; the error "
+        f"thickness; up to {np.min(most):.3g} times is allowed, where the contact sticks in front and slips behind; the error "
         f"of Q is up to {100.0 * error:.1f} % of mu P, and with nu near 1/2 and mu = 0.5 by {100.0 * coupled:.1f} % "
         "larger, since the pressure that shear causes is neglected"
     )

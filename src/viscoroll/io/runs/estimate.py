@@ -102,19 +102,22 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 def _time_of_laws(run: Run) -> float:
     """Return the seconds that the laws of the covers of the first block take; 0.0 of half-spaces.
 
+    run: with covers of one thickness over l0, which have one law, or of many, which have some for each octave, and
+        twelve times as many where Poisson's ratio is uncertain.
     One law is computed, and its time multiplied.
 
     run: run of covers of one thickness over l0, which have one law, or of many, which have some for each octave.
     """
-    from ...kernels.rows.thickness_axis import NODES
+    from ...kernels.rows.thickness_axis import NODES, NU_NODES
     from ...materials.law.cover_rows import cover_rows
 
     cover = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene().cover
     if cover is None:
         return 0.0
     laws = NODES * np.unique(np.frexp(cover.thickness)[1]).size if cover.shape else 1
+    laws *= NU_NODES if np.ndim(cover.nu) else 1
     start = time.perf_counter()
-    cover_rows(cover.of_thickness(np.max(cover.thickness)))
+    cover_rows(cover.of_thickness(np.max(cover.thickness), np.max(cover.nu)))
     return laws * (time.perf_counter() - start)
 
 

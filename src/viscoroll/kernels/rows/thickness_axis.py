@@ -1,9 +1,8 @@
 """Rows for one thickness of a cover after another, interpolated between laws at nodes, without root finding.
 
-Every number of a law is a polynomial of log2(h/l0) within an octave of the thickness h.  It is the sum of the numbers
-of the laws at the nodes, each times a weight that depends on the thickness alone.
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+Every number of a law is a polynomial of log2(h/l0) within an octave of the thickness h, and of ln(3 - 4 nu) where
+covers differ in Poisson's ratio nu.  It is the sum of the numbers of the laws at the nodes, each times a weight that
+depends on thickness and nu alone.
 """
 
 from ..compile.intrinsics import floats_at, integers_at, record_at, record_type
@@ -24,10 +23,14 @@ from .record import (
 
 #: Laws of an octave of thickness, at Chebyshev nodes; of a rubber with three modes the error then is 1e-12.
 NODES = 14
+#: Laws over Poisson's ratio in [0, 1/2] at each of them, at Chebyshev nodes of ln(3 - 4 nu), where the kernel of the
+#: layer has no singularity nearby; the error then is 1e-10 of covers down to h/l0 = 0.15.
+NU_NODES = 12
 #: What these kernels read.  Addresses: rows, marks and cover rows of the law; the index of the cover of each state;
 #: the weights of each cover; for each cover the address of the laws of its octave and their number of rows.
-#: state_count: length of the indices, 1 or one for each state.  cover_count: number of covers.
-SOURCE = record_type("rows marks cover_rows cover_index state_count weights octaves cover_count")
+#: state_count: length of the indices, 1 or one for each state.  cover_count: number of covers.  law_count: laws of an
+#: octave.
+SOURCE = record_type("rows marks cover_rows cover_index state_count weights octaves cover_count law_count")
 #: Mark that is the address of the laws of the selected octave.
 _LAWS = MAKER_MARKS
 
@@ -44,10 +47,10 @@ def _interpolate(source, marks, first, to, out, count):
     count : number of numbers.
     """
     law_size = (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
-    weights = floats_at(source.weights + 8 * NODES * marks[SELECTED], NODES)
+    weights = floats_at(source.weights + 8 * source.law_count * marks[SELECTED], source.law_count)
     for k in range(count):
         out[to + k] = 0.0
-    for j in range(NODES):
+    for j in range(source.law_count):
         law = floats_at(marks[_LAWS] + 8 * (j * law_size + first), count)
         weight = weights[j]
         for k in range(count):

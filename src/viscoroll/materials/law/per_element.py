@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from functools import lru_cache
 from types import SimpleNamespace
@@ -78,7 +79,7 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     used, index = np.unique(which, return_inverse=True)
     index = np.ascontiguousarray(index, dtype=np.int64)
     if isinstance(materials, Cover):
-        return _record_of_covers(materials.thickness[used], materials, index)
+        return _record_of_covers(materials[used], index)
     from ...kernels.rows import series, z_grid
 
     blocks = list(materials.blocks(used))
@@ -135,51 +136,64 @@ def _lazy_record(
     return Law(rows, marks, N_rows, selector, maker, int(source.ctypes.data), cover_rows)
 
 
-def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
+def _record_of_covers(covers: Cover, index: Integers) -> Any:
     """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
 
-    thickness: thickness of each cover, divided by l0, shape (covers,).
-    covers: covers of which all but the thickness is taken.
+    covers: many covers, which may differ in Poisson's ratio too.
     index: index of the cover of each element, shape (n,).
     Returns :class:`...kernels.rows.record.Law`.
     """
-    from ...kernels.numerics.interpolation import to_chebyshev
     from ...kernels.rows import thickness_axis
     from ...kernels.rows.record import E0, ROW_COUNT
 
-    position = np.log2(thickness)
+    position, many_nu = np.log2(covers.thickness), np.ndim(covers.nu) > 0
     octave = np.floor(position)
-    laws = {}
+    weights, laws = _node_weights(position - octave, thickness_axis.NODES), {}
+    if many_nu:
+        of_nu = _node_weights(np.log(3.0 - 4.0 * covers.nu) / math.log(3.0), thickness_axis.NU_NODES)
+        weights = (of_nu[:, :, None] * weights[:, None]).reshape(len(weights), -1)
     for exponent in np.unique(octave).tolist():
         with _lock:
-            laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent))
-    nodes = thickness_axis.NODES
-    weights = np.polynomial.chebyshev.chebvander(2.0 * (position - octave) - 1.0, nodes - 1) @ to_chebyshev(nodes)
+            laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent, np.max(covers.nu)), many_nu)
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
     rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
     marks[E0] = records[0].marks[E0]
     return _lazy_record(
         thickness_axis, thickness_axis.select_cover, rows=rows, marks=marks, cover_index=index, state_count=index.size,
-        cover_rows=np.zeros(max(record.cover_rows.size for record in records)), cover_count=thickness.size,
-        weights=np.ascontiguousarray(weights), octaves=np.array(octaves, np.int64), kept=laws,
+        cover_rows=np.zeros(max(record.cover_rows.size for record in records)), cover_count=len(weights),
+        weights=np.ascontiguousarray(weights), law_count=weights.shape[1], octaves=np.array(octaves, np.int64),
+        kept=laws,
     )  # fmt: skip
 
 
+def _node_weights(x: Floats, count: int) -> Floats:
+    """Return the weights of values at Chebyshev nodes in the polynomial through them; (points, nodes).
+
+    x: points, in [0, 1].  count: number of nodes.
+    """
+    from ...kernels.numerics.interpolation import to_chebyshev
+
+    return np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, count - 1) @ to_chebyshev(count)
+
+
 @lru_cache(maxsize=32)
-def _laws_of_octave(thinnest: Cover) -> tuple[Floats, Any]:
+def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
     """Return the laws at the nodes of an octave of thickness; made once a process.
 
     thinnest: cover at the lower end of the octave.
+    many_nu: whether at the nodes of Poisson's ratio too, in place of that of the cover.
     Returns the numbers of their records, (nodes, numbers in front and rows, then those of the cover), and one of these
     records.
     """
     from ...kernels.numerics.interpolation import chebyshev, to_doubles
-    from ...kernels.rows.thickness_axis import NODES
+    from ...kernels.rows.thickness_axis import NODES, NU_NODES
 
+    ratios = 0.75 - 0.25 * 3.0 ** (0.5 + 0.5 * to_doubles(chebyshev(NU_NODES))) if many_nu else np.array([thinnest.nu])
     numbers = []
-    for node in to_doubles(chebyshev(NODES)).tolist():
-        cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * node))
-        record = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
-        numbers.append(np.concatenate([record.rows, record.cover_rows]))
+    for nu in ratios.tolist():
+        for node in to_doubles(chebyshev(NODES)).tolist():
+            cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * node), nu)
+            record = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
+            numbers.append(np.concatenate([record.rows, record.cover_rows]))
     return np.array(numbers), record
