@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from .contact_law.validity.cylinder import BodyData
 from .core.checks import broadcast_shape, check_array, check_choice, read_only
 from .core.drive import slope_tan_cos
-from .core.errors import ParameterError, exactly_one_error
+from .core.errors import ParameterError, described_error, exactly_one_error, shape_error
 from .core.results import Result, SummaryRow, format_value
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
@@ -127,7 +127,7 @@ class Cylinder(Methods):
             object.__setattr__(self, name, value)
         if material is None:
             if np.ndim(values["T_epsilon"]) > 1:
-                raise ParameterError("T_epsilon", f"of shape {values['T_epsilon'].shape}", "a number or a vector (n,)")
+                raise shape_error("T_epsilon", values["T_epsilon"].shape, "a number or a vector (n,)")
             refuse_short_retardation(values["T_epsilon"], values["T_sigma"])
         if material is not None or base is not None:
             _ = self.pair  # refuses what the materials do not allow
@@ -145,9 +145,9 @@ class Cylinder(Methods):
             sls: dict[str, Any] = {name: getattr(self, name) for name in _SLS}
             return Pair(Material.sls(**sls) if law is None else law, self.base, self.plane)
         if law.pair is None:
-            raise ParameterError("material", "a law without units", "the law of a Material, in SI units")
+            raise described_error("material", "is a dimensionless law", "the law of a Material, in SI units")
         if self.base is not None:
-            raise ParameterError("base", "given", "left out: the law already contains both bodies")
+            raise described_error("base", "is given", "left out: the law already contains both bodies")
         if self.plane != law.pair.plane and not law.pair.like:
             raise ParameterError("plane", repr(self.plane), f"{law.pair.plane!r}, as of the law")
         return Pair(law.pair.cylinder, law.pair.base, self.plane)
@@ -263,10 +263,9 @@ class Cylinder(Methods):
         cover: Any = law.material
         own = self.pair.cover(self.l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"the law of a layer whose thickness is {cover.thickness:.6g} l0"
-            raise ParameterError(
-                "material", found, f"that of {format_value(own.thickness)} l0, which follows from load and R"
-            )
+            found = f"is the law of a layer with thickness/l0 = {cover.thickness:.6g}"
+            allowed = f"the law for {format_value(own.thickness)}, which follows from load and R"
+            raise described_error("material", found, allowed)
 
     @cached_property
     def body_data(self) -> BodyData:

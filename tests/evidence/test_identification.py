@@ -49,7 +49,7 @@ WIDE = {"mu": (3e-3, 30.0), "E": (3e4, 3e8), "E_1": (0.09, 900.0), "T_ref": (1e-
 
 
 def test_what_holds_near_the_values_alone_is_told_beside_what_holds_everywhere():
-    """M above the hump: one product is known far better as long as no unknown goes far."""
+    """M above its maximum: one product is known far better as long as no unknown goes far."""
     data = [vr.Resistance(np.geomspace(1.5, 20.0, 10), sigma=5e-3)]
     fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), data)
     *wide, sharp = fit.products()

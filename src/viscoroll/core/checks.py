@@ -66,8 +66,9 @@ def check_array_extent(
 
 def _range_words(low: float, above: float, high: float) -> str:
     """Return a range in words, "" for all finite numbers; arguments as of :func:`check_array_extent`."""
-    words = [f"finite and >= {low:g}"] if low > -math.inf else [f"finite and > {above:g}"] if above > -math.inf else []
-    return ", ".join(words + ([f"<= {high:g}"] if high < math.inf else []))
+    if high < math.inf:
+        return f"in [{low:g}, {high:g}]" if low > -math.inf else f"in ({above:g}, {high:g}]"
+    return f"finite and >= {low:g}" if low > -math.inf else f"finite and > {above:g}" if above > -math.inf else ""
 
 
 def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:

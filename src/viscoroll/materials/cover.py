@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import check_array, check_number, read_only
-from ..core.errors import ParameterError
+from ..core.errors import ParameterError, described_error, shape_error
 from ..core.results import format_value
 from .bodies import Bodies
 from .prony import Prony, series_of_alpha
@@ -95,7 +95,7 @@ class Cover(Bodies):
         part = check_number("part", part, above=0.0, high=1.0)
         given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
         if given.ndim > 1:
-            raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
+            raise shape_error("thickness", given.shape, "a number, or one for each cover, (n,)")
         other = Prony.elastic() if other is None else other
         bodies = (series, other) if on == "cylinder" else (other, series)
         share = part if on == "cylinder" else 1.0 - part
@@ -127,8 +127,11 @@ class Cover(Bodies):
     def refuse_unknown_split(self, call: str) -> None:
         """Raise ParameterError if the other body relaxes; ``call``: function that needs slip and both parts of M."""
         if self.other.alpha > 1.0:
-            allowed = f"rigid or elastic: how M and slip are split, which {call} needs, is not known; contact gives M"
-            raise ParameterError("body beside the layer", "one that relaxes", allowed)
+            allowed = (
+                f"rigid or elastic: {call} needs the parts of M and of slip in each body, which the law of a layer "
+                "does not give; contact gives M"
+            )
+            raise described_error("the body in contact with the layer", "is viscoelastic", allowed)
 
     def of_thickness(self, thickness: ArrayLike) -> Cover:
         """Return the same bodies with another ``thickness``, divided by l0, a number or an array (n,)."""

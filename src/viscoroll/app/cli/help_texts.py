@@ -83,7 +83,7 @@ file is written, and the source of the data in it states the misfit.
 example:
   viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml""",
     "identify": """\
-Identify friction, modulus, relaxation times, strengths and bearing from measurements.
+Identify friction, modulus, relaxation times and moduli, and bearing friction, from measurements.
 
 The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states
 which of them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and

@@ -142,7 +142,7 @@ class _Layout:
         if not widths:
             raise FileError(self.path, "has no row of numbers")
         self.width = widths.most_common(1)[0][0]
-        self.cut = f"cut by {SEPARATORS[self.separator]}"
+        self.cut = f"separated by {SEPARATORS[self.separator]}"
 
     def fault(self, line: Line, problem: str) -> FileError:
         """Return the error that names a line and quotes it."""

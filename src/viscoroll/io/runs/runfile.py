@@ -307,7 +307,7 @@ def _check_inputs(run: Run) -> None:
         except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
                 raise locate_error(run.path, inputs.content, error) from error
-            reaches = f"{number.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
+            reaches = f"{number.name}: draws extend from {ends[0]:.6g} to {ends[1]:.6g}"
             problem = f"{getattr(error, 'problem', str(error)).rpartition('] ')[2]}; add truncate = [low, high]"
             raise section_error(run.path, number.section, number.key, f"{reaches}: {problem}") from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)

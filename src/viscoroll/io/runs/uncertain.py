@@ -221,7 +221,7 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
         elif a == b or not _is_number(value) or not -1.0 < value < 1.0:
             problem = f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)"
         elif pairs.get((b, a), value) != value:
-            problem = f"{a}.{b} = {value!r}: must be that of {b}.{a} = {pairs[b, a]!r:.40}"
+            problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"
         if problem:
             raise section_error(path, "correlation", a, problem)
         n, m = names.index(a), names.index(b)
