@@ -43,20 +43,21 @@ class Cylinder(Methods):
 
     Parameters
     ----------
-    R : radius, m; this and every other number may be an array, one value a cylinder.
+    R : radius, m.  Each number may be an array (n,) with one value for each cylinder.
     m : mass per unit length, kg/m.
-    E : long-time Young's modulus, Pa; with the next three, of both bodies, in place of ``material``.
+    E : long-time Young's modulus of both bodies, Pa.  E, nu, T_epsilon and T_sigma take the place of ``material``.
     nu : Poisson's ratio, in (-1, 0.5].
-    T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma.  If T_epsilon is an array (n,),
-        each cylinder has its own material, and T_ref is the largest T_epsilon.
+    T_epsilon : retardation time, s, at least T_sigma.  If it is an array (n,), each cylinder has its own material, and
+        T_ref is the largest T_epsilon.
+    T_sigma : relaxation time, s.
     mu : coefficient of friction.
-    j : J/(m R^2); 1/2 for a solid cylinder.
+    j : moment of inertia divided by m R^2; 1/2 for a solid cylinder.
     g : gravitational acceleration, m/s^2.
-    plane : "strain", or "stress" (then E' = pi E).
+    plane : "strain" of a long roller, or "stress" of a thin disc (then E' = pi E).
     material : a :class:`Material`, in place of E, nu, T_epsilon and T_sigma; or a law of :func:`viscoroll.load_law` of
         such a material, which brings its ``base`` with it.
     base : the :class:`Material` of the half-space; default: that of the cylinder.
-    load : P, N/m; default: the weight m g (Sect. 3.5).  A roller may be pressed with more or less.
+    load : normal force P, N/m; default: the weight m g.
 
     Raises
     ------

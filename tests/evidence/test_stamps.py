@@ -11,7 +11,7 @@ from pipeline.evidence import stamps
 from pipeline.evidence.document.__main__ import BLOCKS, filled
 
 OTHER = "0123456789abcdef"
-SENTENCE = "Measured at kernels `01234567`, not those of this version.\n"
+SENTENCE = "Measured with earlier numerical kernels, source hash `01234567`.\n"
 
 
 KERNEL = '@njit\ndef law(x):\n    """Doubled."""\n    return 2.0 * x\n'

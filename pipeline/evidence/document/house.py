@@ -1,4 +1,4 @@
-"""What the code says of itself: rooms and what each stands on, commands, keys of files; nothing is measured."""
+"""Blocks made from the code: layers and their imports, commands, keys of files; nothing is measured."""
 
 from __future__ import annotations
 
@@ -31,6 +31,8 @@ _SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "[material], [base]": (MaterialSection, (vr.Material,)), "[start]": (StartSection, (vr.roll,)),
     "[drive]": (DriveSection, (vr.roll,)), "[run]": (RunSection, ()),
 }  # fmt: skip
+#: a role of reStructuredText, or a literal, which Markdown writes between single backticks
+_ROLE = re.compile(r"(?::\w+:`|``)\.?([^`]+)``?")
 _KINDS = {schema.FloatType: "number", schema.IntType: "whole number", schema.BoolType: "true or false",
           schema.StrType: "text"}  # fmt: skip
 
@@ -82,7 +84,7 @@ def sections(results: Results) -> str:
     lines = []
     for names, (section, meant) in _SECTIONS.items():
         meanings: dict[str, str] = {}
-        for each in (section, *meant):
+        for each in (*meant, section):  # the section knows its keys best
             meanings |= _parameters(each)
         rows = [
             (f"`{field.name}`", _kind(field.type), _default(field), meanings.get(field.name, ""))
@@ -97,7 +99,7 @@ def _parameters(thing: Any) -> dict[str, str]:
     text = inspect.getdoc(thing) or ""
     found = re.findall(r"(?m)^(\w+(?:, \w+)*) : (.*(?:\n    .*)*)", text)
     return {
-        name: " ".join(words.split("\n\n")[0].split()).replace("|", "\\|")
+        name: _ROLE.sub(r"`\1`", " ".join(words.split("\n\n")[0].split())).replace("|", "\\|")
         for names, words in found for name in names.split(", ")
     }  # fmt: skip
 

@@ -34,7 +34,7 @@ class SceneSection(msgspec.Struct):
     """[scene]: the parameters of :class:`Scene`; with a preset all are optional.
 
     prony : in place of alpha: moduli divided by the long-time modulus, and relaxation times.
-    creep : in place of alpha: compliances divided by the instantaneous one, and retardation times; perhaps alpha.
+    creep : in place of alpha: compliances divided by the long-time compliance, retardation times, and optionally alpha.
     """
 
     alpha: float | None = None

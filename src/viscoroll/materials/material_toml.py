@@ -57,7 +57,8 @@ class FileSection(msgspec.Struct, kw_only=True):
 class MaterialSection(FileSection, kw_only=True):
     """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`, and a temperature.
 
-    T_epsilon, T_sigma : retardation and relaxation time of one mode, s, instead of a series.
+    T_epsilon : retardation time of a standard linear solid, s, in place of a series.
+    T_sigma : relaxation time of a standard linear solid, s, in place of a series.
     creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
     wlf, arrhenius : time-temperature shift.
     temperature : temperature of the material, degrees Celsius.

@@ -105,15 +105,19 @@ class RunSection(msgspec.Struct, frozen=True):
     """[run].
 
     n : number of motions, up to 1e12.
-    t : output times, dimensionless; in s with [cylinder].
+    t : output times, dimensionless; with [cylinder] in s.
     seed : seed of all random inputs.
-    design : how inputs are drawn: independently, in a Latin hypercube, or along Sobol's sequence.
-    method, rtol, rest, unsteady, rested : as for :func:`viscoroll.ensemble`; with [cylinder] in SI units.
-    block : motions per block; the default fits the memory.
-    keep : the summaries alone, or every motion with its inputs.
-    fields : fields of the motions that are kept.
-    summaries : quantities whose distribution is kept.
-    quantiles : quantiles of these that are shown.
+    design : "random" draws inputs independently, "latin" in a Latin hypercube, "sobol" from a Sobol sequence.
+    method : "flow" reads motions of one scene from a flow map, "integrate" integrates each, "auto" chooses.
+    rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
+    rest : speed below which a motion ends at rest, dimensionless; with [cylinder] in m/s.  Default: no such end.
+    unsteady : whether the added mass N of slow speed changes acts.
+    rested : whether the cylinder stood still for long before the start, or the time for which it did.
+    block : number of motions in a block; by default as many as fit the memory.
+    keep : "summaries" stores statistics alone, "all" also every motion with its inputs.
+    fields : quantities of each motion that are stored with keep = "all".
+    summaries : quantities whose statistics are stored.
+    quantiles : probabilities of the quantiles that are stored.
     """
 
     n: Whole
