@@ -99,7 +99,9 @@ EXPERIMENTS: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
         "launched without rotation, V and omega": [thrown("V omega")],
         "M across its maximum + Q at 0.1 m/s": [*HUMPED, traction(0.1)],
         "coast-down to 0 + Q at 0.1 m/s": [*ROLLED, traction(0.1)],
-        "M, Q at 3 speeds, launch without rotation (V and omega)": [*HUMPED, traction(0.1, 1.0, 10.0), thrown("V omega")],
+        "M, Q at 3 speeds, launch without rotation (V and omega)": [
+            *HUMPED, traction(0.1, 1.0, 10.0), thrown("V omega"),
+        ],
     }),
     (("mu", "E", "T_ref"), {
         "series from DMA data, launched without rotation, V": THROWN,
@@ -130,7 +132,8 @@ COUNTED: dict[str, tuple[list[Record], tuple[str, ...]]] = {
 #: one of which a product is
 PRODUCT = {"M below its maximum": ([drum(SLOW)], SHAPE, "E_1 T_ref")}
 SEARCHED: dict[str, tuple[list[Record], tuple[str, ...]]] = {
-    "M across its maximum": (HUMPED, SHAPE), "coast-down to 0": (ROLLED, SHAPE), "launched without rotation, V": (THROWN, tuple(TRUTH)),
+    "M across its maximum": (HUMPED, SHAPE), "coast-down to 0": (ROLLED, SHAPE),
+    "launched without rotation, V": (THROWN, tuple(TRUTH)),
 }  # fmt: skip
 
 

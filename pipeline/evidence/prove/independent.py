@@ -107,7 +107,10 @@ def profiles() -> dict[str, NDArray]:
         inner = abs(x - 0.5 * state.lam * state.epsilon) <= INNER * 0.5 * state.lam
         p_off.append((E_prime * here.p - p)[inner] / p.max())
         tau_off.append((E_prime * here.tau - tau) / (PROFILES_MU * p.max()))
-    return {"p, divided by its peak": np.concatenate(p_off), "τ, divided by μ times the peak of p": np.concatenate(tau_off)}
+    return {
+        "p, divided by its peak": np.concatenate(p_off),
+        "τ, divided by μ times the peak of p": np.concatenate(tau_off),
+    }
 
 
 # --- the motion ---

@@ -245,6 +245,7 @@ def at_each(tolerances: tuple[float, ...], bound: float, **sentences: str) -> di
     }  # fmt: skip
 
 
+_LARGER = "V and omega, divided by the larger of both, and by condition/30 where the condition number exceeds 30"
 _SO_FAR = "V and omega, divided by the largest speed so far"
 _STEPS = {"steps": ("steps of a motion", STEPS)}
 _RANDOM = "random motions"
@@ -263,14 +264,15 @@ def _driven(size: str, domain: str, draw: Any, worst: float = FACTOR, given_up: 
 PROOFS = [
     Proof(
         "check_motions", "precise", str(FREE.relative_to(ROOT)), at_each(
-            CHECKED_TOLERANCES, FACTOR, speed="V and omega, divided by the larger of both, and by condition/30 where the condition number exceeds 30",
+            CHECKED_TOLERANCES, FACTOR, speed=_LARGER,
             x="x, divided by the longest distance so far", onset="time of onset",
         ), checked_free,
     ),
     Proof(
         "motion", "motions", _RANDOM,
         at_each(TOLERANCES, FACTOR, speed=f"V, omega, condition below {FACTOR:g}", x="x", onset="time of onset")
-        | at_each(TOLERANCES, 1.0, ill=f"V, omega, divided by the condition number, condition above {FACTOR:g}") | _STEPS
+        | at_each(TOLERANCES, 1.0, ill=f"V, omega, divided by the condition number, condition above {FACTOR:g}")
+        | _STEPS
         | {"given up": (f"motions given up after {10 * STEPS} steps", 0.0)}, free,
     ),
     Proof(
@@ -315,7 +317,9 @@ PROOFS = [
     Proof(
         "flow", "mapped_scenes", "alpha in [1.001, 1e4], kappa in [0.5, 200], mu in [0.01, 3], j in [0.1, 2], starts "
         "in [-2, 2]^2, 1e-3 to 5 decay times", {
-            "speed": (f"V and omega against the integrator, divided by the sum of the stated error and {FACTOR:g} rtol", 1.0),
+            "speed": (
+                f"V and omega against the integrator, divided by the sum of the stated error and {FACTOR:g} rtol", 1.0,
+            ),
             "given up": ("share of motions that stop before their end", 0.0),
         }, mapped,
     ),

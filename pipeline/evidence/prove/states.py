@@ -171,7 +171,8 @@ PROOFS = [
     ),
     Proof(
         "slopes", "closures", "alpha in [1, 1e4], kappa V in [1e-3, 1e3]", {
-            "load": ("Int p dx = P, divided by the load", CLOSURE), "Q": ("Int tau dx = Q, divided by the load", CLOSURE),
+            "load": ("Int p dx = P, divided by the load", CLOSURE),
+            "Q": ("Int tau dx = Q, divided by the load", CLOSURE),
             "M": ("Int x p dx = M, divided by the load", CLOSURE),
         }, of_closures,
     ),
