@@ -23,7 +23,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 
 HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
 PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in sorted((ROOT / folder).rglob("*.md")))]
-FMUS = ROOT / "docs/loading/fmus.md"
+FMUS = ROOT / "docs/loading/fmu_variables.md"
 
 
 def blocks(path: Path, language: str) -> list[str]:

@@ -289,4 +289,4 @@ MAKERS: dict[str, Callable[..., Any]] = {
         bench_series, symbols, costs.folder_costs, costs.capability_costs, house.rooms,
         house.commands, house.sections, *identification.MAKERS,
     )
-}  # fmt: skip
+} | {"commands_runs": house.commands, "commands_files": house.commands, "sections_runs": house.sections}  # fmt: skip

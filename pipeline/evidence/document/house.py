@@ -63,26 +63,29 @@ def _imported(file: Path) -> Iterator[str]:
             yield from (path[0],) if path[0] else (name.name for name in node.names)
 
 
-def commands(results: Results) -> str:
-    """A heading for every command, and what its --help says below its usage."""
-    return "\n".join(_commands(parser()))
+def commands(results: Results, *names: str) -> str:
+    """A heading for every command of these names, and the text of its --help below the usage."""
+    texts = (text for name, text in _commands(parser()) if name.split()[1] in names)
+    return "\n".join(texts)
 
 
-def _commands(program: Any) -> Iterator[str]:
+def _commands(program: Any) -> Iterator[tuple[str, str]]:
+    """Yield (name, text) of every command below a parser."""
     below = [action for action in program._actions if isinstance(action, argparse._SubParsersAction)]
     if not below:
         program.formatter_class, program.color = partial(program.formatter_class, width=118), False
         _, _, said = program.format_help().partition("\n\n")
-        yield f"## {program.prog}\n\n```text\n{said}```\n"
+        yield program.prog, f"## {program.prog}\n\n```text\n{said}```\n"
     for action in below:
         for command in action.choices.values():
             yield from _commands(command)
 
 
-def sections(results: Results) -> str:
-    """A heading and a table of keys for every section of a TOML file."""
+def sections(results: Results, *wanted: str) -> str:
+    """A heading and a table of keys for each of these sections of a TOML file."""
     lines = []
-    for names, (section, meant) in _SECTIONS.items():
+    for names in wanted:
+        section, meant = _SECTIONS[names]
         meanings: dict[str, str] = {}
         for each in (*meant, section):  # the section knows its keys best
             meanings |= _parameters(each)

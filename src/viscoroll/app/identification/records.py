@@ -219,7 +219,7 @@ class Traction(Record):
 
 @dataclass(frozen=True, eq=False)
 class Coastdown(Record):
-    """Speeds or distance over time of a roller that was thrown or released.
+    """Speeds or distance over time of a roller that was launched or released.
 
     Parameters
     ----------
