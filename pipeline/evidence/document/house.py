@@ -93,7 +93,7 @@ def sections(results: Results, *wanted: str) -> str:
             (f"`{field.name}`", _kind(field.type), _default(field), meanings.get(field.name, ""))
             for field in schema.type_info(section).fields if not isinstance(field.type, schema.NoneType)
         ]  # fmt: skip
-        lines += [f"## {names}\n", table(("key", "what", "default", "meaning"), rows)]
+        lines += [f"## {names}\n", table(("key", "type", "default", "meaning"), rows)]
     return "\n".join(lines)
 
 

@@ -230,7 +230,7 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     times = section.T_epsilon, section.T_sigma
     if times != (None, None):
         if None in times or section.T_ref is not None or series:
-            problem = "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep"
+            problem = "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony and creep"
             raise section_error(path, name, "", problem)
         return Material.sls(section.E, section.nu, *times, **more)  # type: ignore[arg-type]
     T_ref = 1.0 if section.T_ref is None else section.T_ref

@@ -154,7 +154,7 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
     own = {name: np.zeros(n) for name, n in zip(("pieces", "gains"), counts, strict=True) if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
-        raise shape_error("V0, omega0", shape, "scalars or vectors (n,)")
+        raise shape_error("V0 or omega0", shape, "a number or a vector (n,)")
     count = shape[0] if shape else 1
     return {name: broadcast_vector(array, (count,)) for name, array in arrays.items()}, count
 

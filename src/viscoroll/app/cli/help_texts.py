@@ -46,9 +46,9 @@ example:
     "ensemble": """\
 Compute the motions of a run file with random initial speeds and parameters.
 
-The command computes the motions that the store lacks, and summarises all.  Call it again to complete an
-interrupted run, or to extend the store after n was raised in the run file.
-Without -o it prints size, memory and time of the run.
+The command computes the motions that the store does not contain yet, and summarises all motions.
+Call it again to complete an interrupted run, or to extend the store after n was raised in the run file.
+Without -o it prints the estimated size, memory and time of the run.
 
 example:
   viscoroll ensemble docs/examples/ensemble.toml""",
