@@ -74,8 +74,8 @@ def laws(scene: vr.Scene, settings: Benchmark) -> Iterator[Law]:
     path = stage.ROOT / settings.law
     rows = vr.law(scene.replace(material=vr.load_law(path))).jitted
     worst = max(stated_errors(vr.tables.load(path)).values())
-    yield Law("rows", rows, settings.rtol, path.stat().st_size / 1e3, worst)
-    yield Law("root solves", benchmark_integrator.RootSolves(scene), settings.root_solves)
+    yield Law("law file", rows, settings.rtol, path.stat().st_size / 1e3, worst)
+    yield Law("numerical roots", benchmark_integrator.RootSolves(scene), settings.root_solves)
 
 
 def ways(
@@ -96,7 +96,7 @@ def ways(
         for rtol in law.rtol:
             yield law, rtol, partial(integrated, law, rtol)
     for rtol in settings.rtol:
-        yield Law("roll", None, settings.rtol), rtol, partial(rolled, rtol)
+        yield Law("vr.roll", None, settings.rtol), rtol, partial(rolled, rtol)
 
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:

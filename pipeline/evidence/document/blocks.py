@@ -99,7 +99,7 @@ def ensembles_plan(results: Results) -> Iterator[Row]:
 def grids(results: Results) -> str:
     """Motions from the rows beside those from a grid of 161 by 161 nodes, at the least tolerance."""
     rows = {row["law by"]: row for row in sorted(results["grids"]["rows"], key=lambda row: -row["rtol"])}
-    grid, exact = rows["grid, 161 by 161"], rows["rows"]
+    grid, exact = rows["grid, 161 by 161"], rows["law file"]
     return (
         f"A law file is more accurate than a grid.  With one integrator, the largest error of V and omega, divided by "
         f"the initial speed, is {two(exact['error, random'])} with the law file and {two(grid['error, random'])} with "

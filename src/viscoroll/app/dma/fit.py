@@ -120,7 +120,7 @@ def fit_prony(
                 allowed = "left out: the result of read_dma contains it (the number of modes is modes=)"
                 raise described_error(name, "is given", allowed)
         if mode not in (None, record.mode):
-            raise ParameterError("mode", repr(mode), f"{record.mode!r}, as of {record.source or 'the record'}")
+            raise ParameterError("mode", repr(mode), f"{record.mode!r}, the mode of {record.source or 'the data'}")
         omega, storage, loss, mode = record.omega, record.storage, record.loss, _mode(record.mode)
         temperature, source = record.temperature if temperature is None else temperature, source or record.source
     elif storage is None or loss is None:

@@ -176,7 +176,7 @@ class _Layout:
             return above[-1:]
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
-                raise self.fault(line, f"contains column names, but is not {self.cut} into {width} as the rows")
+                raise self.fault(line, f"contains column names, but does not have {width} columns, {self.cut}")
         names = [f"column {n}" for n in range(width)]
         lines[:first] = [Line(lines[first].number, str(names), names, False, False)]
         return [0]
