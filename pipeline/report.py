@@ -132,7 +132,7 @@ def page(out: Path, found: dict[str, dict[str, Any]]) -> str:
         "printed equations.  An error is the largest one of V and ω, divided by the initial speed.  The last columns "
         "have the size of each table, and its largest error of Q, divided by the load.</p>",
         grid([times[0], *(row.values() for row in times)]),
-        picture(out / "figures/benchmark.png", out, "Left: time and error of motions.  Right: size and error of the tables."),
+        picture(out / "figures/benchmark.png", out, "Left: time, error of motions.  Right: size, error of tables."),
         f"<h2>Duration of the stages</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
         grid((STAGES[name], record["seconds"]) for name, record in found.items()), "</body></html>",
     ]  # fmt: skip
