@@ -43,6 +43,12 @@ _SLOW_PART = 0.1
 #: every material: (kappa V)^2 |N| is at most 1.35/16 of 1 - 1/alpha (docs/validity.md), and the distance grows at least
 #: in proportion to V.
 _FAST = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
+#: kappa V, dimensionless, from which on (kappa V)^2 N of one relaxation time is at least 0.6/16 of 1 - 1/alpha; at
+#: lower speeds N passes 0.  The least found is 0.64/16, at this speed and alpha near 1.
+_LEAST_FAST_ROLLING = 1.0
+#: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, below which the error of V exceeds 10 % at the
+#: start already, for one relaxation time and kappa V above that speed.
+_SLOW = 0.6 / 16.0 / STEADY_LIMIT
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256
 #: Data of materials for which this process has warned already.
@@ -201,14 +207,33 @@ def _start_faults(
             )
     # the speed at the start, or that at which it begins to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
-    if not driven and type(material) is not Cover and u > 0.0 and u * u * (1.0 + j) < _FAST * gamma * part:
-        lower_ends, slow = _slow_starts(material, gamma, j)
-        if slow[max(bisect(lower_ends, u) - 1, 0)]:
-            faults.append(
-                "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a tenth of "
-                "the distance"
-            )
+    if not driven and type(material) is not Cover and u > 0.0 and _is_too_slow(material, u, gamma, j):
+        faults.append(
+            "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a tenth of "
+            "the distance"
+        )
     return faults
+
+
+def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
+    """Return whether a free motion from a speed is too slow for the law of steady rolling.
+
+    Bounds of N decide most motions: the table of :func:`_slow_starts` takes a second where its kernels are not compiled
+    yet.
+
+    material: alpha, Prony series or bodies.
+    u: kappa V at the start, > 0.
+    gamma, j: parameters of the scene, dimensionless.
+    """
+    one_time = type(material) is float
+    ratio = u * u * (1.0 + j)
+    scale = gamma * (1.0 - 1.0 / (material if one_time else material.alpha))
+    if ratio >= _FAST * scale:
+        return False
+    if one_time and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
+        return True
+    lower_ends, slow = _slow_starts(material, gamma, j)
+    return slow[max(bisect(lower_ends, u) - 1, 0)]
 
 
 def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:

@@ -16,23 +16,27 @@ from functools import lru_cache
 from typing import Any, Callable
 
 import numba
-from numba.core import types
+from numba.core import base, types
 from numba.core.compiler import Compiler
 
 from .notice import announce_compiling
 
 #: Whether kernels are compiled in this way; False after a failure.
 _deferring = True
-#: Passes of numba that search a kernel for what kernels do not have: closures, and overloads to be inlined.
-_NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift")
+#: Passes of numba that search a kernel for what kernels do not have: closures, overloads to be inlined, expressions of
+#: whole arrays.
+_NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift", "NopythonRewrites")
 
 
 @contextmanager
-def _memoized_types(typing):
-    """Keep, within a ``with`` block, the types of operations on numbers, which numba resolves again at each sum of
-    floats.
+def _memoized_types(typing, target):
+    """Keep, within a ``with`` block, results that numba computes again for each statement.
+
+    These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
+    a module, and the signatures of numba's own functions that lower a statement.
 
     typing : numba's typing context.
+    target : numba's target context.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -43,15 +47,21 @@ def _memoized_types(typing):
     def resolve_function_type(function, args, kws):
         if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
             return plain(function, args, kws)
+        if not all(isinstance(kind, types.Literal) for kind in args):  # numba resolves again for every literal integer
+            args = tuple(map(types.unliteral, args))
         if (function, args) not in resolved:
             resolved[function, args] = plain(function, args, kws)
         return resolved[function, args]
 
     typing.resolve_function_type = resolve_function_type
+    typing.resolve_getattr = lru_cache(maxsize=None)(typing.resolve_getattr)
+    target.get_abi_sizeof = lru_cache(maxsize=None)(target.get_abi_sizeof)
+    has_location, base._has_loc = base._has_loc, lru_cache(maxsize=None)(base._has_loc)
     try:
         yield
     finally:
-        del typing.resolve_function_type
+        del typing.resolve_function_type, typing.resolve_getattr, target.get_abi_sizeof
+        base._has_loc = has_location
 
 
 @contextmanager
@@ -86,7 +96,7 @@ class EntryPipeline:
         if not _deferring:
             return Compiler(*self._context).compile_extra(function)
         try:
-            with _memoized_types(self._context[0]):
+            with _memoized_types(*self._context[:2]):
                 return _pipelines()[1](*self._context).compile_extra(function)
         except Exception as error:
             reason = error
@@ -155,6 +165,14 @@ def _pipelines():
 
         def set_env(self, name, environment):
             """Do nothing: there is no code yet."""
+
+        def add_llvm_module(self, module):
+            """Take a module over, which numba would link into an empty one; further ones are linked into it."""
+            if next(iter(self._final_module.functions), None) is None:
+                self._optimize_functions(module)
+                self._final_module = module
+            else:
+                super().add_llvm_module(module)
 
         def _optimize_functions(self, module):
             """Optimise nothing: LLVM works on the whole alone."""
@@ -237,6 +255,10 @@ def _pipeline(library_class: type):
 
         def __eq__(self, other):
             return isinstance(other, ShortFlags) and self._values == other._values
+
+        def values(self):
+            """Return the flags that are set, for the events of numba, to which nobody listens."""
+            return self._values
 
     class Compiler(CompilerBase):
         def __init__(self, typing, target, library, args, returns, flags, types_):

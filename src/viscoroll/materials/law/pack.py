@@ -110,13 +110,24 @@ def interleave_pairs(a: Floats, b: Floats) -> Floats:
     return both.reshape(len(a), -1)
 
 
+def align_vector(numbers: Floats) -> Floats:
+    """Return a copy of a vector ``numbers`` that begins at a line of the cache, 64 bytes.
+
+    Elsewhere every vector of eight numbers that a kernel loads, and up to half of those of four, would span two lines.
+    """
+    room = np.empty(numbers.size + 8)
+    first = -room.ctypes.data // 8 % 8
+    room[first : first + numbers.size] = numbers
+    return room[first : first + numbers.size]
+
+
 def allocate_rows(count: int) -> tuple[Floats, Integers]:
     """Return numbers and marks of a record of ``count`` rows, with those in front, zeroed; no material is selected."""
     from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE, SELECTED
 
     marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
     marks[SELECTED] = -1
-    return np.zeros((count + 1) * ROW_SIZE), marks
+    return align_vector(np.zeros((count + 1) * ROW_SIZE)), marks
 
 
 def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:
@@ -232,7 +243,7 @@ def _pack_cover(cover: CoverRows) -> Floats:
 class AxisRows(NamedTuple):
     """The rows of an octave of alpha as groups of terms in s (:mod:`...kernels.rows.alpha_axis`).
 
-    numbers : blocks of twelve numbers; of each block its groups of terms in s, the group of the highest degrees first.
+    numbers : blocks of eight numbers; of each block its groups of terms in s, the group of the highest degrees first.
     starts : index of the first group of each function or pair of functions, (rows * functions + 1,).
     rows : number of rows.
     """
@@ -274,7 +285,8 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
             lengths = (FULL,) * len(short) if needs_all else short
             numbers += [block[FULL - length :].ravel() for block, length in zip(blocks, lengths)]
             counts.append(sum(lengths))
-    return AxisRows(lock_array(np.concatenate(numbers)), lock_array(np.append(0, np.cumsum(counts))), rows)
+    starts = np.append(0, np.cumsum(counts))
+    return AxisRows(lock_array(align_vector(np.concatenate(numbers))), lock_array(starts), rows)
 
 
 def _grouped_terms(terms: Floats, size: int) -> Floats:
