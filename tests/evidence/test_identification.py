@@ -56,7 +56,7 @@ def test_what_holds_near_the_values_alone_is_told_beside_what_holds_everywhere()
     assert [one.near for one in wide] == [False] * len(wide) != []
     assert sharp.near
     assert sharp.high - sharp.low < 0.1 * min(one.high - one.low for one in wide)
-    assert "determined; near these values alone, more sharply, E T_ref^0.79 E_1^0.42" in str(fit)
+    assert "determined; near these values also E T_ref^0.79 E_1^0.42" in str(fit)
     for E in (0.8, 1.2):
         measured = [vr.Resistance(data[0].V, fit.predict(data[0]).M.value, sigma=5e-3)]
         other = vr.identify(roller(E=E * TRUTH["E"]), ranges("E_1", "T_ref"), measured, starts=1)
