@@ -153,7 +153,10 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
         found = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
-        raise ParameterError("shapes", found, "broadcastable against each other") from None
+        allowed = "equal, or broadcast as in numpy"
+        raise ParameterError(
+            "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"
+        ) from None
 
 
 def read_only(array: Floats) -> float | Floats:
