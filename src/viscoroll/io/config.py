@@ -117,7 +117,7 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
         raise section_error(path, "", "cylinder", f"[cylinder] and {names} are both given: give one of them")
     for name in SECTIONS:
         if name in content and "cylinder" not in content:
-            raise section_error(path, "", name, f"[{name}] is given without [cylinder]: it needs one")
+            raise section_error(path, "", name, f"[{name}] needs a section [cylinder]")
     for name, kind in {**SCHEMA, **more}.items():
         if name in content and kind is not None:
             as_struct(path, name, content[name], kind)
