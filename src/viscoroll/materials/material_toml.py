@@ -181,7 +181,7 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
         if temperature is None:
             return material
         if shift is None:
-            problem = f"temperature = {temperature:g}: needs wlf or arrhenius beside it"
+            problem = f"temperature = {temperature:g}: wlf or arrhenius is needed too"
             raise section_error(path, name, "temperature", problem)
         return material.at(temperature, shift)
     except ParameterError as error:

@@ -112,12 +112,12 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
 
 
 def in_words(error: ParameterError, scale: Scale) -> ParameterError:
-    """Return the refusal of a dimensionless value with the units that it was divided by.
+    """Return the refusal of a dimensionless number with the units that it was divided by.
 
     error: the refusal.
-    scale: scale of the roller; for a scene the error itself is returned.
+    scale: scale of the roller; for a scene, and for a message without a number, the error itself is returned.
     """
-    if not scale.si:
+    if not scale.si or not any(map(str.isdigit, str(error.value))):
         return error
     about = "dimensionless"
     if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):

@@ -71,7 +71,7 @@ ELEMENT = Model(
         Variable("load", "input", "N", f"{_LOAD_TEXT}; at 0 and below there is no contact and no force", _LOAD),
         *_BODY,
         _positive(
-            "v_min", "m/s", "lower limit of the speed at which the law is evaluated, since its slopes are infinite at rest",
+            "v_min", "m/s", "lower limit of the speed in the law, since its slopes are infinite at rest",
             1e-6
         ),
         Variable("force", "output", "N", "force on the cylinder, along v"),
