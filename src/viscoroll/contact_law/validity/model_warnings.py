@@ -82,7 +82,7 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 
     roller: scene or cylinder; a scene has no data to compare with.
     V: speeds, m/s, any shape; None for prescribed ones that are not known.
-    extent: (smallest, largest) of them, m/s, where the caller knows them.
+    extent: (smallest, largest) of the speeds, m/s, where the caller knows them.
     motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined.
     """
     data = roller.body_data
@@ -100,7 +100,7 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 def _warn_of_band(data: BodyData, V: Any) -> None:
     """Warn of transit frequencies outside the measured band, once for each material in a process.
 
-    data: of a cylinder with measured bodies.
+    data: data of the bodies of a cylinder, of which at least one was measured.
     V: speeds, m/s, any shape.
     """
     records = data.records.values()
@@ -124,7 +124,7 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
 def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
     """Warn of motions of a run that start outside the measured band of a material.
 
-    share: their share of all motions, 0 to 1; 0 gives no warning.
+    share: fraction of all motions that start outside, 0 to 1; 0 gives no warning.
     records: what was measured of the bodies; contacts do not warn of them again.
     Returns whether a warning was given.
     """
@@ -163,7 +163,7 @@ def warn_of_start(
     One motion from two floats costs one or two microseconds; of many some, evenly spaced, are examined.
 
     roller: scene or cylinder, on its slope.
-    scene: its dimensionless parameters.
+    scene: dimensionless parameters of the roller.
     start: the start speeds as the caller gave them, m/s and rad/s for a cylinder; None for prescribed ones.
     V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
     driven: whether something drives the motions, or they are rolled with the added mass N.
@@ -185,13 +185,13 @@ def warn_of_start(
 def _start_faults(
     material: Any, kappa: float, mu: float, gamma: float, j: float, V0: float, omega0: float, driven: bool
 ) -> list[str]:
-    """Return the faults of the model for one motion.
+    """Return sentences on what the model does not describe in one motion, judged by its start.
 
-    material: its alpha, Prony series or bodies.
+    material: alpha, Prony series or bodies of the roller.
     kappa, mu, gamma, j: parameters of the scene, dimensionless.
     V0, omega0: start speeds, dimensionless.
-    driven: as of :func:`warn_of_start`.
-    Returns sentences without numbers.
+    driven: whether something drives the motion, or it is rolled with the added mass N.
+    Returns the sentences, without numbers; none where the model describes the motion.
     """
     faults: list[str] = []
     one_time = type(material) is float
@@ -237,11 +237,12 @@ def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
 
 
 def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
-    """Return the faults of the three motions of an ensemble that are worst by bounds of each fault.
+    """Return the faults of the model in those motions of an ensemble, three at most, in which they are largest by
+    simple bounds.
 
-    scene: parameters, numbers or arrays (n,).
+    scene: dimensionless parameters of the roller, numbers or arrays (n,).
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
-    driven: as of :func:`warn_of_start`.
+    driven: whether something drives the motions, or they are rolled with the added mass N.
     Returns different sentences without numbers.
     """
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
@@ -267,7 +268,7 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
 
 @lru_cache(maxsize=64)
 def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tuple[list[float], list[bool]]:
-    """Tabulate over kappa V whether a free motion from there is too slow for the law of steady rolling.
+    """Tabulate whether a free motion that starts at kappa V is too slow for the law of steady rolling.
 
     material: alpha, Prony series or bodies, not elastic.
     gamma, j: parameters of the scene, dimensionless.

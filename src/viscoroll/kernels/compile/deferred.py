@@ -30,13 +30,13 @@ _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "Wit
 
 @contextmanager
 def _memoized_types(typing, target):
-    """Keep, within a ``with`` block, results that numba computes again for each statement.
+    """Memoize results that numba computes again for each statement, within a ``with`` block.
 
     These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
     a module, and the signatures of numba's own functions that lower a statement.
 
-    typing : numba's typing context.
-    target : numba's target context.
+    typing, target : numba's typing context and target context, changed within the block.
+    Yields None.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -90,7 +90,11 @@ class EntryPipeline:
 
     @_without_garbage_collection()
     def compile_extra(self, function: Callable):
-        """Compile ``function``, and return numba's result; in numba's own way if a private name of numba fails."""
+        """Compile a function by a part and a whole; by numba's own pipeline if a private name of numba has changed.
+
+        function : the Python function.
+        Returns numba's ``CompileResult``.
+        """
         announce_compiling()
         global _deferring
         if not _deferring:
@@ -122,6 +126,7 @@ def defer(whole, options: dict[str, Any]):
 
     whole : numba's dispatcher of the kernel, changed.
     options : options of ``numba.njit`` for the part.
+    Returns None; the dispatcher compiles in the new way from then on.
     """
     plain = type(whole)
 
@@ -145,7 +150,10 @@ def defer(whole, options: dict[str, Any]):
 
 @lru_cache(maxsize=1)
 def _pipelines():
-    """Return numba's compiler classes for parts and for wholes."""
+    """Make numba's compiler classes for the part of a kernel that others call and for the whole that Python calls.
+
+    Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``.
+    """
     from numba.core.codegen import JITCodeLibrary
 
     class Part(JITCodeLibrary):
@@ -188,6 +196,9 @@ def _pipelines():
         """A library with the IR of all parts below, optimised and compiled together."""
 
         def finalize(self):
+            """Add the called libraries to the module of LLVM, optimize it once, and turn it into machine code; returns
+            None.
+            """
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
             _link(self, module)
@@ -217,7 +228,8 @@ def _pipelines():
 def _link(library, module):
     """Add to a module of LLVM the libraries that a library calls, directly or not, each once.
 
-    library : numba's library.  module : LLVM's module, changed.
+    library : numba's library.
+    module : LLVM's module, changed.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -233,7 +245,10 @@ def _link(library, module):
 
 
 def _pipeline(library_class: type):
-    """Return numba's default compiler, which lowers into libraries of ``library_class``."""
+    """Return numba's default compiler, which lowers into libraries of ``library_class``.
+
+    Returns the subclass of numba's ``CompilerBase``.
+    """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass
     from numba.core.typed_passes import NativeLowering

@@ -64,7 +64,10 @@ def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
     context, builder : numba's context of code generation, and builder of LLVM.
     kind : numba's type of ``array``, an array or a pointer to doubles.
     start : index of the first number of the first vector.
+    array : the array or pointer, a value of LLVM.
+    count : number of vectors.
     vector : LLVM's type of the vectors.
+    Returns a list of ``count`` pointers to vectors, values of LLVM.
     """
     data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
     first = builder.bitcast(builder.gep(data, [start]), vector.as_pointer())
@@ -81,9 +84,11 @@ def load_vectors(context, builder, signature, arguments, count):
 
 
 def _define_operator(function, name):
-    """Define an operator of Python for two vectors, and for a number and a vector.
+    """Register with numba an operator of Python for two vectors, and for a number and a vector.
 
-    function : of the module ``operator``.  name : of the method of LLVM's builder.
+    function : the operator, a function of the module ``operator``.
+    name : method of LLVM's builder that makes its instruction.
+    Returns None.
     """
 
     def give_type(context):

@@ -1,11 +1,13 @@
 """Rows for one alpha after another, by the axis of alpha: polynomials in ln alpha, without root finding.
 
-For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 + c_1 s + c_2 s^2 + c_3 s^3) for
-g = 0, 1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V
-and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
+For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 + c_1 s + c_2 s^2 + c_3 s^3) for g = 0,
+1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V and
+epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
 would lose digits near alpha = 2^N, and a T_j for every coefficient would take a third more loads.  The higher a power
 of t, the fewer groups change a digit.  So of the blocks of eight coefficients only the first ones have all four groups
 in most rows.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import math
@@ -128,7 +130,8 @@ def select_alpha(n, source):
     """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
     parts.
 
-    n : number of the state.  source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+    n : index of the state.
+    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
     selected already.
@@ -162,7 +165,7 @@ def select_alpha(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
 
-    number : number of the part, its index in the marks.
+    number : index of the part in the marks.
     source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
 
     The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.

@@ -78,7 +78,7 @@ def constant_rows(*values: float) -> Floats:
 def to_axis(table: Floats, c: Floats) -> Floats:
     """Convert tables of a standard linear solid to functions that have finite limits for alpha -> 1.
 
-    table: (..., rows, 24 powers, 7 functions).
+    table: coefficients of the functions, (..., rows, 24 powers, 7 functions).
     c: (alpha - 1)/alpha, in a shape that broadcasts.
     Returns (..., rows, 24 powers, 6 functions), as :data:`AXIS_FUNCTIONS`.
     """
@@ -91,7 +91,7 @@ def to_axis(table: Floats, c: Floats) -> Floats:
 def from_axis(columns: Floats, c: float) -> Floats:
     """Convert functions over alpha to a table; the reverse of :func:`to_axis`.
 
-    columns: (rows, 24 powers, 6 functions); changed in place.
+    columns: coefficients of the functions over alpha, (rows, 24 powers, 6 functions); changed in place.
     c: (alpha - 1)/alpha.
     Returns the table (rows, 24 powers, 7 functions); each body has half of M.
     """
@@ -133,11 +133,12 @@ def allocate_rows(count: int) -> tuple[Floats, Integers]:
 def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:
     """Return the record of a law that kernels read, with all rows in place.
 
-    table: (rows, 24 powers, 7 functions).
+    table: coefficients of the functions, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     alpha: instantaneous divided by long-time stiffness.
     fast_limit: W and C of the fast limit, of both bodies, half-space and cylinder, shape (3, 2).
     cover: rows of a cover of finite thickness; None for half-spaces.
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.rows.record import E0, ROW_COUNT, ROW_SIZE, Law
 
@@ -156,7 +157,7 @@ def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floa
 
     L^2 press(2 u/L) = 1 is made to hold to rounding, as Q would lose digits by an error in it.
 
-    table: (rows, 24 powers, 7 functions).
+    table: coefficients of the functions, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     alpha: value of press for v -> infinity.
     fast: W and C of the fast limit of both bodies together.
@@ -186,7 +187,7 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
     v: 1/F(eta), shape (n,).
     alpha: value for v -> infinity.
     fast: W and C of the fast limit.
-    Returns two arrays (n,).
+    Returns (values, derivatives), (n,) each, dimensionless.
     """
     last = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
     (value,), (slope,) = rows.read(press[None], last)
@@ -199,7 +200,7 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
 def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     """Return the rows of N of a record, with those of its integral over u.
 
-    table: (rows, 24 powers, 7 functions) with N.
+    table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     alpha: instantaneous divided by long-time modulus.
     Returns one array: rows of N and of its integral from the point t = 0 of each row; then the integral from infinity
@@ -258,6 +259,7 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
 
     records: records of the laws of standard linear solids at the nodes of an octave, with equal numbers of rows.
     c: (alpha - 1)/alpha of each, by which M/V and epsilon are divided.
+    Returns :class:`AxisRows`.
     """
     from ...kernels.rows.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
     from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
