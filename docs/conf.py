@@ -14,12 +14,14 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 sys.path.insert(0, str(HERE))  # gallery_images below, imported by name so that Sphinx can keep its environment
 
+import matplotlib.pyplot as plt  # noqa: E402
 from sphinx_gallery.sorting import ExplicitOrder  # noqa: E402
 
 import viscoroll  # noqa: E402
 from viscoroll.io.config import read_law_source  # noqa: E402
 
 warnings.simplefilter("ignore", viscoroll.ModelWarning)  # pages on the paper's example say it in words
+plt.style.use(HERE / "viscoroll.mplstyle")
 os.environ["VISCOROLL_QUIET"] = "1"  # no word about compiling in the output of an example
 
 #: Pages that are kept elsewhere in the tree: page -> file.  What stands in docs/ of them is a pointer.

@@ -74,8 +74,8 @@ def laws(scene: vr.Scene, settings: Benchmark) -> Iterator[Law]:
     path = stage.ROOT / settings.law
     rows = vr.law(scene.replace(material=vr.load_law(path))).jitted
     worst = max(stated_errors(vr.tables.load(path)).values())
-    yield Law("rows", rows, settings.rtol, path.stat().st_size / 1e3, worst)
-    yield Law("root solves", benchmark_integrator.RootSolves(scene), settings.root_solves)
+    yield Law("law file", rows, settings.rtol, path.stat().st_size / 1e3, worst)
+    yield Law("numerical roots", benchmark_integrator.RootSolves(scene), settings.root_solves)
 
 
 def ways(
@@ -96,12 +96,12 @@ def ways(
         for rtol in law.rtol:
             yield law, rtol, partial(integrated, law, rtol)
     for rtol in settings.rtol:
-        yield Law("roll", None, settings.rtol), rtol, partial(rolled, rtol)
+        yield Law("vr.roll", None, settings.rtol), rtol, partial(rolled, rtol)
 
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Time against error of motions, and size against error of the tables."""
-    figure, (left, right) = new_figure("Motions and tables of the law", 1, 2, (9.6, 4.6))
+    figure, (left, right) = new_figure("Time and error of motions; size and error of the tables", 1, 2, (9.6, 4.6))
     names = dict.fromkeys(row["law by"] for row in rows)
     for marker, name in zip("osd^vP*X", names, strict=False):
         own = [row for row in rows if row["law by"] == name]
@@ -109,8 +109,8 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
             [row["error, random"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name
         )
         right.loglog(own[0]["kB"], own[0]["error of Q"], marker)
-    left.set(xlabel="largest error of V and ω over the first speed", ylabel="time of a motion, ms")
-    right.set(xlabel="size of the file, kB", ylabel="largest error of Q over the load")
+    left.set(xlabel="largest error of V and ω / initial speed", ylabel="time of a motion, ms")
+    right.set(xlabel="size of the file, kB", ylabel="largest error of Q / load")
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     save(figure, path)
 

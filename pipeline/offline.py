@@ -101,7 +101,7 @@ def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[
     errors = stated_errors(made(outcome, path, make))
     off_N, worst = errors.pop("N"), max(errors.values())
     outcome.headline[f"{path.stem}: largest relative error (allowed {settings.allowed:g})"] = worst
-    outcome.headline[f"{path.stem}: of N, over its largest (allowed {settings.allowed_N:g})"] = off_N
+    outcome.headline[f"{path.stem}: error of N divided by its largest value (allowed {settings.allowed_N:g})"] = off_N
     outcome.failed |= worst > settings.allowed or off_N > settings.allowed_N
 
 

@@ -23,11 +23,11 @@ from . import stage
 from .figures.captions import SECTIONS
 
 STAGES = {
-    "offline": "The tables of the law",
-    "runtime": "Motions from the file of the law",
-    "ensemble": "Random starts",
-    "validate": "Against direct solves of the printed equations",
-    "benchmark": "Time against error",
+    "offline": "Tables of the law",
+    "runtime": "Motions from the law file",
+    "ensemble": "Random initial speeds",
+    "validate": "Validation with the printed equations",
+    "benchmark": "Time and error",
     "figures": "Figures",
 }
 _STYLE = (
@@ -100,16 +100,16 @@ def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
 
 
 def introduced(found: dict[str, dict[str, Any]]) -> str:
-    """What rolls on this page, and what that is worth."""
+    """Introduce the page: the rollers that it shows, and the stages that made it."""
     name = str(found["ensemble"]["headline"]["preset"])
-    worth = PRESETS[name].validity(max(abs(V0) for V0, _ in vr.presets.PAPER_STARTS.values())).steady.sentence
     return (
-        "<p>Five stages made this page.  Offline: tabulates λ, ε, β, Q and M on a grid of V, δ and α by root solves, "
-        "and the law as rows.  Runtime: integrates Eq. (22) from the rows.  Monte Carlo: runs random initial "
-        "conditions.  Validate: holds tables and motions against direct solves.  Benchmark: run time against error.</p>"
-        f"<p>A viscoelastic cylinder rolls and slides on a half-space of its material: first a rubber roller in SI "
-        f"units, then the example of the paper's Sect. 5, preset {escape(name)}: {escape(str(PRESETS[name]))}, without "
-        f"dimension.</p><p>Motions of the paper: {escape(worth)}.</p>"
+        "<p>A viscoelastic cylinder rolls and slides on a half-space of its material: first a rubber roller in SI "
+        f"units, then the example of Sect. 5 of the paper, dimensionless (preset {escape(name)}: "
+        f"{escape(str(PRESETS[name]))}).</p>"
+        "<p>Five stages made this page.  <b>Offline</b> writes the law of each material to a file, and Q, M and other "
+        "quantities on a grid of V, δ and α.  <b>Runtime</b> integrates Eq. (22) with the law file.  <b>Ensemble</b> "
+        "integrates motions with random initial speeds.  <b>Validate</b> compares tables and motions with numerical "
+        "roots of the printed equations.  <b>Benchmark</b> measures time and error.</p>"
     )
 
 
@@ -123,16 +123,17 @@ def page(out: Path, found: dict[str, dict[str, Any]]) -> str:
         f"<style>{_STYLE}</style></head><body>", "<h1>A viscoelastic cylinder, rolling and sliding</h1>",
         introduced(found), *pictures(out, found), "<h2>Tables</h2>", grid(found["offline"]["headline"].items()),
         links(out, found["offline"]),
-        "<h2>Against direct solves of the printed equations</h2>", f"<p>{verdict}.</p>",
+        f"<h2>{STAGES['validate']}</h2>", f"<p>{verdict}.</p>",
         grid(found["validate"]["headline"].items()),
         links(out, found["validate"]), f"<pre>{escape((out / 'validation.txt').read_text(encoding='utf-8'))}</pre>",
-        "<h2>Time against error</h2><p>The paper's motions and random ones in one compiled integrator, from splines in "
-        "grids of n by n nodes, from rows, and from root solves at every call; beside them roll.  The truth is root "
-        "solves of the printed equations.  Errors are the largest of V and ω over the first speed.  Then the size of "
-        "each table, and the largest error of Q there.</p>",
+        f"<h2>{STAGES['benchmark']}</h2><p>One compiled integrator computes the motions of the paper and random ones, "
+        "with the law from splines on grids of n by n nodes, from the law file, and from numerical roots at every "
+        "call.  The last rows are those of vr.roll.  The reference values are motions with numerical roots of the "
+        "printed equations.  An error is the largest one of V and ω, divided by the initial speed.  The last columns "
+        "have the size of each table, and its largest error of Q, divided by the load.</p>",
         grid([times[0], *(row.values() for row in times)]),
-        picture(out / "figures/benchmark.png", out, "Motions: time over error.  Tables: size and error."),
-        f"<h2>How long it took</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
+        picture(out / "figures/benchmark.png", out, "Left: time, error of motions.  Right: size, error of tables."),
+        f"<h2>Duration of the stages</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
         grid((STAGES[name], record["seconds"]) for name, record in found.items()), "</body></html>",
     ]  # fmt: skip
     return "\n".join(part for part in parts if part) + "\n"

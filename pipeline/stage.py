@@ -186,5 +186,5 @@ def shown(path: Path) -> str:
 
 
 def readable(value: Any) -> str:
-    """A number with three significant digits, anything else as it is."""
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    """A number with three significant digits, nothing for NaN, anything else as it is."""
+    return ("" if value != value else f"{value:.3g}") if isinstance(value, float) else str(value)

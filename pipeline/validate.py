@@ -33,9 +33,9 @@ from .runtime import motions
 
 #: what the record says -> of which checks the worst
 HEADLINE = {
-    "Q, table against direct, over mu": "random states: Q",
+    "Q, table against direct, divided by mu": "random states: Q",
     "grid, nodes against rows": "grid: .*, nodes",
-    "grid, Q by splines, over the load": "grid: Q, splines",
+    "grid, Q by splines, divided by the load": "grid: Q, splines",
     "motions from the file of the law, V and omega": "runtime .*",
     "motions IC1-IC3 by roll at rtol 1e-8, V and omega": "motion IC.: (V|omega)",
     "motions IC1-IC3 by roll, onset time, relative": "motion IC.: onset time",
@@ -76,7 +76,7 @@ def loaded(path: Path) -> xr.Dataset:
 
 
 def errors(found: xr.Dataset, truth: xr.Dataset) -> dict[str, float]:
-    """Largest error of V and omega over the first speed, by start."""
+    """Largest error of V and omega divided by the initial speed, by start."""
     off = np.maximum(abs(found.V - truth.V), abs(found.omega - truth.omega)).max("t", skipna=False)
     return dict(zip(map(str, truth.ic.values), (off / abs(truth.V[:, 0])).values.tolist(), strict=True))
 
@@ -89,7 +89,7 @@ def work(settings: Validate, out: Path) -> stage.Outcome:
     write_dataset(truth, out / "direct.nc", stage.plain_encoding(truth))
     tables = tuple(vr.tables.load(stage.ROOT / name) for name in names)
     report = validate(tables, progress=True, **sizes)
-    meaning = f"V and omega by {of_file.law}, over the first speed"
+    meaning = f"V and omega by {of_file.law}, divided by the initial speed"
     rows = [Check(f"runtime {start}", error, allowed, meaning) for start, error in errors(of_file, truth).items()]
     report = replace(report, checks=(*report.checks, *rows))
     files = [out / "validation.csv", out / "validation.txt", out / "direct.nc"]

@@ -51,6 +51,9 @@ INTEROP = 1e-12
 INTEROP_SLOPES = 1e-11
 #: Motions of vr_roll.h at rtol 1e-8 against ``roll`` at 1e-10.
 INTEROP_ROLL = 1e-7
+#: The program of docs/loading/README.md, which takes steel as rigid, against ``roll``: 1/E' of steel is 1.2e-5 of
+#: that of the rubber, and six digits are printed.
+RIGID_STEEL = 1e-4
 #: vr_roll.h at rtol 1e-9 against ``roll``, through rest or from it, of the largest of V, omega and x; below its
 #: ``rest`` of 1e-6 or less creep counts from that.
 INTEROP_TURNED = 1e-7

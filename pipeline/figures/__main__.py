@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import msgspec
 from tqdm import tqdm
 
@@ -40,5 +41,6 @@ def work(settings: Figures, out: Path) -> stage.Outcome:
 
 if __name__ == "__main__":
     mpl.use("agg")
+    plt.style.use(stage.ROOT / "docs/viscoroll.mplstyle")
     warnings.simplefilter("ignore", ModelWarning)  # the paper's cylinder, of which its pages say so
     sys.exit(stage.run("figures", Figures, work, __doc__))

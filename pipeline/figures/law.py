@@ -17,17 +17,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST_SPEED, _MOST_CREEP = 0.4, 4e-3
+#: label of the axis of speeds, dimensionless
+_SPEED = r"speed $V T_\varepsilon/R$"
+#: alphas of the grid that are drawn
+_GRID_ALPHAS = (1.5, 11.0, 81.5)
+#: levels of Q/P, up to mu of the grid
+_LEVELS = np.linspace(-0.2, 0.2, 17)
 
 
 def figure_2() -> Figure:
-    """Critical creep ratio delta_star over V, one line an alpha."""
+    """Critical creepage delta_star as a function of V, one line an alpha."""
     scene = PAPER_FIGURES_2_3
     V = np.linspace(0.0, _MOST_SPEED, 401)
-    figure, axes = new_figure(f"Critical creep ratio, Eq. (9), for {describe(scene, 'mu', 'kappa')}")
+    figure, axes = new_figure(f"Critical creepage, Eq. (9), for {describe(scene, 'mu', 'kappa')}")
     for alpha, line in zip((1.0, 1.5, 21.5, 81.5), LINES, strict=True):
         star = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="delta_star").delta_star
         axes.plot(V, 1e3 * star, label=rf"{axis_label('alpha')} = {alpha:g}", **line)
-    axes.set(xlabel=axis_label("V"), ylabel=r"$\delta^*_\alpha\times 10^3$", xlim=(0.0, _MOST_SPEED), ylim=(0.0, None))
+    axes.set(xlabel=_SPEED, ylabel=r"$\delta^*_\alpha\times 10^3$", xlim=(0.0, _MOST_SPEED), ylim=(0.0, None))
     axes.legend(frameon=False)
     return figure
 
@@ -44,8 +50,8 @@ def figure_3() -> Figure:
     for alpha, line in zip((1.5, 21.5, 81.5), LINES, strict=False):
         M = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="M").M
         right.plot(V, 1e3 * M, label=f"{axis_label('alpha')} = {alpha:g}", **line)
-    left.set(xlabel=scaled("delta", 3), ylabel=axis_label("Q"), title=f"a) {describe(scene, 'alpha')}")
-    right.set(xlabel=axis_label("V"), ylabel=scaled("M", 3), title=f"b) any {axis_label('delta')}")
+    left.set(xlabel=scaled("delta", 3), ylabel="creep force $Q/P$", title=f"a) {describe(scene, 'alpha')}")
+    right.set(xlabel=_SPEED, ylabel=r"rolling resistance $M/(PR)\times 10^3$", title=f"b) any {axis_label('delta')}")
     for axes in (left, right):
         axes.axhline(0.0, **THIN)
         axes.axvline(0.0, **THIN)
@@ -55,11 +61,17 @@ def figure_3() -> Figure:
 
 def grid(table: xr.Dataset) -> Figure:
     """Q over V and delta as ``make tables`` wrote it, at three alphas: the surface whose slices are Fig. 3a."""
-    table = table.sel(alpha=[1.5, 11.0, 81.5])
-    drawn = table.Q.plot(x="V", y="delta", col="alpha", xscale="log", figsize=(9.6, 3.4))
-    for axes, star in zip(drawn.axs.flat, table.delta_star.T, strict=True):
-        axes.plot(table.V, star, color="black")
-    return drawn.fig
+    figure, panels = new_figure("Creep force of the grid; dashed: critical creepage", 1, 3, (9.6, 3.6), sharey=True)
+    for axes, alpha in zip(panels, _GRID_ALPHAS, strict=True):
+        plane = table.sel(alpha=alpha)
+        filled = axes.contourf(plane.V, plane.delta, plane.Q.transpose("delta", "V"), _LEVELS, cmap="cividis")
+        for sign, color in ((1.0, "black"), (-1.0, "white")):
+            axes.plot(plane.V, sign * plane.delta_star, color=color, linestyle="--", linewidth=1.2)
+        axes.set(xscale="log", xlabel=r"speed $V T_\varepsilon/R$", title=rf"$\alpha = {alpha:g}$")
+        axes.set_ylim(float(plane.delta[0]), float(plane.delta[-1]))
+    panels[0].set_ylabel(rf"creepage {axis_label('delta')}")
+    figure.colorbar(filled, ax=panels, label="creep force $Q/P$")
+    return figure
 
 
 def rubber_roller() -> Figure:

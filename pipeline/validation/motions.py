@@ -42,7 +42,7 @@ def _compare(name: str, scene: Scene, V0: float, omega0: float, times: int) -> l
     versus = f"roll at rtol {RTOL:g} against direct solves"
     return [
         *(
-            Check(f"motion {name}: {quantity}", error, SPEED_ALLOWED, f"over max(|V|, |omega|) >= 1e-6; {versus}")
+            Check(f"motion {name}: {quantity}", error, SPEED_ALLOWED, f"divided by max(|V|, |omega|) >= 1e-6; {versus}")
             for quantity, error in worst.items()
         ),
         Check(f"motion {name}: onset time", onset, ONSET_ALLOWED, f"relative; {versus}"),

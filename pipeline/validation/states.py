@@ -19,7 +19,7 @@ FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: kernels/printed/law.py's measured figures times three or four.
 ALLOWED = {
     "lam": (1.5e-14, "relative"),
-    "epsilon": (3e-14, "over max(1, epsilon)"),
+    "epsilon": (3e-14, "divided by max(1, epsilon)"),
     "delta_star": (2e-15, "relative"),
     # stated as lam is, whose error in the octave of alpha from 20 to 35 enters it: 1.005e-14 against 50 digits
     "beta": (1.5e-14, "absolute"),

@@ -61,7 +61,7 @@ def stress_checks(count: int, seed: int) -> list[Check]:
             f"stress: {name}",
             float(np.max([abs(one[name]) for one in found])),
             ALLOWED,
-            f"over the load; {text}, {count} states",
+            f"divided by the load; {text}, {count} states",
         )
         for name, text in meaning.items()
     ]

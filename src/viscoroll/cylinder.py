@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from .contact_law.validity.cylinder import BodyData
 from .core.checks import broadcast_shape, check_array, check_choice, read_only
 from .core.drive import slope_tan_cos
-from .core.errors import ParameterError, exactly_one_error
+from .core.errors import ParameterError, described_error, exactly_one_error, shape_error
 from .core.results import Result, SummaryRow, format_value
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
@@ -43,20 +43,21 @@ class Cylinder(Methods):
 
     Parameters
     ----------
-    R : radius, m; this and every other number may be an array, one value a cylinder.
+    R : radius, m.  Each number may be an array (n,) with one value for each cylinder.
     m : mass per unit length, kg/m.
-    E : long-time Young's modulus, Pa; with the next three, of both bodies, in place of ``material``.
+    E : long-time Young's modulus of both bodies, Pa.  E, nu, T_epsilon and T_sigma take the place of ``material``.
     nu : Poisson's ratio, in (-1, 0.5].
-    T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma.  If T_epsilon is an array (n,),
-        each cylinder has its own material, and T_ref is the largest T_epsilon.
+    T_epsilon : retardation time, s, at least T_sigma.  If it is an array (n,), each cylinder has its own material, and
+        T_ref is the largest T_epsilon.
+    T_sigma : relaxation time, s.
     mu : coefficient of friction.
-    j : J/(m R^2); 1/2 for a solid cylinder.
+    j : moment of inertia divided by m R^2; 1/2 for a solid cylinder.
     g : gravitational acceleration, m/s^2.
-    plane : "strain", or "stress" (then E' = pi E).
+    plane : "strain" of a long roller, or "stress" of a thin disc (then E' = pi E).
     material : a :class:`Material`, in place of E, nu, T_epsilon and T_sigma; or a law of :func:`viscoroll.load_law` of
         such a material, which brings its ``base`` with it.
     base : the :class:`Material` of the half-space; default: that of the cylinder.
-    load : P, N/m; default: the weight m g (Sect. 3.5).  A roller may be pressed with more or less.
+    load : normal force P, N/m; default: the weight m g.
 
     Raises
     ------
@@ -137,7 +138,7 @@ class Cylinder(Methods):
             object.__setattr__(self, name, value)
         if material is None:
             if np.ndim(values["T_epsilon"]) > 1:
-                raise ParameterError("T_epsilon", f"of shape {values['T_epsilon'].shape}", "a number or a vector (n,)")
+                raise shape_error("T_epsilon", values["T_epsilon"].shape, "a number or a vector (n,)")
             refuse_short_retardation(values["T_epsilon"], values["T_sigma"])
         if material is not None or base is not None:
             _ = self.pair  # refuses what the materials do not allow
@@ -155,9 +156,9 @@ class Cylinder(Methods):
             sls: dict[str, Any] = {name: getattr(self, name) for name in _SLS}
             return Pair(Material.sls(**sls) if law is None else law, self.base, self.plane)
         if law.pair is None:
-            raise ParameterError("material", "a law without units", "the law of a Material, in SI units")
+            raise described_error("material", "is a dimensionless law", "the law of a Material, in SI units")
         if self.base is not None:
-            raise ParameterError("base", "given", "left out: the law already contains both bodies")
+            raise described_error("base", "is given", "left out: the law already contains both bodies")
         if self.plane != law.pair.plane and not law.pair.like:
             raise ParameterError("plane", repr(self.plane), f"{law.pair.plane!r}, as of the law")
         return Pair(law.pair.cylinder, law.pair.base, self.plane)
@@ -275,10 +276,9 @@ class Cylinder(Methods):
         cover: Any = law.material
         own = self.pair.cover(self.l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"the law of a layer whose thickness is {cover.thickness:.6g} l0"
-            raise ParameterError(
-                "material", found, f"that of {format_value(own.thickness)} l0, which follows from load and R"
-            )
+            found = f"is the law of a layer with thickness/l0 = {cover.thickness:.6g}"
+            allowed = f"the law for {format_value(own.thickness)}, which follows from load and R"
+            raise described_error("material", found, allowed)
 
     @cached_property
     def body_data(self) -> BodyData:

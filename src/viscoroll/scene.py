@@ -39,13 +39,13 @@ class Scene(Methods, Parameters):
 
     Parameters
     ----------
-    alpha : T_epsilon/T_sigma, retardation over relaxation time, >= 1 (1: elastic) and <= 1e12;
+    alpha : T_epsilon/T_sigma, retardation time divided by relaxation time, in [1, 1e12] (1: elastic);
         the unit of time is T_epsilon.
-    kappa : R/l0 = sqrt(E' R/(32 P)), radius over contact length at rest, > 0;
+    kappa : R/l0 = sqrt(E' R/(32 P)), radius divided by contact length at rest, > 0;
         the half-space theory requires kappa >> 1.
     mu : coefficient of friction, > 0.
-    gamma : P T_epsilon^2/(m R), > 0; only scales time.  Motions need it: roll and ensemble.
-    j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
+    gamma : P T_epsilon^2/(m R), > 0; it sets the time scale of motions, and roll and ensemble need it.
+    j : moment of inertia divided by m R^2, > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
     material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
         counts its times.  A law of :func:`viscoroll.load_law` stands for its material, or its alpha.  A

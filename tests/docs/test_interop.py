@@ -16,6 +16,7 @@ from closeness import close
 from places import ROOT
 
 import viscoroll as vr
+from viscoroll.io.config import read_law_source
 
 LOADING, HEADERS = ROOT / "docs/loading", ROOT / "src/viscoroll/io/tables/c"
 RUBBER = vr.Prony([0.3, 0.6, 1.5], [2e-2, 1e-3, 1e-5])
@@ -302,6 +303,25 @@ def test_a_roller_of_c(tmp_path):
     pulled = vr.roll(scene, 0.0, 0.0, [end], rtol=1e-10, force=0.05)
     exact = [m[-1] for m in (throw.V, throw.omega, throw.x, pulled.V, pulled.omega, pulled.x)]
     assert close(np.array(done.stdout.split(), dtype=float), np.array(exact), rel=tol.INTEROP_ROLL)
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # compared is the integrator, not its validity
+def test_the_roller_of_the_page(tmp_path):
+    """The program of docs/loading/README.md against roll, for the pair of its file."""
+    need("command -v cc")
+    law = vr.tables.law(read_law_source(ROOT / "docs/examples/rubber.toml"))
+    vr.tables.export(law, tmp_path / "rubber.h")
+    vr.tables.save(law, tmp_path / "rubber.nc")
+    shutil.copy(HEADERS / "vr_roll.h", tmp_path)
+    page = (LOADING / "README.md").read_text().split("## Motions in C")[1]
+    (tmp_path / "roll.c").write_text(page.split("```c\n")[1].split("```")[0])
+    subprocess.run(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", shell=True, cwd=tmp_path, check=True)
+    printed = subprocess.run("./roll", cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    speed, distance = (float(part.split()[0]) for part in printed.split(","))
+    roller = vr.Cylinder(R=0.1, m=35.5, mu=0.3, load=348.0, material=vr.load_law(tmp_path / "rubber.nc"))
+    m = roller.roll(2.0, 0.0, 1.0)
+    assert close(speed, m.V[-1], rel=tol.RIGID_STEEL)
+    assert close(distance, m.x[-1], rel=tol.RIGID_STEEL)
 
 
 def test_readers_in_c_refuse_what_is_no_law(tmp_path):

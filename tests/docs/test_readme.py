@@ -23,7 +23,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 
 HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
 PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in sorted((ROOT / folder).rglob("*.md")))]
-FMUS = ROOT / "docs/loading/fmus.md"
+FMUS = ROOT / "docs/loading/fmu_variables.md"
 
 
 def blocks(path: Path, language: str) -> list[str]:
@@ -90,7 +90,7 @@ def test_howto_runs(page, tmp_path, monkeypatch):
     if page == "files":
         assert (tmp_path / "motion.nc").exists()
     if page == "law":  # the integral part removes the steady-state error
-        assert close(session["controlled_V"], session["wanted"], rel=tol.EXAMPLE_RADAU)
+        assert close(session["controlled_V"], session["target"], rel=tol.EXAMPLE_RADAU)
 
 
 def test_the_page_of_measurements_runs(monkeypatch, capsys):

@@ -66,7 +66,7 @@ def test_law_and_the_rest(results):
     fixed, _, series = measured(results, *parts)
     assert fixed["error"]["all_times"] < fixed["stated_error"] < tol.FLOW_SPEED
     assert {row["material"] for row in series["rows"] if row["table_ms"]} >= {
-        "1 modes",
+        "1 mode",
         "30 modes",
         "pair of 10 and 3 modes",
     }

@@ -49,14 +49,14 @@ WIDE = {"mu": (3e-3, 30.0), "E": (3e4, 3e8), "E_1": (0.09, 900.0), "T_ref": (1e-
 
 
 def test_what_holds_near_the_values_alone_is_told_beside_what_holds_everywhere():
-    """M above the hump: one product is known far better as long as no unknown goes far."""
+    """M above its maximum: one product is known far better as long as no unknown goes far."""
     data = [vr.Resistance(np.geomspace(1.5, 20.0, 10), sigma=5e-3)]
     fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), data)
     *wide, sharp = fit.products()
     assert [one.near for one in wide] == [False] * len(wide) != []
     assert sharp.near
     assert sharp.high - sharp.low < 0.1 * min(one.high - one.low for one in wide)
-    assert "determined; near these values alone, more sharply, E T_ref^0.79 E_1^0.42" in str(fit)
+    assert "determined; near these values also E T_ref^0.79 E_1^0.42" in str(fit)
     for E in (0.8, 1.2):
         measured = [vr.Resistance(data[0].V, fit.predict(data[0]).M.value, sigma=5e-3)]
         other = vr.identify(roller(E=E * TRUTH["E"]), ranges("E_1", "T_ref"), measured, starts=1)

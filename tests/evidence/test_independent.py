@@ -21,9 +21,12 @@ BOUNDS = {
         "β, absolute": tol.HALF_SPACE_STICK, "M, relative, κV up to 2": tol.HALF_SPACE_MOMENT_SLOW,
         "M, relative, κV up to 20": tol.HALF_SPACE_MOMENT, "full slip, decided otherwise": 0.0,
     },
-    "profiles": {"p, over its peak": tol.HALF_SPACE_CODE_P, "τ, over μ times the peak of p": tol.HALF_SPACE_CODE_TAU},
+    "profiles": {
+        "p, divided by its peak": tol.HALF_SPACE_CODE_P,
+        "τ, divided by μ times the peak of p": tol.HALF_SPACE_CODE_TAU,
+    },
     "section_5": {
-        "V, relative": tol.SECTION_5_SPEED, "ω, over V": tol.SECTION_5_SPEED,
+        "V, relative": tol.SECTION_5_SPEED, "ω, divided by V": tol.SECTION_5_SPEED,
         "onset time, relative": tol.SECTION_5_ONSET,
     },
 }  # fmt: skip

@@ -11,7 +11,7 @@ from pipeline.evidence import stamps
 from pipeline.evidence.document.__main__ import BLOCKS, filled
 
 OTHER = "0123456789abcdef"
-SENTENCE = "Measured at kernels `01234567`, not those of this version.\n"
+SENTENCE = "Measured with an earlier version of the compiled code, source hash `01234567`.\n"
 
 
 KERNEL = '@njit\ndef law(x):\n    """Doubled."""\n    return 2.0 * x\n'
@@ -55,7 +55,7 @@ def test_what_computes_outdates_it(tmp_path, old, new):
 @pytest.mark.parametrize("name", [name for name, given in BLOCKS.items() if given["stage"] != "document"])
 def test_a_block_says_where_it_is_of_other_kernels(name, results):
     said = block(name, results(OTHER))
-    assert said.count("of this version") == said.count(SENTENCE) == 1
+    assert said.count("an earlier version") == said.count(SENTENCE) == 1
     assert said.replace(f"\n{SENTENCE}", "") == block(name, results(stamps.kernels_digest()))
 
 

@@ -26,7 +26,7 @@ def test_the_example_is_what_it_says():
     assert given["cylinder"] == vr.Cylinder(R=0.1, m=35.5, mu=0.4, material=rubber)
     assert given["unknown"].keys() == {"mu", "E", "E_1", "T_ref", "brake", "drag"}
     drum, throw = given["data"]
-    assert (drum.name, throw.name) == ("drum", "throw")
+    assert (drum.name, throw.name) == ("drum", "launch")
     assert drum.M.size == 40
     assert throw.V.size == 200
     assert (throw.V0, throw.omega0) == (None, 0.0)

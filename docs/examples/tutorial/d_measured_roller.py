@@ -16,7 +16,7 @@ import viscoroll as vr
 
 examples = Path("..")  # docs/examples of the source tree
 V, M = np.loadtxt(examples / "drum.csv", delimiter=",", skiprows=1).T  # m/s, N m/m
-t, speed = np.loadtxt(examples / "throw.csv", delimiter=",", skiprows=1).T  # s, m/s
+t, speed = np.loadtxt(examples / "launch.csv", delimiter=",", skiprows=1).T  # s, m/s
 data = [
     vr.Resistance(V, M, sigma=0.01, name="drum"),
     vr.Coastdown(t, speed, omega0=0.0, sigma=5e-3, name="coast-down"),

@@ -103,10 +103,11 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         mean, off = rubber(modes), random.standard_normal((2, m, modes))
         return vr.Prony(mean.E * np.exp(0.1 * off[0]), mean.tau * np.exp(0.3 * off[1]))
 
-    materials = {f"{modes} modes": rubber(modes) for modes in (1, 3, 10, 30)}
+    materials = {f"{modes} mode{'s' * (modes > 1)}": rubber(modes) for modes in (1, 3, 10, 30)}
     materials["pair of 10 and 3 modes"] = vr.Bodies(rubber(10), rubber(3, 2.0), 0.4)
-    many = {f"{modes} modes, a material each": spread(modes) for modes in (1, 3, 10)}
-    many["3 and 3 modes, a pair each"] = vr.Bodies(spread(3), spread(3), 0.4)
+    each = ", a different material for each motion"
+    many = {f"{modes} mode{'s' * (modes > 1)}{each}": spread(modes) for modes in (1, 3, 10)}
+    many["3 and 3 modes, a different pair for each motion"] = vr.Bodies(spread(3), spread(3), 0.4)
     scenes = {name: PAPER.replace(material=material) for name, material in (materials | many).items()}
     calls = {}
     for name, scene in ({"alpha = 11": PAPER} | scenes).items():

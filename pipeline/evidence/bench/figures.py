@@ -18,12 +18,12 @@ from ..results import RESULTS, Results, parser
 #: line and marker by method: told apart without colour
 _STYLES = {"flow": "*-k", "table": "o-k", "lsoda": "D-.g", "gsl-adams": "x:C3", "gsl-bdf": "+:C4"}
 #: key of a row -> what it is, over all outputs of the motions
-_ERRORS = {"max": "max", "p99": "99th percentile"}
+_ERRORS = {"max": "largest error", "p99": "99th percentile of the errors"}
 
 
 def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]], str]]) -> Any:
     """Error over time of each panel's rows by a key, a line for each method."""
-    title = "Error of V and ω against computing time, until the speed has fallen to 1e-3"
+    title = "Relative error of V and ω and computing time, for speeds above 1e-3"
     figure, drawn = new_figure(title, 1, len(shown), (4 * len(shown), 4.2), sharey=True)
     for axes, (title, (rows, key)) in zip(drawn, shown.items(), strict=True):
         for name, label in methods.items():
@@ -44,9 +44,9 @@ def draw(found: Results, folder: Path) -> None:
     """IC1-IC3 and random starts with every peer; and motions whose scenes are their own."""
     work, own = found["bench work-precision"], found["bench own-parameters"]
     random = [row for row in work["rows"] if row["group"] == "random"]
-    few = {"IC1-IC3: max error": (paper_rows(work["rows"]), "max")}
-    many = {f"{work['sizes']['motions']} random starts: {text}": (random, key) for key, text in _ERRORS.items()}
-    each = {f"every motion its own scene: {text}": (own["rows"], key) for key, text in _ERRORS.items()}
+    few = {"motions IC1-IC3 of the paper: largest error": (paper_rows(work["rows"]), "max")}
+    many = {f"{work['sizes']['motions']} random initial speeds: {text}": (random, key) for key, text in _ERRORS.items()}
+    each = {f"a scene for each motion: {text}": (own["rows"], key) for key, text in _ERRORS.items()}
     save(panels(work["methods"], few | many), folder / "work-precision.png")
     save(panels(own["methods"], each), folder / "bench-own-parameters.png")
 

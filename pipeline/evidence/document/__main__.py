@@ -69,7 +69,7 @@ def provenance(results: Results) -> str:
         return ""
     alone = len(set(read.values())) == 1
     named = (f"`{digest}`" + ("" if alone else f" ({', '.join(parts)})") for digest, parts in others.items())
-    return f"\nMeasured at kernels {' and '.join(named)}, not those of this version.\n"
+    return f"\nMeasured with an earlier version of the compiled code, source hash {' and '.join(named)}.\n"
 
 
 def document(files: list[Path], results: Path, check: bool) -> int:

@@ -1,4 +1,4 @@
-"""What the code says of itself: rooms and what each stands on, commands, keys of files; nothing is measured."""
+"""Blocks made from the code: layers and their imports, commands, keys of files; nothing is measured."""
 
 from __future__ import annotations
 
@@ -31,6 +31,8 @@ _SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "[material], [base]": (MaterialSection, (vr.Material,)), "[start]": (StartSection, (vr.roll,)),
     "[drive]": (DriveSection, (vr.roll,)), "[run]": (RunSection, ()),
 }  # fmt: skip
+#: a role of reStructuredText, or a literal, which Markdown writes between single backticks
+_ROLE = re.compile(r"(?::\w+:`|``)\.?([^`]+)``?")
 _KINDS = {schema.FloatType: "number", schema.IntType: "whole number", schema.BoolType: "true or false",
           schema.StrType: "text"}  # fmt: skip
 
@@ -61,34 +63,37 @@ def _imported(file: Path) -> Iterator[str]:
             yield from (path[0],) if path[0] else (name.name for name in node.names)
 
 
-def commands(results: Results) -> str:
-    """A heading for every command, and what its --help says below its usage."""
-    return "\n".join(_commands(parser()))
+def commands(results: Results, *names: str) -> str:
+    """A heading for every command of these names, and the text of its --help below the usage."""
+    texts = (text for name, text in _commands(parser()) if name.split()[1] in names)
+    return "\n".join(texts)
 
 
-def _commands(program: Any) -> Iterator[str]:
+def _commands(program: Any) -> Iterator[tuple[str, str]]:
+    """Yield (name, text) of every command below a parser."""
     below = [action for action in program._actions if isinstance(action, argparse._SubParsersAction)]
     if not below:
         program.formatter_class, program.color = partial(program.formatter_class, width=118), False
         _, _, said = program.format_help().partition("\n\n")
-        yield f"## {program.prog}\n\n```text\n{said}```\n"
+        yield program.prog, f"## {program.prog}\n\n```text\n{said}```\n"
     for action in below:
         for command in action.choices.values():
             yield from _commands(command)
 
 
-def sections(results: Results) -> str:
-    """A heading and a table of keys for every section of a TOML file."""
+def sections(results: Results, *wanted: str) -> str:
+    """A heading and a table of keys for each of these sections of a TOML file."""
     lines = []
-    for names, (section, meant) in _SECTIONS.items():
+    for names in wanted:
+        section, meant = _SECTIONS[names]
         meanings: dict[str, str] = {}
-        for each in (section, *meant):
+        for each in (*meant, section):  # the section knows its keys best
             meanings |= _parameters(each)
         rows = [
             (f"`{field.name}`", _kind(field.type), _default(field), meanings.get(field.name, ""))
             for field in schema.type_info(section).fields if not isinstance(field.type, schema.NoneType)
         ]  # fmt: skip
-        lines += [f"## {names}\n", table(("key", "what", "default", "meaning"), rows)]
+        lines += [f"## {names}\n", table(("key", "type", "default", "meaning"), rows)]
     return "\n".join(lines)
 
 
@@ -97,7 +102,7 @@ def _parameters(thing: Any) -> dict[str, str]:
     text = inspect.getdoc(thing) or ""
     found = re.findall(r"(?m)^(\w+(?:, \w+)*) : (.*(?:\n    .*)*)", text)
     return {
-        name: " ".join(words.split("\n\n")[0].split()).replace("|", "\\|")
+        name: _ROLE.sub(r"`\1`", " ".join(words.split("\n\n")[0].split())).replace("|", "\\|")
         for names, words in found for name in names.split(", ")
     }  # fmt: skip
 

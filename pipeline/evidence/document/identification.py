@@ -7,13 +7,13 @@ from typing import Any
 
 from ..results import Results
 
-_NEVER, _OPEN = "never", "--"
+_NEVER, _OPEN = "no influence", "unbounded"
 
 
 def _known(row: dict[str, Any], name: str) -> str:
     """Standard deviation and interval over the truth."""
     if name not in row["unknowns"]:
-        return "known"
+        return "given"
     if name in row["does_not_act"]:
         return _NEVER
     one = row["unknowns"][name]
@@ -26,13 +26,13 @@ def _known(row: dict[str, Any], name: str) -> str:
 def _together(row: dict[str, Any]) -> str:
     """What is determined of those that are not told apart."""
     if not row["undetermined"]:
-        return "each"
+        return "all"
     texts = []
     for one in row["products"]:
         powers = sorted(one["powers"].items(), key=lambda item: -abs(item[1]))
         named = " ".join(name if power == 1.0 else f"{name}^{power:.2g}" for name, power in powers)
-        near = "near these values " if one["near"] else ""
-        texts.append(f"{near}{named}, {50.0 * (one['high'] - one['low']):.2g} %")
+        near = " (near these values)" if one["near"] else ""
+        texts.append(f"{named}{near}, {50.0 * (one['high'] - one['low']):.2g} %")
     others = [name for name in row["unknowns"] if name not in (*row["undetermined"], *row["does_not_act"])]
     return "; ".join([*texts, *others]) or "nothing"
 

@@ -41,7 +41,7 @@ NOISE = {"M": 0.01, "Q": 1.0, "V": 5e-3, "omega": 5e-2, "x": 2e-3}
 ASKED = {"held": (0.90, 0.98), "off": (0.0, 0.02), "fit_s": (0.0, 0.5), "profiles_s": (0.0, 3.0)}
 #: data sets whose share tells anything
 FEWEST = 100
-REACHED = {"M over the hump": 1.0, "coast-down to 0": 0.95, "thrown, V": 0.95}
+REACHED = {"M across its maximum": 1.0, "coast-down to 0": 0.95, "launched without rotation, V": 0.95}
 #: of chi2 at the ends of an interval of 95 %
 RISE = 3.8414588
 #: chi2 above the best within which a search has arrived
@@ -83,10 +83,10 @@ HUMPED, ROLLED, THROWN = [drum(HUMP)], [motion(3.0, 40.0)], [thrown()]
 #: unknown -> what is measured -> its records; the second with a series that is known
 EXPERIMENTS: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
     (tuple(TRUTH), {
-        "M, 0.02-20 m/s, over the hump": HUMPED,
-        "M, 0.3-3 m/s, around the top": [drum(np.geomspace(0.3, 3.0, 40))],
-        "M, 0.02-0.2 m/s, below": [drum(SLOW)],
-        "M, 4-20 m/s, above": [drum(FAST)],
+        "M, 0.02-20 m/s, across its maximum": HUMPED,
+        "M, 0.3-3 m/s, around its maximum": [drum(np.geomspace(0.3, 3.0, 40))],
+        "M, 0.02-0.2 m/s, below its maximum": [drum(SLOW)],
+        "M, 4-20 m/s, above its maximum": [drum(FAST)],
         "Q at 0.1 m/s": [traction(0.1)],
         "Q at 0.1 and 1 m/s": [traction(0.1, 1.0)],
         "Q at 0.1, 1 and 10 m/s": [traction(0.1, 1.0, 10.0)],
@@ -95,16 +95,18 @@ EXPERIMENTS: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
         "coast-down V, 3 m/s to 0 (40 s)": ROLLED,
         "coast-down V, 10 m/s, 150 s": [motion(10.0, 150.0)],
         "coast-down x, 3 m/s to 0": [motion(3.0, 40.0, "x")],
-        "thrown, V": THROWN,
-        "thrown, V and omega": [thrown("V omega")],
-        "M over the hump + Q at 0.1 m/s": [*HUMPED, traction(0.1)],
+        "launched without rotation, V": THROWN,
+        "launched without rotation, V and omega": [thrown("V omega")],
+        "M across its maximum + Q at 0.1 m/s": [*HUMPED, traction(0.1)],
         "coast-down to 0 + Q at 0.1 m/s": [*ROLLED, traction(0.1)],
-        "M, Q at 3 speeds, thrown V and omega": [*HUMPED, traction(0.1, 1.0, 10.0), thrown("V omega")],
+        "M, Q at 3 speeds, launch without rotation (V and omega)": [
+            *HUMPED, traction(0.1, 1.0, 10.0), thrown("V omega"),
+        ],
     }),
     (("mu", "E", "T_ref"), {
-        "shape from a DMA, thrown V": THROWN,
-        "shape from a DMA, M below the hump": [drum(SLOW)],
-        "shape from a DMA, M above the hump": [drum(FAST)],
+        "series from DMA data, launched without rotation, V": THROWN,
+        "series from DMA data, M below its maximum": [drum(SLOW)],
+        "series from DMA data, M above its maximum": [drum(FAST)],
     }),
 ]  # fmt: skip
 LOADS: list[dict[str, Any]] = [{"load": share * LOAD, "name": f"at {share:g} P"} for share in (0.3, 2.0)]
@@ -113,24 +115,25 @@ IN_A_BEARING: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
     (SHAPE, {
         "coast-down 3 m/s, one load": [motion(3.0, 30.0)],
         "the same at 0.3 P and 2 P": TWO_LOADS,
-        "M over the hump, one load": HUMPED,
-        "M over the hump at 0.3 P and 2 P": [drum(HUMP, **at) for at in LOADS],
+        "M across its maximum, one load": HUMPED,
+        "M across its maximum at 0.3 P and 2 P": [drum(HUMP, **at) for at in LOADS],
     }),
     (("E", "T_ref"), {
-        "DMA shape, coast-down 3 m/s, one load": [motion(3.0, 30.0)],
-        "DMA shape, the same at 0.3 P and 2 P": TWO_LOADS,
+        "series from DMA data, coast-down 3 m/s, one load": [motion(3.0, 30.0)],
+        "series from DMA data, the same at 0.3 P and 2 P": TWO_LOADS,
     }),
 ]  # fmt: skip
 #: experiments whose intervals are counted, and their unknowns
 COUNTED: dict[str, tuple[list[Record], tuple[str, ...]]] = {
-    "M over the hump": (HUMPED, SHAPE),
-    "M over the hump and Q at 0.1 m/s": ([*HUMPED, traction(0.1)], tuple(TRUTH)),
-    "thrown, V and omega": ([thrown("V omega")], tuple(TRUTH)),
+    "M across its maximum": (HUMPED, SHAPE),
+    "M across its maximum and Q at 0.1 m/s": ([*HUMPED, traction(0.1)], tuple(TRUTH)),
+    "launched without rotation, V and omega": ([thrown("V omega")], tuple(TRUTH)),
 }
 #: one of which a product is
-PRODUCT = {"M below the hump": ([drum(SLOW)], SHAPE, "E_1 T_ref")}
+PRODUCT = {"M below its maximum": ([drum(SLOW)], SHAPE, "E_1 T_ref")}
 SEARCHED: dict[str, tuple[list[Record], tuple[str, ...]]] = {
-    "M over the hump": (HUMPED, SHAPE), "coast-down to 0": (ROLLED, SHAPE), "thrown, V": (THROWN, tuple(TRUTH)),
+    "M across its maximum": (HUMPED, SHAPE), "coast-down to 0": (ROLLED, SHAPE),
+    "launched without rotation, V": (THROWN, tuple(TRUTH)),
 }  # fmt: skip
 
 
@@ -201,9 +204,9 @@ def said(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     bad = [vr.Resistance(HUMP, exact + 0.01 * np.random.default_rng(10).standard_normal(HUMP.size), sigma=0.01)]
     held = [_measured(ROLLED[0], np.random.default_rng(11), BEARING)]
     fits = {
-        "M below the hump": lambda: fitted([drum(SLOW)], 2),
-        "M above the hump": lambda: fitted([drum(FAST)], 2),
-        "Q at one slow speed": lambda: fitted([traction(0.1)], 2),
+        "M below its maximum": lambda: fitted([drum(SLOW)], 2),
+        "M above its maximum": lambda: fitted([drum(FAST)], 2),
+        "Q at one low speed": lambda: fitted([traction(0.1)], 2),
         "Q at two speeds": lambda: fitted([traction(0.1, 1.0)], 0, starts=sizes["searches"]),
         "M of two relaxation times, fitted by one": lambda: vr.identify(roller(), ranges(SHAPE, bad), bad, starts=1),
         "a coast-down whose bearing is left out": lambda: vr.identify(roller(), ranges(SHAPE, held), held, starts=1),
@@ -262,8 +265,8 @@ def times(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """Seconds of processor of a fit of five unknowns to 200 points, from 30 % off, and of its five profiles."""
     off, rows = {name: 1.3 * value for name, value in TRUTH.items()}, []
     cases = {
-        "thrown, V: 5 unknowns, 200 points": THROWN,
-        "M over the hump and Q: 4 unknowns, 61 points": [*HUMPED, traction(0.1)],
+        "launched without rotation, V: 5 unknowns, 200 points": THROWN,
+        "M across its maximum and Q: 4 unknowns, 61 points": [*HUMPED, traction(0.1)],
     }
     for name, records in cases.items():
         seconds = []

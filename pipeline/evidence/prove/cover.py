@@ -71,7 +71,7 @@ PROOFS = [
             "epsilon": ("ε of a cover against boundary elements", _BOUND),
             "M": ("M of a cover against boundary elements, relative", _BOUND),
             "delta_star": ("δ* of a cover against boundary elements, relative", _BOUND),
-            "Q": ("Q of a cover against the solution without coupling, over the error that validity states", 1.0),
+            "Q": ("Q of a cover against the solution without coupling, divided by the error that validity states", 1.0),
         },
         states,
     ),

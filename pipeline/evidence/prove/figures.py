@@ -47,9 +47,9 @@ def motion_errors(results: Results) -> Any:
 
 def transient(results: Results) -> Any:
     """The size of e over the unsteadiness, by the law and with N."""
-    title = "Relative error of V against a transient solver: quasi-steady law (solid), with the correction N (dotted)"
+    title = "Relative error of V of free motions, against a transient solver"
     figure, panels = new_figure(title, 1, 2, (9.6, 4.2), sharey=True)
-    words = {"steady": "from steady contact", "rest": "from long rest"}
+    words = {"steady": "after a steady contact", "rest": "after a long standstill"}
     colours = {1: LINES[0], 2: LINES[1], 4: LINES[2]}
     for axes, (start, name) in zip(panels, words.items(), strict=True):
         for row in results["transient"]["rows"]:
@@ -57,12 +57,13 @@ def transient(results: Results) -> Any:
                 line = colours[row["modes"]] | {"linestyle": style, "linewidth": 1.0}
                 places = [(e[0], max(abs(e[which]), 1e-5)) for e in row[start]["e"] if e[which] is not None]
                 axes.loglog(*zip(*places, strict=True) if places else ((), ()), **line)
-        axes.loglog(LEVELS, LEVELS, **THIN)
+        axes.loglog(LEVELS, LEVELS, **THIN, label="error = unsteadiness")
         axes.set(title=name, xlabel="unsteadiness", ylim=(1e-5, 3.0))
     for modes, line in colours.items():
         panels[0].plot([], [], **(line | {"linestyle": "-"}), label=f"{modes} relaxation time{'s' * (modes > 1)}")
+    panels[0].plot([], [], color="black", linestyle=":", label="with the correction N")
     panels[0].set_ylabel("relative error of V")
-    panels[0].legend(fontsize="small", frameon=False)
+    panels[0].legend(fontsize="small", frameon=False, loc="lower right")
     return figure
 
 

@@ -107,7 +107,10 @@ def profiles() -> dict[str, NDArray]:
         inner = abs(x - 0.5 * state.lam * state.epsilon) <= INNER * 0.5 * state.lam
         p_off.append((E_prime * here.p - p)[inner] / p.max())
         tau_off.append((E_prime * here.tau - tau) / (PROFILES_MU * p.max()))
-    return {"p, over its peak": np.concatenate(p_off), "τ, over μ times the peak of p": np.concatenate(tau_off)}
+    return {
+        "p, divided by its peak": np.concatenate(p_off),
+        "τ, divided by μ times the peak of p": np.concatenate(tau_off),
+    }
 
 
 # --- the motion ---
@@ -116,13 +119,13 @@ def profiles() -> dict[str, NDArray]:
 def section_5() -> dict[str, NDArray]:
     """V and omega over |V|, onset relative: IC1-IC3 with both sets of parameters, at rtol 1e-11."""
     rows = read_rows(REFERENCE / "section5.csv")
-    off: dict[str, list[NDArray]] = {"V, relative": [], "ω, over V": [], "onset time, relative": []}
+    off: dict[str, list[NDArray]] = {"V, relative": [], "ω, divided by V": [], "onset time, relative": []}
     for ic, params in sorted({(row["ic"], row["params"]) for row in rows}):
         data = columns([row for row in rows if (row["ic"], row["params"]) == (ic, params)])
         scene = vr.Scene(**{name: data[name][0] for name in ("alpha", "kappa", "mu", "gamma", "j")})
         motion = vr.roll(scene, *vr.presets.PAPER_STARTS[ic], data["t"], rtol=1e-11)
         off["V, relative"].append((motion.V - data["V"]) / abs(motion.V))
-        off["ω, over V"].append((motion.omega - data["omega"]) / abs(motion.V))
+        off["ω, divided by V"].append((motion.omega - data["omega"]) / abs(motion.V))
         off["onset time, relative"].append(np.array([motion.onset_time / data["t_onset"][0] - 1.0]))
     return {name: np.concatenate(parts) for name, parts in off.items()}
 

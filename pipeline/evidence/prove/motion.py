@@ -90,7 +90,7 @@ def condition(case: Case, best: Any) -> float:
 
 
 def free(random: np.random.Generator, count: int) -> Found:
-    """At each tolerance in turn, over rtol: against the tightest."""
+    """At each tolerance in turn, divided by rtol: against the tightest."""
     for _, rtol in zip(range(count), cycle(TOLERANCES)):
         case = draws.free(random)
         m, best = (rolled(case, one, max_steps=10 * STEPS) for one in (rtol, TIGHTEST))
@@ -173,7 +173,7 @@ def slight(random: np.random.Generator, count: int) -> Found:
 
 
 def driven(random: np.random.Generator, count: int, draw: Callable[[np.random.Generator], Case]) -> Found:
-    """At each tolerance in turn, over rtol, and the balance of energy of the tight one."""
+    """At each tolerance in turn, divided by rtol, and the balance of energy of the tight one."""
     for _, rtol in zip(range(count), cycle(DRIVEN_TOLERANCES)):
         case = draw(random)
         best, m = (rolled(case, one) for one in (TIGHT, rtol))
@@ -214,7 +214,7 @@ def check_motions() -> list[tuple[Case, Any]]:
 
 
 def checked_free(random: np.random.Generator, few: int) -> Found:
-    """Each at every tolerance, over rtol, or over rtol x condition/30 where that is larger."""
+    """Each at every tolerance, divided by rtol, or over rtol x condition/30 where that is larger."""
     for case, best in check_motions():
         excuse = max(condition(case, best) / FACTOR, 1.0)
         for rtol in CHECKED_TOLERANCES[:few]:
@@ -223,7 +223,7 @@ def checked_free(random: np.random.Generator, few: int) -> Found:
 
 
 def checked_driven(random: np.random.Generator, few: int) -> Found:
-    """Each at every tolerance, over rtol."""
+    """Each at every tolerance, divided by rtol."""
     for row in json.loads(DRIVEN.read_text(encoding="utf-8"))["motions"]:
         case = driven_motion(row)
         best = SimpleNamespace(**{key: np.array(row[key]) for key in ("V", "omega", *PATHS)})
@@ -240,12 +240,13 @@ def checked_driven(random: np.random.Generator, few: int) -> Found:
 def at_each(tolerances: tuple[float, ...], bound: float, **sentences: str) -> dict[Any, tuple[str, float]]:
     """A claim for each tolerance."""
     return {
-        (name, rtol): (f"{text}, rtol {rtol:.0e}, over rtol", bound)
+        (name, rtol): (f"{text}, rtol {rtol:.0e}, divided by rtol", bound)
         for name, text in sentences.items() for rtol in tolerances
     }  # fmt: skip
 
 
-_SO_FAR = "V and omega over the largest speed so far"
+_LARGER = "V and omega, divided by the larger of both, and by condition/30 where the condition number exceeds 30"
+_SO_FAR = "V and omega, divided by the largest speed so far"
 _STEPS = {"steps": ("steps of a motion", STEPS)}
 _RANDOM = "random motions"
 
@@ -263,23 +264,24 @@ def _driven(size: str, domain: str, draw: Any, worst: float = FACTOR, given_up: 
 PROOFS = [
     Proof(
         "check_motions", "precise", str(FREE.relative_to(ROOT)), at_each(
-            CHECKED_TOLERANCES, FACTOR, speed="V and omega over the larger of both, over condition/30 above",
-            x="x over the longest way so far", onset="time of onset",
+            CHECKED_TOLERANCES, FACTOR, speed=_LARGER,
+            x="x, divided by the longest distance so far", onset="time of onset",
         ), checked_free,
     ),
     Proof(
         "motion", "motions", _RANDOM,
         at_each(TOLERANCES, FACTOR, speed=f"V, omega, condition below {FACTOR:g}", x="x", onset="time of onset")
-        | at_each(TOLERANCES, 1.0, ill=f"V, omega over condition, condition above {FACTOR:g}") | _STEPS
+        | at_each(TOLERANCES, 1.0, ill=f"V, omega, divided by the condition number, condition above {FACTOR:g}")
+        | _STEPS
         | {"given up": (f"motions given up after {10 * STEPS} steps", 0.0)}, free,
     ),
     Proof(
         "motion", "motion_identities", f"{_RANDOM}, rtol {RTOL:.0e}", {
-            "momentum": ("(V - j omega)' = 2 gamma Q, integrated: error over rtol", FACTOR),
-            "energy": ("balance of energy, integrated: error over rtol", FACTOR),
-            "rise": ("rise of kinetic energy while V omega >= 0, over rtol", FACTOR),
+            "momentum": ("(V - j omega)' = 2 gamma Q, integrated: error divided by rtol", FACTOR),
+            "energy": ("balance of energy, integrated: error divided by rtol", FACTOR),
+            "rise": ("rise of kinetic energy while V omega >= 0, divided by rtol", FACTOR),
             "bits": (f"-V, -omega under {_POWER:g} gamma at t/{_POWER:g}: motions that differ in a bit", 0.0),
-            "gamma": (f"{_TIME_SCALE} gamma at t/{_TIME_SCALE}: error over rtol", FACTOR),
+            "gamma": (f"{_TIME_SCALE} gamma at t/{_TIME_SCALE}: error divided by rtol", FACTOR),
         }, identities,
     ),
     Proof(
@@ -290,7 +292,7 @@ PROOFS = [
     Proof(
         "motion", "slight_motions", "alpha and kappa to 1e3, mu in [1e-6, 1e-5], j in [1e-3, 1], starts of 1e-5 to 1",
         _STEPS | {
-            "speed": (f"V, omega: error over rtol, rtol {RTOL:.0e}", FACTOR),
+            "speed": (f"V, omega: error divided by rtol, rtol {RTOL:.0e}", FACTOR),
             "given up": (f"share of motions given up at {RTOL:g} or {TIGHT:g}, left out", 0.02),
         }, slight,
     ),
@@ -308,14 +310,16 @@ PROOFS = [
             "before", partial(draws.driven, wild=True), 100.0, 0.02),
     Proof(
         "check_driven", "precise", str(DRIVEN.relative_to(ROOT)), at_each(
-            CHECKED_TOLERANCES, FACTOR, speed=_SO_FAR, paths="x, angle, works and losses over the largest",
-            times="times of switches and reversals over the last output time",
+            CHECKED_TOLERANCES, FACTOR, speed=_SO_FAR, paths="x, angle, works and losses, divided by the largest value",
+            times="times of switches and reversals, divided by the last output time",
         ), checked_driven,
     ),
     Proof(
         "flow", "mapped_scenes", "alpha in [1.001, 1e4], kappa in [0.5, 200], mu in [0.01, 3], j in [0.1, 2], starts "
         "in [-2, 2]^2, 1e-3 to 5 decay times", {
-            "speed": (f"V and omega against the integrator, over the error stated and {FACTOR:g} rtol", 1.0),
+            "speed": (
+                f"V and omega against the integrator, divided by the sum of the stated error and {FACTOR:g} rtol", 1.0,
+            ),
             "given up": ("share of motions that stop before their end", 0.0),
         }, mapped,
     ),

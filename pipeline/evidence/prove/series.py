@@ -144,13 +144,13 @@ PROOFS = [
         "from 1e-14 delta_star to its end",
         _states("relative", 5e-15, "delta_star", "Q", "M")
         # strengths of 1e4 beside 1: what a slow mode takes of M is then a difference
-        | _states("over M", 1e-12, *OF_BODIES)
+        | _states("divided by M", 1e-12, *OF_BODIES)
         # for alpha from 20 to 35, 24 powers of one octave leave 1.4e-14 of epsilon and 6.5e-15 of lam; of the slope
         # of M, near the ends of that octave, 1e-13
         | _states("relative", LAM, "lam") | _states("relative", EPSILON, "epsilon")
-        | _states("over its condition", 1.5e-14, "beta")
-        | _states("relative, over the condition of beta", 1e-14, "dQ_ddelta", "dQ_domega")
-        | _states("over mu/V, over the condition of beta", 1e-14, "dQ_dV")
-        | _states("over M/V", 1.5e-13, "dM_dV"), states,
+        | _states("divided by its condition", 1.5e-14, "beta")
+        | _states("relative, divided by the condition of beta", 1e-14, "dQ_ddelta", "dQ_domega")
+        | _states("divided by mu/V and by the condition of beta", 1e-14, "dQ_dV")
+        | _states("divided by M/V", 1.5e-13, "dM_dV"), states,
     ),
 ]  # fmt: skip

@@ -21,7 +21,7 @@ from .claim import Found, Proof
 from .draws import EDGE_ALPHAS, generators
 
 #: the two ways that contact() takes, and the largest fall allowed: see above
-WAYS, FALL = ("an alpha each", "one alpha"), 6.0
+WAYS, FALL = ("different alphas", "one alpha"), 6.0
 #: and the largest step of these, over their scales
 SLOPES, STEP = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV"), 1e-10
 #: neighbouring doubles at an edge: so many on either side of it
@@ -167,6 +167,6 @@ PROOFS = [
     ),
     Proof(
         "slopes", "shape_pairs", "every cell edge",
-        {name: (f"{name}: step between neighbouring doubles, over its scale", STEP) for name in SLOPES}, jumps,
+        {name: (f"{name}: step between neighbouring doubles, divided by its scale", STEP) for name in SLOPES}, jumps,
     ),
 ]  # fmt: skip

@@ -147,32 +147,33 @@ def by_elements(_: np.random.Generator, count: int) -> Found:
 
 
 def _contact(way: str, size: str, each: bool) -> Proof:
-    ill = f"over condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f} ({way})"
+    ill = f"divided by condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f} ({way})"
     claims = {
         (name, True): (f"{name}, relative, condition below {WELL_CONDITIONED:.0f} ({way})", WELL) for name in FIELDS
     }
     claims |= {(name, False): (f"{name}, {ill}", ROUNDINGS) for name in FIELDS}
-    slip = {"full_slip": (f"full_slip: distance from delta_star where wrong, ULP ({way})", 2.0)}
+    slip = {"full_slip": (f"full_slip: distance from delta_star where misjudged, ULP ({way})", 2.0)}
     return Proof("contact", size, STATES, claims | slip, partial(contact, each=each))
 
 
 _BY_ELEMENTS = "against 60 and 120 boundary elements a zone, extrapolated"
 PROOFS = [
-    _contact("an alpha each", "states", True),
+    _contact("different alphas", "states", True),
     _contact("one alpha", "slice_states", False),
     Proof(
         "slopes", "stress_states",
         "alpha zeta in [1e-8, 1e8], alpha in [1, 1e4], s over its range, x at edges, stick point and between",
         {
-            name: (f"{name} beyond a shift of x by what lam and epsilon may be off, over its peak", CLOSURE)
+            name: (f"{name} beyond a shift of x by the allowed errors of lam and epsilon, divided by its peak", CLOSURE)
             for name in ("p", "tau")
         },
         of_stress,
     ),
     Proof(
         "slopes", "closures", "alpha in [1, 1e4], kappa V in [1e-3, 1e3]", {
-            "load": ("Int p dx = P, over the load", CLOSURE), "Q": ("Int tau dx = Q, over the load", CLOSURE),
-            "M": ("Int x p dx = M, over the load", CLOSURE),
+            "load": ("Int p dx = P, divided by the load", CLOSURE),
+            "Q": ("Int tau dx = Q, divided by the load", CLOSURE),
+            "M": ("Int x p dx = M, divided by the load", CLOSURE),
         }, of_closures,
     ),
     Proof(

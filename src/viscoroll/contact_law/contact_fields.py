@@ -81,7 +81,7 @@ def field_names(
         if fields is None or known == names:
             return known
         unknown = next(name for name in names if name not in known)
-        allowed = f"of {', '.join(_BEFORE_THE_SPLIT)} where the body beside a layer relaxes: the rest is not known"
+        allowed = f"one of {', '.join(_BEFORE_THE_SPLIT)}, since the body in contact with the layer is viscoelastic"
         raise ParameterError("fields", repr(unknown), allowed)
     if UNSTEADY in names:
         allowed = "left out for a cover: N of a layer of finite thickness is not available"

@@ -11,7 +11,7 @@ import numpy as np
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array, check_array_extent, read_only
 from ..core.drive import slope_tan_cos
-from ..core.errors import ParameterError, check_one_given
+from ..core.errors import ParameterError, check_one_given, shape_error
 from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
 from ..materials.bodies import Bodies
@@ -293,7 +293,7 @@ def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a sin
     """
     for name in names:
         if shape := np.shape(getattr(scene, name)):
-            raise ParameterError(name, f"an array of shape {shape}", allowed)
+            raise shape_error(name, shape, allowed)
 
 
 def _refuse_ratio(mu: Floats, kappa: Floats) -> None:

@@ -76,8 +76,9 @@ def check_array_extent(
 
 def _range_words(low: float, above: float, high: float) -> str:
     """Return a range in words, "" for all finite numbers; arguments as of :func:`check_array_extent`."""
-    words = [f"finite and >= {low:g}"] if low > -math.inf else [f"finite and > {above:g}"] if above > -math.inf else []
-    return ", ".join(words + ([f"<= {high:g}"] if high < math.inf else []))
+    if high < math.inf:
+        return f"in [{low:g}, {high:g}]" if low > -math.inf else f"in ({above:g}, {high:g}]"
+    return f"finite and >= {low:g}" if low > -math.inf else f"finite and > {above:g}" if above > -math.inf else ""
 
 
 def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:
@@ -169,7 +170,10 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
         found = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
-        raise ParameterError("shapes", found, "broadcastable against each other") from None
+        allowed = "equal, or broadcast as in numpy"
+        raise ParameterError(
+            "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"
+        ) from None
 
 
 def read_only(array: Floats) -> float | Floats:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .checks import check_array, read_only
-from .errors import ParameterError
+from .errors import ParameterError, shape_error
 from .quantities import convert, split_unit, to_unit
 from .scale import HasUnits, Scale
 
@@ -57,9 +57,8 @@ class Schedule:
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
-            raise ParameterError(
-                "Schedule", shapes, "times of shape (k,) and values of shape (k,), or (n, k) for n motions"
-            )
+            allowed = "(k,) for both, or (n, k) for n motions"
+            raise ParameterError("shapes of a Schedule", shapes, allowed)
         for wrong, allowed in (
             (times[..., 1:] < times[..., :-1], "in ascending order"),
             (times[..., 2:] == times[..., :-2], "given once, or twice for a jump"),
@@ -104,9 +103,7 @@ class Feedback:
         for name in ("V", "omega"):
             _check_field(self, name, -np.inf)
             if np.ndim(gain := getattr(self, name)) > 1:
-                raise ParameterError(
-                    name, f"of shape {np.shape(gain)}", "a number, or an array (n,) with one for each motion"
-                )
+                raise shape_error(name, np.shape(gain), "a number, or an array (n,) with one for each motion")
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -180,9 +177,8 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
         parameters.bind(0.0)
     except TypeError:
         sentence = (
-            f"{name} must be a function of t only, but this function takes {parameters}: for gains on the "
-            f"speeds give Feedback, "
-            "any other controller goes with vr.law into your own integrator"
+            f"{name} must be a function of t alone, but this function has the parameters {parameters}: for feedback "
+            "of the speeds give vr.Feedback; with another controller call vr.law in an integrator of your own"
         )
         raise ParameterError(name, function, "a function of t", sentence) from None
 
@@ -208,7 +204,7 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
     theta = check_array("slope", slope, unit="rad")
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
-        allowed = "an angle of at most pi/2 in magnitude: radians in (-pi/2, pi/2), for example np.radians(5.0)"
+        allowed = "in (-pi/2, pi/2), in radians, for example np.radians(5.0)"
         raise ParameterError("slope", f"{theta[steep].flat[0]:g}", allowed)
     return np.tan(theta), np.cos(theta)
 

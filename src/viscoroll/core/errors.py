@@ -92,6 +92,22 @@ def describe_value(value: Any) -> str:
     return f"{text} ({kind or ('a function' if callable(value) else f'of type {type(value).__name__}')})"
 
 
+def described_error(name: str, found: str, allowed: str) -> ParameterError:
+    """Return the error of a parameter that a property describes better than its value.
+
+    name: of the parameter.  found: verb and property, as "is empty".  allowed: words that follow "must be".
+    """
+    return ParameterError(name, found, allowed, f"{name} {found}: must be {allowed}")
+
+
+def shape_error(name: str, shape: tuple[int, ...], allowed: str) -> ParameterError:
+    """Return the error of an array of a wrong shape.
+
+    name: of the parameter.  shape: that was found.  allowed: words that follow "must be".
+    """
+    return described_error(name, f"has shape {shape}", allowed)
+
+
 def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     """Return the error of a call that must give one of two parameters.
 

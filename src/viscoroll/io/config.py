@@ -34,7 +34,7 @@ class SceneSection(msgspec.Struct):
     """[scene]: the parameters of :class:`Scene`; with a preset all are optional.
 
     prony : in place of alpha: moduli divided by the long-time modulus, and relaxation times.
-    creep : in place of alpha: compliances divided by the instantaneous one, and retardation times; perhaps alpha.
+    creep : in place of alpha: compliances divided by the long-time compliance, retardation times, and optionally alpha.
     """
 
     alpha: float | None = None
@@ -117,10 +117,11 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
         raise section_error(path, "", "", "one of preset, [scene] and [cylinder] is needed")
     scenes = [name for name in ("preset", "scene") if name in content]
     if "cylinder" in content and scenes:
-        raise section_error(path, "", "cylinder", f"[cylinder] excludes {' and '.join(scenes)}")
+        names = " and ".join(scenes)
+        raise section_error(path, "", "cylinder", f"[cylinder] and {names} are both given: give one of them")
     for name in SECTIONS:
         if name in content and "cylinder" not in content:
-            raise section_error(path, "", name, f"[{name}] goes with [cylinder]")
+            raise section_error(path, "", name, f"[{name}] needs a section [cylinder]")
     for name, kind in {**SCHEMA, **more}.items():
         if name in content and kind is not None:
             as_struct(path, name, content[name], kind)

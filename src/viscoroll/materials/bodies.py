@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array, read_only
-from ..core.errors import ParameterError
+from ..core.errors import ParameterError, described_error, shape_error
 from .prony import Block, OneOrMany, Prony, series_of_alpha, sort_modes
 from .prony_forms import MOST_MODES
 
@@ -67,12 +67,12 @@ class Bodies(OneOrMany):
                 raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
-            raise ParameterError("share", f"of shape {share.shape}", "a number, or one for each pair, (n,)")
+            raise shape_error("share", share.shape, "a number, or one for each pair, (n,)")
         many = {name: np.empty(body.shape) for name, body in bodies.items()}
         object.__setattr__(self, "shape", broadcast_shape(**many, share=share))
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
         if modes > MOST_MODES:
-            raise ParameterError("cylinder, base", f"of {modes} modes together", f"at most {MOST_MODES}")
+            raise described_error("the pair", f"has {modes} modes", f"a pair of at most {MOST_MODES} modes")
         object.__setattr__(self, "share", read_only(share))
 
     @property

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import check_array, check_number, read_only
-from ..core.errors import ParameterError
+from ..core.errors import ParameterError, described_error, shape_error
 from ..core.results import format_value
 from .bodies import Bodies
 from .prony import Prony, series_of_alpha
@@ -87,7 +87,7 @@ class Cover(Bodies):
         """Check the parameters and make one or many covers; raises ParameterError.
 
         series: Prony series of the cover, or its alpha.
-        nu: Poisson's ratio of the cover, in [0, 0.5].
+        nu: Poisson's ratio of the cover, in [0, 0.5], a number or (n,).
         thickness: thickness divided by l0, > 0, a number or (n,).
         on: body that has the cover, "cylinder" or "base".
         part: part of the cover in the long-time compliance, in (0, 1].
@@ -100,16 +100,14 @@ class Cover(Bodies):
             raise ParameterError("series", f"{series!r:.60}", "a Prony series of one material, or an alpha")
         if on not in ("cylinder", "base"):
             raise ParameterError("on", repr(on), "'cylinder' or 'base'")
-        ratio, other_nu = (
-            check_array("nu", nu, low=0.0, high=0.5),
-            check_number("other_nu", other_nu, low=0.0, high=0.5),
-        )
+        ratio = check_array("nu", nu, low=0.0, high=0.5)
+        other_nu = check_number("other_nu", other_nu, low=0.0, high=0.5)
         part = check_number("part", part, above=0.0, high=1.0)
         given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
         if given.ndim > 1:
-            raise ParameterError("thickness", f"of shape {given.shape}", "a number, or one for each cover, (n,)")
+            raise shape_error("thickness", given.shape, "a number, or one for each cover, (n,)")
         if ratio.shape not in ((), given.shape):
-            raise ParameterError("nu", f"of shape {ratio.shape}", "a number, or one for each thickness, (n,)")
+            raise shape_error("nu", ratio.shape, "a number, or one for each thickness, (n,)")
         other = Prony.elastic() if other is None else other
         bodies = (series, other) if on == "cylinder" else (other, series)
         share = part if on == "cylinder" else 1.0 - part
@@ -141,8 +139,11 @@ class Cover(Bodies):
     def refuse_unknown_split(self, call: str) -> None:
         """Raise ParameterError if the other body relaxes; ``call``: function that needs slip and both parts of M."""
         if self.other.alpha > 1.0:
-            allowed = f"rigid or elastic: how M and slip are split, which {call} needs, is not known; contact gives M"
-            raise ParameterError("body beside the layer", "one that relaxes", allowed)
+            allowed = (
+                f"rigid or elastic: {call} needs the parts of M and of slip in each body, which the law of a layer "
+                "does not give; contact gives M"
+            )
+            raise described_error("the body in contact with the layer", "is viscoelastic", allowed)
 
     def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
         """Return the same bodies with another ``thickness``, divided by l0, and ``nu``, numbers or arrays (n,)."""

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.array_types import Floats
 from ..core.checks import check_array, check_bool, check_number
-from ..core.errors import ParameterError, check_names, check_one_given, exactly_one_error
+from ..core.errors import ParameterError, check_names, check_one_given, described_error, exactly_one_error, shape_error
 from ..core.scale import SI
 from .bodies import Bodies
 from .prony import Prony
@@ -238,7 +238,7 @@ class FromPrograms:
             K_inf = E / (3.0 * (1.0 - 2.0 * nu)) if K_inf is None else K_inf
             if not np.array_equal(K * G_inf, G * K_inf):
                 prony = plane_strain(G_inf, G, K_inf, K, tau)
-        check_names("keyword", more, _MATERIAL_KEYWORDS, "one of this constructor")
+        check_names("keyword", more, _MATERIAL_KEYWORDS, "a keyword of this function")
         return cls(E=E, nu=nu, prony=prony, **more)  # type: ignore[call-arg]
 
 
@@ -262,7 +262,7 @@ def check_pairs(
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
     if first.ndim != 1 or first.shape != second.shape:
-        raise ParameterError(other, f"of shape {second.shape}", f"one for each {name}, of shape {first.shape}")
+        raise shape_error(other, second.shape, f"one for each {name}, of shape {first.shape}")
     return first, second
 
 
@@ -281,8 +281,8 @@ def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, 
     }
     given = {name: value for name, value in ways.items() if value is not None}
     if len(given) != 1:
-        found = " and ".join(given) or "nothing"
-        raise ParameterError("long-time modulus by", found, "one of G_inf, G0 and a pair with beta = 0")
+        found = f"is given by {' and '.join(given) or 'no parameter'}"
+        raise described_error("the long-time modulus", found, "given by one of G_inf, G0 and a pair with beta = 0")
     (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G with beta = 0"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
@@ -295,11 +295,8 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:
-        raise ParameterError(
-            name,
-            f"{fractions.tolist()}",
-            "values whose sum is below 1: otherwise the long-time modulus is not positive",
-        )
+        allowed = "below 1: otherwise the long-time modulus is not positive"
+        raise ParameterError(f"sum of {name}", f"{1.0 - rest:g}", allowed)
     return rest
 
 

@@ -35,14 +35,14 @@ class Material(FromPrograms):
     Parameters
     ----------
     E : long-time Young's modulus, Pa, > 0; infinite for a rigid body.
-    nu : Poisson's ratio, in (-1, 0.5].  It is taken constant in time: shear, bulk and tensile modulus relax alike.
+    nu : Poisson's ratio, in (-1, 0.5], constant in time: shear, bulk and tensile modulus relax alike.
     prony : strengths divided by E, and times in units of T_ref; default: elastic.
     T_ref : unit of the times of ``prony``, s.
-    name : text for tables and figures.
-    density : kg/m^3, for a comparison of speeds with those of waves.
-    thickness : m; then the body is a layer of this thickness, bonded to a rigid core (of a covered roller) or bed (of a
-        belt or lining), and the other body is rigid or elastic.  None (default): a half-space.
-    measured : the :class:`Measured` band that it was fitted in; beyond it contacts warn.
+    name : name in tables and figures.
+    density : kg/m^3, for the comparison of the speed with the shear wave speed.
+    thickness : thickness of a layer, m, that is bonded to a rigid core (covered roller) or bed (belt, lining); the
+        other body is then rigid or elastic.  Default: a half-space.
+    measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
 
     Raises

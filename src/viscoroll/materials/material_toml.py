@@ -57,7 +57,8 @@ class FileSection(msgspec.Struct, kw_only=True):
 class MaterialSection(FileSection, kw_only=True):
     """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`, and a temperature.
 
-    T_epsilon, T_sigma : retardation and relaxation time of one mode, s, instead of a series.
+    T_epsilon : retardation time of a standard linear solid, s, in place of a series.
+    T_sigma : relaxation time of a standard linear solid, s, in place of a series.
     creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
     wlf, arrhenius : time-temperature shift.
     temperature : temperature of the material, degrees Celsius.
@@ -184,7 +185,7 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
         if temperature is None:
             return material
         if shift is None:
-            problem = f"temperature = {temperature:g}: needs wlf or arrhenius beside it"
+            problem = f"temperature = {temperature:g}: wlf or arrhenius is needed too"
             raise section_error(path, name, "temperature", problem)
         return material.at(temperature, shift)
     except ParameterError as error:
@@ -233,7 +234,7 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     times = section.T_epsilon, section.T_sigma
     if times != (None, None):
         if None in times or section.T_ref is not None or series:
-            problem = "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep"
+            problem = "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony and creep"
             raise section_error(path, name, "", problem)
         return Material.sls(section.E, section.nu, *times, **more)  # type: ignore[arg-type]
     T_ref = 1.0 if section.T_ref is None else section.T_ref

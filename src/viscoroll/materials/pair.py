@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..core.errors import ParameterError
+from ..core.errors import ParameterError, described_error
 from .bodies import Bodies
 from .cover import Cover
 from .material import Material
@@ -75,7 +75,7 @@ class Pair:
         """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
         if self.cylinder.thickness is not None and self.half_space.thickness is not None:
             allowed = "given for one body only: the law of two layers is not available; give base=, rigid or elastic"
-            raise ParameterError("thickness", "of both bodies", allowed)
+            raise described_error("thickness", "is given for both bodies", allowed)
         if self.plane != "strain":
             raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
 

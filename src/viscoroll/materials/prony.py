@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array
-from ..core.errors import ParameterError
+from ..core.errors import ParameterError, shape_error
 from .prony_forms import HIGHEST_ALPHA, LARGEST_TIME_RATIO, MOST_MODES, Modes, modes_of_creep, modes_of_relaxation
 
 #: difference of 1/alpha and 1 - sum J that rounding of the strengths explains, for each mode and one more
@@ -117,9 +117,7 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
-            raise ParameterError(
-                "E", f"values with the sum {np.max(alpha) - 1.0:g}", f"values with a sum up to {HIGHEST_ALPHA:g}"
-            )
+            raise ParameterError("sum of E", f"{np.max(alpha) - 1.0:g}", f"at most {HIGHEST_ALPHA:g}")
         self._set(False, strengths, times, alpha)
 
     @classmethod
@@ -148,15 +146,11 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("J", "T"), J, T)
         rest = np.asarray(1.0 - _exact_sums(strengths))
         if not (rest > 0.0).all():
-            found = f"values with the sum {1.0 - rest.min()!s}"
-            raise ParameterError(
-                "J", found, "values whose sum is below 1: otherwise the instantaneous modulus is infinite"
-            )
+            allowed = "below 1: otherwise the instantaneous modulus is infinite"
+            raise ParameterError("sum of J", f"{1.0 - rest.min()!s}", allowed)
         given = 1.0 / rest if alpha is None else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
         if given.shape not in ((), rest.shape):
-            raise ParameterError(
-                "alpha", f"of shape {given.shape}", f"a number, or one for each material, {rest.shape}"
-            )
+            raise shape_error("alpha", given.shape, f"a number, or one for each material, {rest.shape}")
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
@@ -333,10 +327,10 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
     values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, above=0.0)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
         allowed = f"one time for each {names[0]}, of shape {values.shape}"
-        raise ParameterError(names[1], f"of shape {each.shape}", allowed)
+        raise shape_error(names[1], each.shape, allowed)
     shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
     if len(shape) not in (1, 2):
-        raise ParameterError(", ".join(names), f"of shape {shape}", "(modes,) or (materials, modes)")
+        raise shape_error(", ".join(names), shape, "(modes,) or (materials, modes)")
     values, each = sort_modes(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
     present = values > 0.0
     most = int(present.sum(axis=-1).max(initial=0))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array, check_integer, check_number, extent
-from ..core.errors import ParameterError
+from ..core.errors import ParameterError, shape_error
 from ..core.scale import Scale, Units
 
 #: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no longer proportional.
@@ -32,7 +32,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
     if times.ndim != 1 or times.size == 0:
-        raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
+        raise shape_error("t", times.shape, "one end time or a vector of output times")
     falls = times[1:] < times[:-1]
     if falls.any():
         n = int(np.argmax(falls))
@@ -59,7 +59,7 @@ def require_single(**arguments: Any) -> None:
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
-            raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
+            raise ParameterError(name, shape, "a single number", sentence)
 
 
 def _shape(value: Any) -> tuple[int, ...]:
@@ -113,12 +113,12 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
 
 
 def in_words(error: ParameterError, scale: Scale) -> ParameterError:
-    """Return the refusal of a dimensionless value with the units that it was divided by.
+    """Return the refusal of a dimensionless number with the units that it was divided by.
 
     error: the refusal.
-    scale: scale of the roller; for a scene the error itself is returned.
+    scale: scale of the roller; for a scene, and for a message without a number, the error itself is returned.
     """
-    if not scale.si:
+    if not scale.si or not any(map(str.isdigit, str(error.value))):
         return error
     about = "dimensionless"
     if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):

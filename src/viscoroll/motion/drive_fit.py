@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from ..core.array_types import Floats
 from ..core.checks import check_array, check_number
-from ..core.errors import ParameterError
+from ..core.errors import ParameterError, shape_error
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.
@@ -112,7 +112,7 @@ class _Sampled:
         self.taken += t.size
         values = check_array(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
         if values.shape != t.shape:
-            raise ParameterError(f"{self.name}(t)", f"array of shape {values.shape[1:]}", "a number")
+            raise shape_error(f"{self.name}(t)", values.shape[1:], "a number")
         return values
 
     def value(self, t: float) -> float:

@@ -239,7 +239,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
     if stated is not None and not (np.abs(check_array(f"{name}0", stated) - start) <= _START * scale).all():
-        raise ParameterError(f"{name}0", stated, f"None, or {float(start[0]):.12g} as prescribed")
+        raise ParameterError(f"{name}0", stated, f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0")
     if start.size > 1:
         return start
     return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])
@@ -261,6 +261,6 @@ def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
     functions: functions of the drive, or None.
     """
     if rest > 0.0 and functions is not None and functions.acts_at_end:
-        sentence = f"rest = {rest:g} is given, but the motion is driven to its end: leave it out"
-        sentence += " (a brake stops the motion in finite time: see switches)"
+        sentence = f"rest = {rest:g} is given, but a load or a prescribed speed acts at the end of the motion: "
+        sentence += "leave it out (a brake stops the motion in finite time: see switches)"
         raise ParameterError("rest", rest, "None", sentence)

@@ -14,7 +14,7 @@ from ..core.array_types import Numbers
 from ..core.blocks import broadcast_vector, thread_count
 from ..core.checks import broadcast_shape, check_bool, check_choice, check_number
 from ..core.drive import Feedback, Schedule, make_dimensionless
-from ..core.errors import ParameterError, check_names
+from ..core.errors import ParameterError, check_names, shape_error
 from .batch import Batch, Solution, solve_batch
 from .checks import in_words, output_times
 from .drive import ACTING, ROWS, Drive, strip_units
@@ -153,7 +153,7 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
     own = {name: np.zeros(n) for name, n in zip(("pieces", "gains"), counts, strict=True) if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
-        raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
+        raise shape_error("V0 or omega0", shape, "a number or a vector (n,)")
     count = shape[0] if shape else 1
     return {name: broadcast_vector(array, (count,)) for name, array in arrays.items()}, count
 

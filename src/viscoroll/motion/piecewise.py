@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..core.array_types import Floats
 from ..core.checks import check_array
 from ..core.drive import Feedback, Schedule, require_time_argument
-from ..core.errors import ParameterError
+from ..core.errors import described_error, shape_error
 from ..kernels.motion.records import COL_COEFFICIENTS, COL_SCALE, COL_START
 from .drive_fit import fit_callable
 
@@ -79,7 +79,7 @@ def check_function(
     values = check_array(name, 0.0 if function is None else function, low=low)
     if values.ndim > 1:
         allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
-        raise ParameterError(name, f"array of shape {values.shape}", allowed)
+        raise shape_error(name, values.shape, allowed)
     return values
 
 
@@ -154,7 +154,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
     if jumps.any():
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
-        raise ParameterError(name, f"a jump at t = {when:.6g}", "a speed that does not jump")
+        raise described_error(name, f"jumps at t = {when:.6g}", "continuous, as a prescribed speed")
     order = np.arange(1, speed.terms.shape[-1])
     dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
     terms = speed.terms[..., 1:] * order * dx_dt[..., None]

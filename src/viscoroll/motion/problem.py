@@ -16,7 +16,7 @@ from ..core.array_types import Floats, Integers
 from ..core.blocks import broadcast_vector, run_blocks
 from ..core.checks import check_array, check_bool
 from ..core.drive import make_dimensionless
-from ..core.errors import MotionStatus, ParameterError
+from ..core.errors import MotionStatus, ParameterError, described_error
 from ..core.scale import HasUnits
 from ..materials.law.table import law_table
 from .checks import controls, in_words, refuse_end, require_single
@@ -122,7 +122,8 @@ def make_problem(
         raise in_words(error, scale) from error
     many = 1 if functions is None else max(functions.counts)
     if single and many > 1:
-        raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
+        allowed = "the drive of one motion: for many use ensemble"
+        raise described_error("drive", f"has values for {many} motions", allowed)
     driven = unsteady or (acts and drive.acts)
     return MotionProblem(roller, scene, drive, functions, V0, omega0, immobile, last, limits, unsteady, driven)
 

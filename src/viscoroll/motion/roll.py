@@ -47,13 +47,16 @@ def roll(
     ----------
     roller : a :class:`Scene`; or a :class:`Cylinder`, in SI units per m of its length: s, m/s, rad/s, m, N, N m, J.
         One, no arrays.
-    V0, omega0 : start speeds, any sign; the larger of the two 0, or in [1e-300, 1e100] R/T_ref.
+    V0 : initial speed of the axis, of any sign.  The larger of |V0| and R |omega0| is 0, or in [1e-300, 1e100] R/T_ref.
+    omega0 : initial angular velocity, of any sign; limits as for V0.
     t : output times, ascending; one number: the final state only, and ``course`` of the result is the whole motion.
     rtol : relative tolerance in [1e-12, 1e-2].  The global relative error of x and of the switch times is
         proportional to it; that of V and omega too, multiplied by t |V'|/|V|, by which a late
         speed magnifies any earlier error.  Errors are mostly below rtol, at most 30 rtol for the scenes
         of ``tests/motion/test_motion.py``; rare motions elsewhere may exceed that a little.
-    force, torque : force on the axis along V, divided by P, and torque on the cylinder along omega, divided by P R:
+    force : force on the axis along V, divided by P: of one of the kinds that ``torque``
+        lists.
+    torque : torque on the cylinder along omega, divided by P R; one of
 
         - a number;
         - ``vr.Schedule(times, values)``: linear between the times, constant outside; a time given twice is a jump;
@@ -61,15 +64,16 @@ def roll(
           largest value so far; below 1e-9 of its largest value of all it starts at 0 (``drive_error`` is the error of
           the fit).  A thousand samples are taken first, between which a pulse can be missed: see ``resolve``;
         - ``vr.Feedback(value, V=gain, omega=gain)``: any of these plus gains times the speeds.
-    slope : angle in radians, > 0 pushes along +V: P sin(slope) is added to ``force``.  The load is then
+    slope : angle in radians, > 0 if +V points downhill: P sin(slope) is added to ``force``.  The load is then
         P cos(slope), by which force, torque, Q and M of a scene are divided; ``scene`` of the result has the kappa and
         gamma of that load.
-    brake : largest torque of a brake divided by P R, >= 0, as for ``force``.  It acts against omega, and keeps
-        omega = 0 while |Q + M_cylinder - torque| is no larger.
-    drag : torque divided by P R against omega, for each unit of omega, as of a bearing, >= 0; part of ``torque`` of the
-        result.  It acts to the end: speeds decay by it too.
-    omega : prescribed speed of the motor, in place of ``torque``; ``omega0`` is None or its value at t = 0.
-    V : prescribed speed of the axis, in place of ``force``; ``V0`` likewise.  A prescribed speed must not jump.
+    brake : largest torque of a brake, divided by P R, >= 0; kinds as for ``force``.  It acts against omega, and keeps
+        omega = 0 while |Q + M_cylinder - torque| does not exceed it.
+    drag : torque of a bearing against omega, divided by P R, for each unit of omega, >= 0.  It is part of ``torque`` of
+        the result.
+    omega : prescribed angular velocity, in place of ``torque``; continuous; ``omega0`` is then None or its value at
+        t = 0.
+    V : prescribed speed of the axis, in place of ``force``; continuous; ``V0`` is then None or its value at t = 0.
     rest : end the motion where max(|V|, R |omega|) falls below this once nothing drives any more; refused where
         something drives to the end.  Nothing stops in finite time: at small V the speed decays like
         exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.

@@ -126,7 +126,7 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     Raises ParameterError for an ensemble without motions.
     """
     if not len(motions):
-        raise ParameterError("motions", 0, "at least one: a summary is over motions")
+        raise ParameterError("motions", 0, "at least 1")
     names = [
         name for name, quantity in QUANTITIES.items()
         if not quantity.part and all(getattr(motions, field) is not None for field in quantity.fields)

@@ -15,7 +15,7 @@ import viscoroll as vr
 scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3)
 limit = vr.contact(scene, V=0.05, delta=0.0).delta_star
 figure, panels = plt.subplots(
-    1, 3, figsize=(9.6, 3.4), sharex=True, sharey=True, layout="constrained"
+    1, 3, figsize=(9.6, 3.8), sharex=True, sharey=True, layout="constrained"
 )
 for axes, share in zip(panels, (0.2, 0.6, 1.0), strict=True):
     c = vr.contact(scene, V=0.05, delta=share * limit)
@@ -33,7 +33,7 @@ for axes, share in zip(panels, (0.2, 0.6, 1.0), strict=True):
         xlabel="$x/l_0$",
     )
 panels[0].set_ylabel(r"stress$/E'\times 10^3$")
-panels[0].legend(frameon=False, loc="upper left")
+figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
 
 # %%
 # The cylinder moves to the right.  The pressure centre is shifted to the leading edge, because the

@@ -27,7 +27,7 @@ V = np.logspace(-3.0, 9.0, 601)
 SYMBOLS = {
     "lam": r"$\lambda$",
     "epsilon": r"$\varepsilon$",
-    "delta_star": r"$\delta^*$",
+    "delta_star": r"$\kappa\delta^*/\mu$",
     "M": r"$\kappa M$",
 }
 figure, panels = plt.subplots(2, 2, figsize=(9.0, 6.4), sharex=True, layout="constrained")
@@ -57,7 +57,7 @@ for speed, style in zip((1e-2, 1.0, 1e3, 1e7), ("k-", "--", "-.", ":"), strict=T
             x,
             8.0 * np.pi * values,
             style,
-            label=rf"$\kappa V = 10^{{{np.log10(speed):.0f}}}$",
+            label=rf"$\kappa V = {speed:g}$" if speed < 1e4 else r"$\kappa V = 10^7$",
         )
 pressure.set(xlabel="$x/l_0$", ylabel=r"pressure $p/p_{\mathrm{static}}$", ylim=(0.0, None))
 shear.set(

@@ -18,10 +18,11 @@ times = 100.0 ** -np.arange(5.0)
 rubber = vr.Scene(material=vr.Prony(2.0 ** np.arange(5), times), kappa=10.0, mu=0.2)
 
 figure, panels = plt.subplots(1, 2, figsize=(9.5, 4.2), layout="constrained")
-for axes, scene, title in zip(
+for axes, scene, title, unit in zip(
     panels,
     (vr.presets.PAPER_SECTION_5, rubber),
     ("a) one relaxation time", "b) five relaxation times"),
+    (r"T_\varepsilon", r"T_\mathrm{ref}"),
     strict=True,
 ):
     extrema = vr.resistance_extrema(scene)
@@ -43,10 +44,13 @@ for axes, scene, title in zip(
         axes.plot(s.V[s.stable], s.M[s.stable], "o", color="C0")
         axes.plot(s.V[~s.stable], s.M[~s.stable], "o", color="C0", mfc="white")
     axes.set(
-        xlabel=r"speed $V\,T/R$", title=title, xlim=(V[0], 6.0 * V[-1]), ylim=(0.0, None)
+        xlabel=rf"speed $V {unit}/R$",
+        title=title,
+        xlim=(V[0], 6.0 * V[-1]),
+        ylim=(0.0, None),
     )
     axes.xaxis.set_minor_formatter(NullFormatter())
-panels[0].set_ylabel(r"$M/(PR)$; $\tan(\mathrm{slope})$")
+panels[0].set_ylabel("rolling resistance $M/(PR)$; tan(slope)")
 figure.suptitle(
     "Steady speeds on three slopes: stable (filled) and unstable (open)", fontsize="medium"
 )

@@ -33,7 +33,9 @@ for switch, end in zip(m.switches, ends, strict=True):
     if switch.regime == "full slip":
         for axes in (top, bottom):
             axes.axvspan(switch.t, end, color="0.87", linewidth=0.0)
-top.set(ylabel=r"$V T/R$, $\omega T$", xlim=(0.0, t[-1]))
-bottom.set(xlabel="$t/T$", ylabel="$Q/P$, torque$/(PR)$", ylim=(None, 2.15 * grip))
+top.set(ylabel=r"$V T_\varepsilon/R$, $\omega T_\varepsilon$", xlim=(0.0, t[-1]))
+bottom.set(
+    xlabel=r"$t/T_\varepsilon$", ylabel="$Q/P$, torque$/(PR)$", ylim=(None, 2.15 * grip)
+)
 for axes in (top, bottom):
     axes.legend(loc="upper left")

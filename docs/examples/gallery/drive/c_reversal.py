@@ -25,7 +25,11 @@ left.plot(t, m.V, "k", label="$V$")
 left.plot(t, m.omega, "--", label=r"$\omega$")
 left.axvline(turn, color="0.7", linewidth=0.6)
 left.axhline(0.0, color="0.7", linewidth=0.6)
-left.set(xlabel="$t/T$", ylabel=r"$V T/R$, $\omega T$", title="a) speeds")
+left.set(
+    xlabel=r"$t/T_\varepsilon$",
+    ylabel=r"$V T_\varepsilon/R$, $\omega T_\varepsilon$",
+    title="a) speeds",
+)
 left.legend(frameon=False)
 inset = right.inset_axes((0.5, 0.5, 0.46, 0.44))
 near = np.abs(t - turn) < 0.06 * turn
@@ -34,5 +38,9 @@ for axes, shown in ((right, t > 0.0), (inset, near)):
         axes.plot(t[side & shown], Q[side & shown], "k")
 right.axhline(-scene.mu, color="0.7", linewidth=0.6)
 right.text(0.0, -scene.mu, r"$-\mu$", va="bottom", fontsize=8)
-right.set(xlabel="$t/T$", ylabel="$Q/P$", title="b) traction; inset: near $V = 0$")
+right.set(
+    xlabel=r"$t/T_\varepsilon$",
+    ylabel="traction $Q/P$",
+    title="b) traction; inset: near $V = 0$",
+)
 right.set(ylim=(-1.05 * scene.mu, 0.02 * scene.mu))

@@ -50,20 +50,24 @@ for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
     axes.fill_between(V, tilt * V - unit * band, tilt * V + unit * band, color="white")
     for m in motions:
         fine = m.at(np.unique(np.linspace(m.t[:-1], m.t[1:], 6)))
-        axes.plot(fine.V, tilt * fine.V + unit * (fine.omega - fine.V), "C0", lw=0.9)
+        height = tilt * fine.V + unit * (fine.omega - fine.V)
+        axes.plot(
+            fine.V, height, "C0", lw=0.9, label="motions" if m is motions[0] else None
+        )
     axes.plot(
         separatrix,
         tilt * separatrix + unit * (across - separatrix),
         "C1",
+        lw=2.0,
         label="separatrix",
     )
-    for n, face, name in ((0, "black", "stable"), (1, "white", "unstable")):
+    for n, face, name in ((0, "black", "stable speed"), (1, "white", "unstable speed")):
         height = tilt * s.V[n] + unit * (s.omega[n] - s.V[n])
         axes.plot(s.V[n], height, "o", color="black", mfc=face, zorder=4, label=name)
-    axes.set(xlabel=r"$V T/R$", box_aspect=1.0)
-left.set(xlim=plane, ylim=plane, ylabel=r"$\omega T$")
+    axes.set(xlabel=r"$V T_\varepsilon/R$", box_aspect=1.0)
+left.set(xlim=plane, ylim=plane, ylabel=r"$\omega T_\varepsilon$")
 room = 1.2e3 * band[(V > -0.2 * saddle) & (V < 1.6 * saddle)].max()
 right.set(xlim=(-0.2 * saddle, 1.6 * saddle), ylim=(-room, room))
-right.set_ylabel(r"$(\omega T - V T/R)\times 10^3$")
-left.legend(loc="upper left", fontsize="small")
-figure.suptitle("White: partial slip; grey: full slip; blue: motions", fontsize="medium")
+right.set_ylabel(r"$(\omega T_\varepsilon - V T_\varepsilon/R)\times 10^3$")
+figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+figure.suptitle("White: partial slip; grey: full slip")

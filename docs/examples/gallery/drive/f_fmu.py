@@ -33,7 +33,7 @@ figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
 axes.plot(found["time"], found["v"], label="$v$")
 axes.plot(found["time"], roller.R * found["omega"], "--", label=r"$\omega R$")
 axes.set(xlabel="$t$, s", ylabel="speed, m/s")
-axes.legend()
+axes.legend(frameon=False)
 print(f"v = {found['v'][-1]:.6f} m/s after 3 s")
 
 # %%

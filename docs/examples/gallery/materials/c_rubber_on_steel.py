@@ -31,7 +31,11 @@ for name, base in {"rubber on rubber": rubber, "rubber on steel": steel}.items()
     if base is rubber:  # steel dissipates nothing
         half = 100.0 * c.M_half_space / (roller.R * roller.load)
         axes.semilogx(
-            speed, half, "--", color=line.get_color(), label="   part of the base"
+            speed,
+            half,
+            "--",
+            color=line.get_color(),
+            label="rubber on rubber: part of the base alone",
         )
 axes.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
 axes.legend(frameon=False, fontsize="small")

@@ -17,8 +17,9 @@ t = np.linspace(0.0, 4e-3, 2001)  # in units of T_epsilon
 figure, axes = plt.subplots(figsize=(7.6, 4.6), layout="constrained")
 for n, (name, start) in enumerate(vr.presets.PAPER_STARTS.items()):
     m = vr.roll(scene, *start, t)
-    axes.plot(1e4 * t, m.V, f"C{n}", label=f"{name}: $V$")
-    axes.plot(1e4 * t, m.omega, f"C{n}--", label=rf"{name}: $\omega$")
+    axes.plot(1e4 * t, m.V, f"C{n}", label="$V$" if n == 0 else None)
+    axes.plot(1e4 * t, m.omega, f"C{n}--", label=r"$\omega$" if n == 0 else None)
+    axes.annotate(name, (7.0, m.V[350]), (0, 9), textcoords="offset points", color=f"C{n}")
     axes.axvline(1e4 * m.onset_time, color=f"C{n}", linewidth=0.9, linestyle=":")
 axes.set(
     xlabel=r"$t/T_\varepsilon\times 10^4$",
@@ -26,7 +27,7 @@ axes.set(
     xlim=(0.0, 40.0),
 )
 axes.set_title("Fig. 5 of the paper; vertical lines: onset of stick", fontsize="medium")
-axes.legend(frameon=False, ncols=3)
+axes.legend(frameon=False)
 
 # %%
 # The contact during the first motion (Fig. 6): after the onset of stick the stick zone ``beta``

@@ -28,20 +28,29 @@ for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
     axes.fill_between(V, tilt * V - unit * band, tilt * V + unit * band, color="white")
     for m in motions:
         fine = m.at(np.unique(np.linspace(m.t[:-1], m.t[1:], 6)))
-        axes.plot(fine.V, tilt * fine.V + unit * (fine.omega - fine.V), "C0", lw=0.9)
+        height = tilt * fine.V + unit * (fine.omega - fine.V)
+        axes.plot(
+            fine.V, height, "C0", lw=0.9, label="motions" if m is motions[0] else None
+        )
     slow = rolling.at(rolling.t[late])
     for sign in (1.0, -1.0):
         height = tilt * slow.V + unit * (slow.omega - slow.V)
-        axes.plot(sign * slow.V, sign * height, "k", zorder=3)
-    axes.set(xlabel=r"$V T/R$", box_aspect=1.0)
-left.plot(*np.transpose(starts), "C0.")
-figure.suptitle(
-    "White: partial slip; grey: full slip; black: slow manifold; dots: starts",
-    fontsize="medium",
-)
-left.set(xlim=(-2.3, 2.3), ylim=(-2.3, 2.3), ylabel=r"$\omega T$")
+        axes.plot(
+            sign * slow.V,
+            sign * height,
+            "k",
+            lw=2.0,
+            zorder=3,
+            label="slow manifold" if sign > 0.0 else None,
+        )
+    axes.set(xlabel=r"$V T_\varepsilon/R$", box_aspect=1.0)
+left.plot(*np.transpose(starts), "C0.", label="initial speeds")
+figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+figure.suptitle("White: partial slip; grey: full slip")
+left.set(xlim=(-2.3, 2.3), ylim=(-2.3, 2.3), ylabel=r"$\omega T_\varepsilon$")
 room = 1.15e3 * band[np.abs(V) <= radius].max()
-right.set(xlim=(-2.0, 2.0), ylim=(-room, room), ylabel=r"$(\omega T - V T/R)\times 10^3$")
+right.set(xlim=(-2.0, 2.0), ylim=(-room, room))
+right.set_ylabel(r"$(\omega T_\varepsilon - V T_\varepsilon/R)\times 10^3$")
 
 # %%
 # White: partial slip.  Right: the difference omega - V, enlarged a thousand times.  The band

@@ -12,7 +12,7 @@ from viscoroll.core.plots import draw
 from viscoroll.io.runs import read_run
 from viscoroll.io.runs.sensitivity import sobol_indices
 
-Path("throw.toml").write_text(
+Path("launch.toml").write_text(
     """
 preset = "rubber-roller"
 [scene]
@@ -28,6 +28,6 @@ rtol = 1e-6
 summaries = ["V", "onset_time"]
 """
 )
-indices = sobol_indices(read_run("throw.toml"), n=512)
+indices = sobol_indices(read_run("launch.toml"), n=512)
 figure = draw(indices)
-Path("throw.toml").unlink()
+Path("launch.toml").unlink()

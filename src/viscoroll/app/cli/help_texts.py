@@ -46,9 +46,9 @@ example:
     "ensemble": """\
 Compute the motions of a run file with random initial speeds and parameters.
 
-The command computes the motions that the store lacks, and summarises all.  Call it again to complete an
-interrupted run, or to extend the store after n was raised in the run file.
-Without -o it prints size, memory and time of the run.
+The command computes the motions that the store does not contain yet, and summarises all motions.
+Call it again to complete an interrupted run, or to extend the store after n was raised in the run file.
+Without -o it prints the estimated size, memory and time of the run.
 
 example:
   viscoroll ensemble docs/examples/ensemble.toml""",
@@ -83,7 +83,7 @@ file is written, and the source of the data in it states the misfit.
 example:
   viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml""",
     "identify": """\
-Identify friction, modulus, relaxation times, strengths and bearing from measurements.
+Identify friction, modulus, relaxation times and moduli, and bearing friction, from measurements.
 
 The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states
 which of them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and

@@ -134,7 +134,7 @@ def _wlf(text: str) -> vr.WLF:
     "identify",
     option("file", metavar="DATA.toml", help="known and unknown parameters, and files of the measurements"),
     option("--starts", type=int, default=8, help="number of searches from random points in the ranges (default: 8)"),
-    option("--seed", type=int, default=0, help="seed of these points (default: 0)"),
+    option("--seed", type=int, default=0, help="seed of the random points (default: 0)"),
     option("--robust", action="store_true", help="give outliers less weight"),
     output(*FIGURES, name="--plot", required=False, more=": data, fit and residuals"),
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),

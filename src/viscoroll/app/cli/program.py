@@ -26,8 +26,8 @@ _INTERRUPTED = 130
 _BROKEN_PIPE = 141
 #: First word of several commands -> its help.
 _GROUPS = {
-    "material": "show a material, or fit one to measurements",
-    "tables": "write the contact law to a file, or to a grid for other programs",
+    "material": "Show a material, or fit one to measurements",
+    "tables": "Write the contact law to a file, or to a grid for other programs",
 }
 
 
@@ -130,7 +130,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ViscorollError, ImportError) as error:
         return _print_error(error)
     except MemoryError as error:
-        return _print_error(f"not enough memory ({error})")
+        return _print_error(f"not enough memory{f' ({error})' if str(error) else ''}")
     except KeyboardInterrupt as interrupt:
         if isinstance(interrupt, Interrupted):
             _print_line(interrupt)

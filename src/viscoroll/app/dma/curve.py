@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ...core.array_types import Floats
 from ...core.checks import check_array
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error, shape_error
 
 #: least number of points of a curve: a series of one mode has three constants
 FEWEST_POINTS = 3
@@ -85,8 +85,8 @@ class Curve(NamedTuple):
     @property
     def fluid(self) -> ParameterError:
         """The error where no long-time modulus is left."""
-        lowest = f"from {self.storage[0]:g} at omega = {self.omega[0]:g} on"
-        return ParameterError("storage", lowest, "data with a plateau at low frequencies: these have none, as a fluid")
+        found = f"has no plateau at low frequencies ({self.storage[0]:g} at omega = {self.omega[0]:g})"
+        return described_error("storage", found, "that of a solid, whose long-time modulus is positive")
 
 
 class Relaxation(NamedTuple):
@@ -125,8 +125,8 @@ class Relaxation(NamedTuple):
 
     @property
     def fluid(self) -> ParameterError:
-        last = f"down to {self.relaxation[-1]:g} at t = {self.t[-1]:g}"
-        return ParameterError("relaxation", last, "data with a plateau at long times: these have none, as a fluid")
+        found = f"has no plateau at long times ({self.relaxation[-1]:g} at t = {self.t[-1]:g})"
+        return described_error("relaxation", found, "that of a solid, whose long-time modulus is positive")
 
 
 _Data = TypeVar("_Data", Curve, Relaxation)
@@ -162,7 +162,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     first = next(iter(columns))
     for name, column in zip(columns, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:
-            raise ParameterError(name, f"of shape {column.shape}", f"one column, of the shape of {first}")
+            raise shape_error(name, column.shape, f"one column, with the shape of {first}")
     if values[0].size < fewest:
         raise ParameterError(first, f"{values[0].size} points", f"at least {fewest} points")
     order = np.argsort(values[0], kind="stable")

@@ -7,7 +7,7 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 from ...core.array_types import Numbers
 from ...core.checks import check_choice, check_integer, check_number
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error
 from ...materials.prony import Prony
 from ...materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
 from ...materials.shift import check_celsius
@@ -117,11 +117,10 @@ def fit_prony(
         record = omega
         for name, given in (("storage", storage), ("loss", loss)):
             if given is not None:
-                raise ParameterError(
-                    name, "given", "left out: the record states it (for the number of modes give modes=)"
-                )
+                allowed = "left out: the result of read_dma contains it (the number of modes is modes=)"
+                raise described_error(name, "is given", allowed)
         if mode not in (None, record.mode):
-            raise ParameterError("mode", repr(mode), f"{record.mode!r}, as of {record.source or 'the record'}")
+            raise ParameterError("mode", repr(mode), f"{record.mode!r}, the mode of {record.source or 'the data'}")
         omega, storage, loss, mode = record.omega, record.storage, record.loss, _mode(record.mode)
         temperature, source = record.temperature if temperature is None else temperature, source or record.source
     elif storage is None or loss is None:
@@ -191,10 +190,8 @@ def fit_relaxation(
     curve = data_of(Relaxation, {"t": t, "relaxation": relaxation})
     first, *_, last = curve.relaxation.tolist()
     if last > _RISES * first:
-        found = f"from {first:g} to {last:g} as the time increases"
-        raise ParameterError(
-            "relaxation", found, "a relaxation modulus, which decreases with time (a creep compliance increases)"
-        )
+        found = f"rises with time from {first:g} to {last:g}"
+        raise described_error("relaxation", found, "a relaxation modulus, which falls (a creep compliance rises)")
     _, fields, errors = _fit_series(curve, modes, misfit)
     temperature = None if temperature is None else check_celsius("temperature", temperature)
     return RelaxationFit(**fields, misfit=errors[0], mode=_mode(mode), source=source, temperature=temperature)

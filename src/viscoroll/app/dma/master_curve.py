@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ...core.array_types import Floats
 from ...core.checks import check_array
-from ...core.errors import ModelWarning, ParameterError, caller_level
+from ...core.errors import ModelWarning, ParameterError, caller_level, described_error
 from ...materials.shift import USUAL_RANGE, check_celsius, relative_shift
 from .curve import Curve, curve_of, thinned
 from .temperature_sets import default_reference, listed_factors, nearest, points_of, sets_of
@@ -152,8 +152,8 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
     found = [_align(*pair) for pair in pairwise(curves)]
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
         if not alignment.mismatch <= _LARGEST_MISMATCH:
-            allowed = "moduli of neighbouring curves that overlap after the shift"
-            raise ParameterError("temperature", "{:g} and {:g}".format(*pair), allowed)
+            name = "moduli at {:g} and {:g} °C".format(*pair)
+            raise described_error(name, "do not agree after any shift", "curves that overlap with their neighbours")
     steps, mismatch, freedom = np.reshape(found, (-1, 3)).T
     return np.append(0.0, np.cumsum(steps)), mismatch, freedom
 

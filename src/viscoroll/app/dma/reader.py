@@ -83,7 +83,7 @@ def read_dma(
         if len(table.headings) != 3:
             count = len(table.headings)
             problem = f"has {count} columns, and no headings for frequency, storage and loss modulus"
-            raise FileError(path, f"{problem}: give columns=")
+            raise FileError(path, f"{problem}: name them by columns={{...}}")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
     found, others = columns_of(table, named, overruling, defaults)
     notes = [f"{table.parts} tables"] * (table.parts > 1)
@@ -184,7 +184,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     quantities = {column.quantity for column in found}
     missing = "frequency" + ": this is a sweep of temperature, not of frequency" * ("temperature" in quantities)
     if quantities & {"frequency", "reduced frequency"}:
-        missing = "two of storage, loss, tan delta and modulus"
+        missing = "two of these four: storage, loss, tan delta, modulus"
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
             columns: dict[str, list[Column]] = {}
             unused = {}
@@ -201,7 +201,10 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
                     return _Choice(mode, pair, columns)
     problems = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
     headings = ", ".join(map(repr, filter(None, table.headings)))
-    raise FileError(table.path, f"no column was found for {missing}{problems}; headings: {headings}; give columns=")
+    raise FileError(
+        table.path,
+        f"no column was found for {missing}{problems}; headings: {headings}; name the columns by columns={{...}}",
+    )
 
 
 def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core.array_types import Floats, Integers
 from ...core.checks import check_array
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error, shape_error
 from ...core.quantities import to_unit
 from .curve import UNITS, Curve
 from .dynamic_moduli import SAME_TEMPERATURE
@@ -45,19 +45,17 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         sizes, *others = ([np.size(curve) for curve in column] for column in columns)
         if others != [sizes, sizes] or given.shape != (len(sizes),):
-            raise ParameterError(
-                "temperature", f"of shape {given.shape}", f"one for each curve, here {len(sizes)} curves"
-            )
+            raise shape_error("temperature", given.shape, f"one for each of the {len(sizes)} curves")
         first = np.cumsum([0, *sizes[:-1]])
         return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
     flat = [np.asarray(column) for column in columns]
     if given.ndim == 0:
         given = np.full(flat[0].shape, float(given))
     if given.ndim != 1:
-        raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one for each curve")
+        raise shape_error("temperature", given.shape, "one column, or one for each curve")
     for name, column in zip(Curve._fields, flat, strict=True):
         if column.shape != given.shape:
-            raise ParameterError(name, f"of shape {column.shape}", f"one for each temperature, of shape {given.shape}")
+            raise shape_error(name, column.shape, f"one for each temperature, of shape {given.shape}")
     return given, flat, None
 
 
@@ -74,7 +72,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
         No points; a set that drifts by more than :data:`.dynamic_moduli.SAME_TEMPERATURE`.
     """
     if not temperature.size:
-        raise ParameterError("temperature", "empty", "one a point")
+        raise described_error("temperature", "is empty", "one number for each point")
     order = np.argsort(temperature, kind="stable")
     ascending = temperature[order]
     label = np.cumsum(np.diff(ascending, prepend=ascending[0]) > LEAST_DISTANCE, dtype=np.int64)
@@ -83,9 +81,9 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     parts = np.split(ascending, np.flatnonzero(np.diff(label)) + 1)
     for part in parts:
         if part[-1] - part[0] > SAME_TEMPERATURE:
-            found = f"{part[0]:g} to {part[-1]:g} C in steps of at most {LEAST_DISTANCE:g} K"
-            allowed = f"sets within {SAME_TEMPERATURE:g} K, more than {LEAST_DISTANCE:g} K apart"
-            raise ParameterError("temperature", found, f"{allowed}: round them to those of the sweeps")
+            found = f"rises from {part[0]:g} to {part[-1]:g} °C in steps of at most {LEAST_DISTANCE:g} K"
+            allowed = f"equal within {SAME_TEMPERATURE:g} K in each sweep, and differ by more between sweeps"
+            raise described_error("temperature", found, f"{allowed}: round it to that of the sweep")
     if first is None:  # in the order in which the sets come
         first = np.sort(np.unique(of_point, return_index=True)[1])
     return Sets(np.array([float(np.median(part)) for part in parts]), of_point, of_point[first])
@@ -130,11 +128,11 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
         raise ParameterError("shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms")
     if factors.shape != sets.of_curve.shape:
         allowed = f"one factor for each of {sets.of_curve.size} temperatures, in the order of the curves"
-        raise ParameterError("shift", f"of shape {factors.shape}", allowed)
+        raise shape_error("shift", factors.shape, allowed)
     found = np.empty(temperatures.size)
     found[sets.of_curve] = factors
     if (found[sets.of_curve] != factors).any():
-        raise ParameterError("shift", "several factors for one temperature", "one factor a temperature")
+        raise described_error("shift", "has several factors for one temperature", "one factor for each temperature")
     if base is None:
         base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
     index = nearest(base, temperatures, "reference")

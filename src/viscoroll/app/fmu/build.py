@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.errors import FileError, MissingDependencyError, ParameterError
+from ...core.errors import FileError, MissingDependencyError, ParameterError, shape_error
 from ...core.extras import import_extra
 from ...core.files import replace_file
 from ...cylinder import Cylinder
@@ -136,9 +136,7 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
         values |= {"mass": given.m, "inertia": given.j}
     for name, value in values.items():
         if np.ndim(value):
-            raise ParameterError(
-                name, f"an array of shape {np.shape(value)}", "one number: an FMU contains one cylinder"
-            )
+            raise shape_error(name, np.shape(value), "one number: an FMU contains one cylinder")
     return {v.name: float(values.get(v.name, v.start)) for v in variables if v.start is not None}
 
 

@@ -71,7 +71,8 @@ ELEMENT = Model(
         Variable("load", "input", "N", f"{_LOAD_TEXT}; at 0 and below there is no contact and no force", _LOAD),
         *_BODY,
         _positive(
-            "v_min", "m/s", "slower, the law is evaluated at this speed: its slopes are infinite at rest", 1e-6
+            "v_min", "m/s", "lower limit of the speed in the law, since its slopes are infinite at rest",
+            1e-6
         ),
         Variable("force", "output", "N", "force on the cylinder, along v"),
         Variable("torque", "output", "N.m", "torque on the cylinder about its axis, along omega"),
@@ -92,11 +93,11 @@ ROLLER = Model(
         _positive("load", "N", _LOAD_TEXT, _LOAD),
         *_BODY,
         _positive(
-            "v_min", "m/s", "co-simulation: slower, creepage and errors are divided by this speed, and a "
-            "thousandth of it is rest", 1e-6
+            "v_min", "m/s", "co-simulation: lower limit of the speed by which creepage and errors are divided; below "
+            "v_min/1000 the roller is at rest", 1e-6
         ),
         _positive(
-            "v_smooth", "m/s", "model exchange: slower, creepage is divided by this speed, so that solvers "
+            "v_smooth", "m/s", "model exchange: lower limit of the speed by which creepage is divided, so that solvers "
             "pass through rest", 1e-3
         ),
         _positive("mass", "kg", "mass of the cylinder", 35.0),

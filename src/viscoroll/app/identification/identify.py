@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ...core.checks import check_bool, check_integer
-from ...core.errors import ParameterError, check_names
+from ...core.errors import ParameterError, check_names, described_error
 from ...cylinder import Cylinder
 from ...materials.material_toml import SECTIONS
 from .fit import Identification
@@ -98,12 +98,12 @@ def identify(
         cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
-        raise ParameterError("unknown", "nothing", "at least one name and its range")
+        raise described_error("unknown", "is empty", "at least one name and its range")
     problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
-        allowed = f"at most {most} for {problem.points} points: measure more points, give sigma, or reduce the unknowns"
-        raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
+        allowed = f"at most {most}, since the number of points is {problem.points}: give more points, or sigma"
+        raise ParameterError("number of unknowns", len(unknowns), allowed)
     planned = not any(record.measured for record in records.values())
     return Identification(
         problem, _find_minima(problem, 1 if planned else count, seed, check_bool("progress", progress))
@@ -123,15 +123,15 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
         alike = sum(type(other) is type(record) and not other.name for other in found.values())
         name = record.name or (f"{record.LABEL} {alike + 1}" if alike else record.LABEL)
         if name in found:
-            raise ParameterError("name", repr(name), "another for each record")
+            raise ParameterError("name", repr(name), "different for each record")
         if not record.sigma:
             raise ParameterError(f"{name}: sigma", None, "given for a record without values")
         found[name] = record
+    if not found:
+        raise described_error("data", "is empty", "at least one record")
     if len({bool(record.measured) for record in found.values()}) != 1:
-        allowed = (
-            "all with values or all without: fit the records with values first, then plan with the fitted cylinder"
-        )
-        raise ParameterError("data", f"{len(found)} records", allowed)
+        allowed = "one kind: fit the records with values first, then plan with the fitted cylinder"
+        raise described_error("data", "has records with values and records without", allowed)
     return found
 
 

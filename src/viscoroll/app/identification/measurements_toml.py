@@ -120,7 +120,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
     if others and not set(present) & set(kind.QUANTITIES):
         problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
-        raise FileError(path, f"{problem}; a plan has no other columns")
+        raise FileError(path, f"{problem} (a record without values, for a plan, has no other columns)")
     if others:
         text = f"{path.name}: unused columns: {', '.join(others)}"
         warnings.warn(text, ModelWarning, stacklevel=caller_level())

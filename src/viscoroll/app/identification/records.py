@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core.array_types import Floats, Numbers
 from ...core.checks import broadcast_shape, check_array, check_number
-from ...core.errors import ParameterError, check_names
+from ...core.errors import ParameterError, check_names, described_error, shape_error
 from ...core.labels import Labels, strip_labels
 from ...core.quantities import to_unit
 from ...core.scale import DIMENSIONLESS, si_unit
@@ -75,9 +75,9 @@ class Record:
             arrays[label] = check_array(self.label(label), value, unit=self.unit(name), above=0.0)
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
-            raise ParameterError(self.label(self.QUANTITIES[0]), f"of shape {shape}", "a value a place")
+            raise shape_error(self.label(self.QUANTITIES[0]), shape, "one value for each point")
         if 0 in shape:
-            raise ParameterError(self.label(self.COORDINATES[0]), "empty", "at least one place")
+            raise described_error(self.label(self.COORDINATES[0]), "is empty", "at least one number")
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
         vars(self).update(whole, labels=labels, sigma=sigmas)
@@ -221,7 +221,7 @@ class Traction(Record):
 
 @dataclass(frozen=True, eq=False)
 class Coastdown(Record):
-    """Speeds or distance over time of a roller that was thrown or released.
+    """Speeds or distance over time of a roller that was launched or released.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ class Coastdown(Record):
         super().__post_init__()
         t: Any = self.t
         if t.ndim > 1:
-            raise ParameterError(self.label("t"), f"an array of shape {t.shape}", "a vector, in ascending order")
+            raise shape_error(self.label("t"), t.shape, "a vector, in ascending order")
         if (np.diff(t) < 0.0).any():
             n = int(np.argmax(np.diff(t.ravel()) < 0.0))
             at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"

@@ -28,7 +28,7 @@ def report(fit: Any) -> str:
     width = max(map(len, fit.values))
     rows = []
     for name, ends in fit.intervals().items():
-        low, high = ("open" if end is None else f"{end:.6g}" for end in ends)
+        low, high = ("unbounded" if end is None else f"{end:.6g}" for end in ends)
         rows.append(f"  {name:<{width}}  {fit.values[name]:<12.6g} +- {fit.stderr[name]:<9.2g} 95%: {low} to {high}")
     noise, limits = ([f"  ! {line}" for line in lines] for lines in (_noise(fit), _limits(fit)))
     return "\n".join([_heading(fit), *noise, *rows, *limits])

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ...core.array_types import Floats
 from ...core.checks import broadcast_shape, check_array
 from ...core.drive import Feedback, slope_tan_cos
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error
 from ..contact_table import refuse_overflow
 from ..parameters import Parameters, refuse_arrays
 
@@ -102,11 +102,9 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):
-        raise ParameterError(name, "a feedback on a schedule", "constant in time")
+        raise described_error(name, "is a Feedback of a Schedule or function", "constant in time")
     if value.shape:
-        raise ParameterError(
-            name, f"a Feedback with gains of shape {value.shape}", "a Feedback whose gains are numbers"
-        )
+        raise described_error(name, f"is a Feedback with gains of shape {value.shape}", "one whose gains are numbers")
     return value.value, value.V, value.omega
 
 
@@ -120,7 +118,7 @@ def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -
     names = [name for name, value in loads.items() if value is not None]
     for name in names:
         if isinstance(loads[name], Feedback):
-            raise ParameterError(name, "a feedback", "a number or an array where V is given")
+            raise described_error(name, "is a Feedback", "a number or an array where V is given")
     if len(names) == 2:
         sentence = "V, force and torque are all given: give two of them, the third is computed"
         raise ParameterError("V, force, torque", "all", "two of them", sentence)

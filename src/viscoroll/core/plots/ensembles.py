@@ -46,6 +46,8 @@ _MAX_NUMBER = 1e300
 _BAR_WIDTH = 0.38
 #: Sobol index -> its name, the grey of its bar, the shift of its bar in widths.
 _SOBOL = {"S1": ("first-order", "0.35", -0.5), "ST": ("total", "0.8", 0.5)}
+#: Names of results for titles, where the name in files is too short.
+_RESULT_NAMES = {"lost": "share of energy lost", "onset_time": "onset time $t^*$"}
 #: Symbols of initial values.
 _INITIAL_SYMBOLS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
 
@@ -107,7 +109,7 @@ def _ensemble_histogram(axes: Any, values: NDArray) -> None:
     values: values of a quantity, (motions,).
     """
     finite = values[np.isfinite(values)]
-    axes.set_ylabel(f"motions, of {values.size}")
+    axes.set_ylabel(f"number of motions, of {values.size:,}")
     if finite.size >= _MIN_MOTIONS and np.ptp(finite) > _MIN_RANGE * np.abs(finite).max():
         counts, _, _ = axes.hist(finite, bins=_ENSEMBLE_BARS, color="0.6")
         if counts.max() > _ONE_BAR * finite.size:  # as at rest: the other bars would not be visible
@@ -125,7 +127,7 @@ def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """
     counts = data[f"{name}_histogram"].values
     counts = counts[:, -1] if counts.ndim == 2 else counts
-    axes.set_ylabel(f"motions, of {counts.sum()}")
+    axes.set_ylabel(f"number of motions, of {counts.sum():,}")
     if not counts.any():
         axes.set_title("no values", fontsize="small")
         return
@@ -165,7 +167,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     order = np.argsort(-np.max([values["ST"] for _, values in shown], axis=0), kind="stable")
     inputs = [_INITIAL_SYMBOLS.get(name) or axis_label(name) for name in indices["input"].values[order]]
     percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
-    title = f"Sobol indices of {indices.attrs['motions']} motions, with intervals of {percent}"
+    title = f"Sobol indices of {indices.attrs['motions']:,} motions, with {percent} confidence intervals"
     figure, panels = new_panels(title, len(shown), 3, (3.2, 2.6), sharey=True)
     x = np.arange(order.size)
     for axes, (text, values) in zip(panels, shown, strict=True):
@@ -190,8 +192,9 @@ def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArra
     Returns (title of the panel, name of the index -> values over the inputs).
     """
     values = {key: indices[f"{name}_{key}"].values for index in _SOBOL for key in (index, f"{index}_conf")}
+    text = _RESULT_NAMES.get(name) or axis_label(name)
     if values["S1"].ndim == 1:
-        return axis_label(name), values
+        return text, values
     last = np.flatnonzero(np.isfinite(values["S1"][:, 0]))[-1]
     time = with_unit(f"{axis_label('t')} = {indices['t'].values[last]:g}", indices["t"].attrs["units"])
-    return f"{axis_label(name)} at {time}", {key: v[last] for key, v in values.items()}
+    return f"{text} at {time}", {key: v[last] for key, v in values.items()}

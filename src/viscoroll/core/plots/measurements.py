@@ -25,7 +25,7 @@ def master_curve(material: Any) -> Figure:
     Raises ParameterError for a rigid body, which has no curves.
     """
     if material.is_rigid:
-        raise ParameterError("material", "rigid", "one of a finite modulus")
+        raise ParameterError("material", "rigid", "a material with a finite modulus")
     times = material.T_ref * np.concatenate([material.prony.T, material.prony.tau, [1.0][: not material.prony.E.size]])
     ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
     t = np.logspace(*ends, _POINTS)

@@ -75,7 +75,7 @@ def fault_of(cell: str, decimal: str) -> str:
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     """
     if _GAP.fullmatch(cell):
-        return "is missing: remove its row"
+        return "is a missing value: remove its row"
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
         return ""
     if _THOUSANDS.fullmatch(cell) or not decimal:

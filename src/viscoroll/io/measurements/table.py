@@ -142,7 +142,7 @@ class _Layout:
         if not widths:
             raise FileError(self.path, "has no row of numbers")
         self.width = widths.most_common(1)[0][0]
-        self.cut = f"cut by {SEPARATORS[self.separator]}"
+        self.cut = f"separated by {SEPARATORS[self.separator]}"
 
     def fault(self, line: Line, problem: str) -> FileError:
         """Return the error that names a line and quotes it."""
@@ -177,7 +177,7 @@ class _Layout:
             return above[-1:]
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
-                raise self.fault(line, f"contains column names, but is not {self.cut} into {width} as the rows")
+                raise self.fault(line, f"contains column names, but does not have {width} columns, {self.cut}")
         names = [f"column {n}" for n in range(width)]
         lines[:first] = [Line(lines[first].number, str(names), names, False, False)]
         return [0]

@@ -105,15 +105,19 @@ class RunSection(msgspec.Struct, frozen=True):
     """[run].
 
     n : number of motions, up to 1e12.
-    t : output times, dimensionless; in s with [cylinder].
+    t : output times, dimensionless; with [cylinder] in s.
     seed : seed of all random inputs.
-    design : how inputs are drawn: independently, in a Latin hypercube, or along Sobol's sequence.
-    method, rtol, rest, unsteady, rested : as for :func:`viscoroll.ensemble`; with [cylinder] in SI units.
-    block : motions per block; the default fits the memory.
-    keep : the summaries alone, or every motion with its inputs.
-    fields : fields of the motions that are kept.
-    summaries : quantities whose distribution is kept.
-    quantiles : quantiles of these that are shown.
+    design : "random" draws inputs independently, "latin" in a Latin hypercube, "sobol" from a Sobol sequence.
+    method : "flow" reads motions of one scene from a flow map, "integrate" integrates each, "auto" chooses.
+    rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
+    rest : speed below which a motion ends at rest, dimensionless; with [cylinder] in m/s.  Default: no such end.
+    unsteady : whether the added mass N of slow speed changes acts.
+    rested : whether the cylinder stood still for long before the start, or the time for which it did.
+    block : number of motions in a block; by default as many as fit the memory.
+    keep : "summaries" stores statistics alone, "all" also every motion with its inputs.
+    fields : quantities of each motion that are stored with keep = "all".
+    summaries : quantities whose statistics are stored.
+    quantiles : probabilities of the quantiles that are stored.
     """
 
     n: Whole
@@ -309,7 +313,7 @@ def _check_inputs(run: Run) -> None:
         except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
                 raise locate_error(run.path, inputs.content, error) from error
-            reaches = f"{number.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
+            reaches = f"{number.name}: draws extend from {ends[0]:.6g} to {ends[1]:.6g}"
             problem = f"{getattr(error, 'problem', str(error)).rpartition('] ')[2]}; add truncate = [low, high]"
             raise section_error(run.path, number.section, number.key, f"{reaches}: {problem}") from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)

@@ -230,9 +230,9 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
             names_allowed = f"must be one of {', '.join(random)}{suggestion(unknown[0], random)}"
             problem = f"{unknown[0]!r} has no distribution: {names_allowed}"
         elif a == b or not _is_number(value) or not -1.0 < value < 1.0:
-            problem = f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)"
+            problem = f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"
         elif pairs.get((b, a), value) != value:
-            problem = f"{a}.{b} = {value!r}: must be that of {b}.{a} = {pairs[b, a]!r:.40}"
+            problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"
         if problem:
             raise section_error(path, "correlation", a, problem)
         n, m = names.index(a), names.index(b)

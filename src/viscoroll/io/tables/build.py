@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
 from ...core.array_types import Floats
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error, shape_error
 from ...cylinder import Cylinder
 from ...materials.law.netcdf import bodies_as_toml, parse_law
 from ...materials.law.table import LawTable
@@ -95,10 +95,10 @@ def build(
     axes = {"V": increasing("V", V, unit=what.scale, above=0.0), "delta": increasing("delta", delta)}
     if alpha is not None:
         if isinstance(what, Cylinder) or what.material is not None:
-            raise ParameterError("alpha", "given", "left out: a material determines alpha")
+            raise described_error("alpha", "is given", "left out: the material determines alpha")
         axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
-    if math.prod(nodes.size for nodes in axes.values()) > MAX_NODES:
-        raise ParameterError(", ".join(axes), "their product", f"at most {MAX_NODES} nodes in all")
+    if (nodes := math.prod(axis.size for axis in axes.values())) > MAX_NODES:
+        raise described_error("the grid", f"has {nodes:g} nodes", f"a grid of at most {MAX_NODES:g} nodes")
     plane = tuple(name for name in axes if name != "delta")
     data = {
         name: schema.variable(name, plane if name in schema.PLANE else tuple(axes), values, si)
@@ -130,7 +130,7 @@ def _roller_of(what: Any) -> Scene | Cylinder:
     if not isinstance(what, Scene | Cylinder):
         raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law")
     if shape := (what if isinstance(what, Scene) else what.scene()).shape:
-        raise ParameterError("what", f"of shape {shape}", "one scene, of single numbers")
+        raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
     return what
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ... import __version__
 from ...core.array_types import Floats
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error
 from ...core.files import replace_file, write_text
 from ...core.symbols import PAPER
 from ...materials.law.netcdf import parse_law
@@ -84,8 +84,8 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     """Write a grid ``table`` to ``path``: Q over (V, delta) for CombiTable2D, M over V for CombiTable1D blocks."""
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if schema.axes_of(plane) != ("V", "delta"):
-        allowed = "a grid on (V, delta): a Modelica table has two inputs; table.sel(alpha=...) is at one alpha"
-        raise ParameterError("table", f"over {', '.join(schema.axes_of(table))}", allowed)
+        allowed = "a grid on V and delta, the two inputs of a Modelica table: select one alpha by table.sel(alpha=...)"
+        raise described_error("table", f"has the axes {', '.join(schema.axes_of(table))}", allowed)
     V, delta = table["V"].values, table["delta"].values
     matrices = {
         "Q": np.block([[np.zeros((1, 1)), delta[np.newaxis]], [V[:, np.newaxis], plane["Q"].values]]),

@@ -134,7 +134,7 @@ class Interpolant:
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):
             wanted = ", ".join(axis for axis in self._axes if axis in needed)
-            allowed = f"{', '.join(self._axes)} (needed for these fields: {wanted})"
+            allowed = f"axes of this grid ({', '.join(self._axes)}); these fields need {wanted}"
             raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
         axes = {name: self._table[name] for name in points}
         arrays = {

@@ -71,7 +71,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     slow_limit = _solve_elastic(modes, thickness, 1.0) if thickness > _THINNEST else None
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
         allowed = f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
-        raise ParameterError("thickness", f"{thickness:.3g} (over l0)", allowed)
+        raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
     if not modes.series.a.size:
         lam, L, free = slow_limit[_LAM], slow_limit[_LIMIT], side * slow_limit[_FREE]
         table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
@@ -151,7 +151,7 @@ def _solve_node(
             return values, y + step, slope
         previous = y, error, values, (z, state)
         y += min(max(step, -0.7), 0.7) if abs(step) > _LEAST_STEP else math.copysign(_LEAST_STEP, step)
-    raise ParameterError("thickness", f"{thickness:g} (over l0)", "larger: the load of the layer was not met")
+    raise ParameterError("thickness/l0", f"{thickness:g}", "larger: no contact length with this load was found")
 
 
 def _solve_nodes(modes: CoverModes, thickness: float, u: Floats, lam: float) -> Floats:

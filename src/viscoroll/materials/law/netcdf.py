@@ -16,7 +16,7 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ...core.checks import check_array, check_number
-from ...core.errors import FileError, ParameterError
+from ...core.errors import FileError, ParameterError, described_error
 from ..bodies import Bodies
 from ..cover import Cover
 from ..law_file import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, make_dataset, read_law
@@ -46,7 +46,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     base: Material of the half-space, only beside a Material; default: that of the cylinder.
     """
     if base is not None and not isinstance(material, Material):
-        raise ParameterError("base", "given", "left out unless material is a Material")
+        raise described_error("base", "is given", "left out unless material is a Material")
     if isinstance(material, LawTable | Prony | Bodies):
         return law_table(material)
     if isinstance(material, Material):
@@ -55,7 +55,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
         return replace(law_table(material.law), T_ref=material.T_ref, pair=material)
     if not isinstance(material, Real):
         allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
-        raise ParameterError("material", f"of type {type(material).__name__}", allowed)
+        raise described_error("material", f"is of type {type(material).__name__}", allowed)
     return law_table(float(check_array("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
 
 
