@@ -203,8 +203,8 @@ def test_a_grid_is_as_the_grid_written_out():
 # --- floating-point environment ---
 
 
-#: A program that takes a folder and computes ``everything`` in each mode of a host library, "usual" without one, and in a
-#: fork of itself, which has used threads and kernels by then.
+#: A program that takes a folder and computes ``everything``: in each mode of a host library, "usual" without one; and
+#: in a fork of itself, which has used threads and kernels by then.
 ELSEWHERE = """
 import ctypes, multiprocessing, sys
 from pathlib import Path

@@ -49,8 +49,6 @@ DEMO_MOTION = 5.0
 INTEROP = 1e-12
 #: and slopes: those of the grip over their condition likewise.
 INTEROP_SLOPES = 1e-11
-#: Motions of vr_roll.h at rtol 1e-8 against ``roll`` at 1e-10.
-INTEROP_ROLL = 1e-7
 #: vr_roll.h at rtol 1e-9 against ``roll``, through rest or from it, of the largest of V, omega and x; below its
 #: ``rest`` of 1e-6 or less creep counts from that.
 INTEROP_TURNED = 1e-7
@@ -308,8 +306,6 @@ DMA_MANY = 0.02
 #: E' and E'' of a series fitted to E(t) to 0.1 and 0.3 %, a decade inside the band: E'' has the ripple of one mode a
 #: decade, which E(t) does not show; measured 0.007 and 0.11.
 DMA_RELAXATION, DMA_RELAXATION_LOSS = 0.02, 0.2
-#: contact length at the speed from which on a layer counts as thick: the bisection.
-LAYER_SPEED = 1e-8
 #: share of 1000 random draws, 27 %, and that lam changes with a_T too: three standard deviations and 5 %.
 SHARE = 0.2
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.

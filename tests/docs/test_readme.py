@@ -3,6 +3,7 @@
 import re
 import shlex
 import tomllib
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
@@ -88,9 +89,8 @@ def test_howto_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session: dict = {}
     for n, code in enumerate(blocks(ROOT / f"docs/howto/{page}.md", "python")):
-        for usual, quick in QUICK:
-            code = code.replace(usual, quick)
-        exec(compile(code, f"{page}.md, block {n + 1}", "exec"), session)
+        quick = reduce(lambda code, pair: code.replace(*pair), QUICK, code)
+        exec(compile(quick, f"{page}.md, block {n + 1}", "exec"), session)
     if page == "files":
         assert (tmp_path / "motion.nc").exists()
     if page == "law":  # the integral part removes the steady-state error

@@ -3,7 +3,6 @@
 import csv
 import gzip
 import re
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +12,9 @@ import xarray as xr
 from closeness import close
 from numpy.typing import NDArray
 from places import ROOT
-from refusals import refused
 from scipy import io
 
 import viscoroll as vr
-from viscoroll.core import files
 from viscoroll.io.tables import schema
 from viscoroll.io.tables.check import NODES_ALLOWED, check_table
 from viscoroll.materials.law.table import law_table
@@ -206,22 +203,6 @@ def test_files_of_the_first_version(kind, tmp_path):
         truth, name = vr.contact(vr.Scene(3.0, 2.91, 0.2), 0.3, delta=0.011).Q, "Q"
     found = getattr(vr.tables.interpolate(table, name, **points), name)
     assert abs(found - truth) <= table[name].attrs["interpolation_error"]
-
-
-def test_what_is_no_table(alphas, saved, tmp_path):
-    for changed, words in (
-        (alphas.drop_vars("beta"), "variable 'beta' is missing"),
-        (alphas.assign(Q=alphas.Q * np.nan), "finite"),
-        (alphas.assign_attrs(schema_version="2.0"), "has the table schema 2.0, but viscoroll"),
-        (alphas.assign_attrs(viscoroll_table="other"), "is not a table of viscoroll"),
-        (alphas.transpose("alpha", "V", "delta"), "has the dimensions"),
-        (alphas.isel(V=slice(None, None, -1)), "must increase"),
-    ):
-        refused(partial(vr.tables.save, changed, tmp_path / "x.nc"), words, error=vr.FileError)
-        changed.to_netcdf(saved, engine="h5netcdf")
-        assert files.seal_matches(saved.read_bytes()) is None
-        refused(partial(vr.tables.load, saved), str(saved), words, error=vr.FileError)
-    assert [path.name for path in tmp_path.iterdir()] == ["grid.nc"]
 
 
 # --- formats of other programs ---

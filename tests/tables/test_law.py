@@ -149,23 +149,6 @@ def error_of(path: Path) -> str:
     return refused(partial(vr.load_law, path), str(path), error=vr.FileError)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda file: file.attrs.__setitem__("law_schema", 2), "law schema 2, but viscoroll"),
-        (lambda file: file["press"].__setitem__((3, 5), 0.125), "its numbers are not those of its sha256_of_numbers"),
-        (lambda file: file.attrs.__setitem__("sha256_of_numbers", "0" * 64), "its numbers are not those"),
-        (lambda file: file.__delitem__("share"), "variable 'share' is missing"),
-        (lambda file: file.attrs.__setitem__("material", "not TOML"), "is an incomplete law file"),
-        (lambda file: file.attrs.__delitem__("material"), "is an incomplete law file"),
-    ],
-)
-def test_edited_by_another_program(copy, change, words):
-    with h5py.File(copy, "a") as file:
-        change(file)
-    assert words in error_of(copy)
-
-
 def test_rewritten_by_another_program(copy, saved):
     """Another frame, the same numbers; texts as arrays of one text are not what netCDF's own programs write."""
     with xr.open_dataset(saved, engine="h5netcdf", decode_times=False) as file:
