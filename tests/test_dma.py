@@ -83,8 +83,9 @@ def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, deca
     try:
         fit = vr.fit_prony(omega, np.abs(storage), np.abs(loss))
     except vr.ParameterError as refusal:
-        assert "as a fluid" in str(refusal)
-        return
+        if "as a fluid" in str(refusal):
+            return
+        raise
     assert (fit.prony.E > 0.0).all()
     assert FLOOR * fit.storage.min() * 0.999 <= fit.E
     assert np.isfinite(fit.misfit).all()
@@ -144,7 +145,7 @@ def test_times_are_those_at_the_reference(reference):
 
 
 def test_the_reference_that_a_shift_means():
-    """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the middle curve; between curves."""
+    """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the middle curve."""
     curves = isotherms(21, 0.0)
     for shift, reference in (
         (None, 0.0),
