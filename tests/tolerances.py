@@ -290,6 +290,9 @@ STEADY_POWER = 1e-11
 STEADINESS = 1e-6
 #: |N| (kappa V)^2 over 1 - 1/alpha: 1.3418/16 was found at most, of one mode and alpha near 100.
 STEADINESS_BOUND = 1.35 / 16.0
+#: N (kappa V)^2 over 1 - 1/alpha, of one relaxation time and kappa V >= 1: 0.644/16 was found at least, at kappa V = 1
+#: and alpha near 1.
+STEADINESS_LEAST = 0.64 / 16.0
 # --- kernels/rows/modes.py (test_unsteady.py) ---
 #: One mode as a series and as an alpha; -S_E.
 UNSTEADY_SERIES = 1e-12

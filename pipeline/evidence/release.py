@@ -32,7 +32,7 @@ from .stamps import SHORT, kernels_digest, outdated
 #: data that others made: their files need a licence beside them in the sdist
 MATERIALS = "data/materials/"
 #: of the wheel, and of the sdist beside those
-SHIPPED = (".py", ".pyi", ".npy", ".h", ".c", ".csv", "py.typed")
+SHIPPED = (".py", ".pyi", ".npy", ".h", ".c", ".csv", ".toml", "py.typed")
 LARGEST = 4_000_000
 #: marks of the machine that built, and what never ships
 FOREIGN = re.compile(r"(^|/)(__pycache__|_build|\.venv|\.git|out|data/tables)(/|$)|\.pyc$")

@@ -100,7 +100,17 @@ class Cylinder(Methods):
     ) -> None:  # fmt: skip
         """Check and freeze the parameters, which the class describes.
 
-        R, m, E, nu, T_epsilon, T_sigma, mu, j, g, plane, material, base, load: as of the class.
+        R: radius, m.
+        m: mass per length, kg/m.
+        E: Young's modulus, Pa.
+        nu: Poisson's ratio.
+        T_epsilon, T_sigma: retardation and relaxation time, s.
+        mu: coefficient of friction.
+        j: moment of inertia divided by m R^2.
+        g: acceleration of gravity, m/s^2.
+        plane: "strain" or "stress".
+        material, base: materials of cylinder and half-space, in place of E to T_sigma.
+        load: N/m; None: the weight.
         pressed: field of ``load``, for :func:`dataclasses.replace`.
         Raises ParameterError as the class says.
         """
@@ -139,7 +149,7 @@ class Cylinder(Methods):
 
     @cached_property
     def pair(self) -> Pair:
-        """Both materials; raises ParameterError where they do not go together."""
+        """Return both bodies as :class:`.materials.pair.Pair`; raises ParameterError where they do not go together."""
         law = self.material
         if not isinstance(law, LawTable):
             sls: dict[str, Any] = {name: getattr(self, name) for name in _SLS}
@@ -160,7 +170,9 @@ class Cylinder(Methods):
         return float(np.max(self.T_epsilon, initial=0.0)) if np.ndim(self.T_epsilon) else self.T_epsilon
 
     def replace(self, **changes: Any) -> Cylinder:
-        """A copy with some parameters changed; ``material`` takes the place of E to T_sigma, and the reverse.
+        """Return a copy with some parameters changed; ``material`` takes the place of E to T_sigma, and the reverse.
+
+        changes: parameters by name.
 
         A load that was given stays; ``load=None`` makes it the weight again.
 
@@ -197,7 +209,7 @@ class Cylinder(Methods):
         return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Title and rows of the printed report."""
+        """Return title and rows of the printed report."""
         values = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in values.items()]
         for name in ("material", "base"):
@@ -231,7 +243,7 @@ class Cylinder(Methods):
         return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
 
     def scene(self) -> Scene:
-        """The dimensionless scene: alpha or the series of the materials, kappa, gamma of Sect. 3.1 and Eq. (4).
+        """Return the dimensionless scene: alpha or the series of the materials, kappa, gamma of Sect. 3.1 and Eq. (4).
 
         Examples
         --------
@@ -243,7 +255,7 @@ class Cylinder(Methods):
 
     @cached_property
     def _scene(self) -> Scene:
-        """The scene, which is computed once; raises ParameterError for a law of another load."""
+        """Compute the scene, once; raises ParameterError for a law of another load."""
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and law.cover is not None:
             self._refuse_other_load(law)
@@ -291,10 +303,10 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
 
     R: radius, m.
     m: mass per length, kg/m.
-    load: N/m.
+    load: force per length that presses the cylinder on the base, N/m.
     E_prime: contact modulus, Pa.
     T_ref: unit of time, s.
-    law: alpha, one or one for each, or a material of a scene, with times divided by ``T_ref``.
+    law: alpha, a number or (n,), or a material of a scene, with times divided by ``T_ref``.
     mu, j: friction and moment of inertia, dimensionless.
     Raises ParameterError by the names of the scene's parameters.
     """

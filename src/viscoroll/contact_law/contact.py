@@ -48,7 +48,7 @@ def contact(
     slopes: bool = False,
     method: Literal["table", "direct"] = "table",
 ) -> Values:
-    """State of the contact: Eqs. (6)-(10), (15)-(18).
+    """Return the state of the contact: Eqs. (6)-(10), (15)-(18).
 
     Arguments broadcast against each other and against array parameters of the roller; if all are scalars so are the
     results.

@@ -93,7 +93,8 @@ def field_names(
 def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
     """Return the fields that the kernels compute, a row each, so that :func:`complete` has all fields of a call.
 
-    names: fields of the call.  unlike: whether the bodies are of two materials; if not, the parts of M are halves.
+    names: fields of the call.
+    unlike: whether the bodies are of two materials; if not, the parts of M are halves.
     """
     derived = _MULTIPLES if unlike else _MULTIPLES | _HALVES
     return tuple(dict.fromkeys(derived.get(name, name) for name in names))
@@ -112,7 +113,10 @@ def complete(
 ) -> dict[str, Any]:
     """Return the fields of a call by name, numbers or arrays.
 
-    names: fields of the call.  computed: field of each row.  rows: values, (fields, states).  shape: of the call.
+    names: fields of the call.
+    computed: field of each row.
+    rows: values, (fields, states).
+    shape: shape of the call.
     """
     found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
     if computed != names:

@@ -47,7 +47,11 @@ def evaluate_contact(
     V : speeds, dimensionless.
     creep : angular velocities if ``creep_is_omega``, else creepages.
     names : fields, as of :func:`.contact_fields.field_names`.
-    method : as of :func:`contact`.
+    method : "table", from the rows of the law, or "direct", by root solves of the printed equations.
+
+    Returns
+    ------- dict of str to array
+        The fields in the shape of the broadcast arguments; numbers if these are numbers.
 
     Raises
     ------
@@ -93,7 +97,7 @@ def evaluate_law(
     material : one law for all states; or many materials; or None: laws of one relaxation time.
     arrays : alpha (the index of the material, where there are many), kappa, mu, V, and delta or omega; dimensionless,
         broadcast to ``shape``.
-    shape : of the states.
+    shape : shape of the states.
     creep_is_omega : whether the last of ``arrays`` is omega, else delta.
     names : fields that kernels compute.
     direct : whether to solve the printed equations (without a material).
@@ -114,6 +118,11 @@ def evaluate_law(
     record = material.record if isinstance(material, LawTable) else None
 
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
+        """Evaluate the states ``start`` to ``stop`` - 1 and write them into the columns of ``out``.
+
+        alpha: alphas, or indices of materials, of these states.
+        parts: kappa, mu, V and creep of these states.
+        """
         law, order = (record, _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
         workspace = np.empty((4, _TOGETHER if record else 1))
@@ -152,7 +161,11 @@ def evaluate_law(
 
 @lru_cache(maxsize=2)
 def _kernel(direct: bool) -> tuple[Any, Any]:
-    """Return (the loop over states, the module with its arguments), of the printed equations if ``direct``."""
+    """Return the kernel that evaluates the law at many states.
+
+    direct: whether it solves the printed equations; else it reads the rows of the law.
+    Returns (the loop over states, the module with the types of its arguments).
+    """
     from ..kernels.rows import contact_states as states
 
     if direct:
@@ -163,9 +176,13 @@ def _kernel(direct: bool) -> tuple[Any, Any]:
 
 
 def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool) -> tuple[Any, NDArray]:
-    """Return (the laws of the states as kernels take them, the order in which states are evaluated) of a block.
+    """Make the laws of the states of a block, and choose the order in which the states are evaluated.
 
-    material, direct: as of :func:`evaluate_law`.  alpha: alphas, or indices of materials.  parts: kappa, mu, V, creep.
+    material, direct: arguments of :func:`evaluate_law`.
+    alpha: alphas of the states, or indices of their materials, (n,) or (1,).
+    parts: kappa, mu, V, creep, each (n,) or (1,).
+    Returns (the record of the laws that kernels take, indices of the states in order of evaluation; none for the given
+    order).
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
@@ -176,9 +193,11 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
-    """Return fields of pure rolling (delta = 0) at kappa |V| = u and kappa = mu = 1, a row each.
+    """Return fields of pure rolling (delta = 0) at kappa |V| = u and kappa = mu = 1, one row for each name, (names, n).
 
-    law: rows of the material.  u: speeds, (n,).  names: fields that kernels compute.
+    law: rows of the material.
+    u: speeds, (n,).
+    names: fields that kernels compute.
     """
     return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
 
@@ -186,7 +205,9 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
     """Raise ParameterError where kappa |V| exceeds its largest allowed value.
 
-    kappa: slenderness.  V: speeds, dimensionless; the arrays broadcast.  fastest: largest allowed kappa |V|.
+    kappa: slenderness.
+    V: speeds, dimensionless; the arrays broadcast.
+    fastest: largest allowed kappa |V|.
     """
     if not (kappa.size and V.size):
         return

@@ -83,11 +83,11 @@ class Law:
     @overload
     def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Floats]: ...
     def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
-        """Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
+        """Evaluate Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
 
         Parameters
         ----------
-        V, omega : numbers, or arrays that broadcast.
+        V, omega : numbers, or arrays that broadcast, in the units of the roller.
         slopes : also the derivatives.
 
         Returns
@@ -133,8 +133,8 @@ class Law:
 
     @property
     def address(self) -> tuple[int, int]:
-        """The address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of
-        its user data.
+        """Return the address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and
+        of its user data.
 
         It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
         error, with NaN, and returns another number.  Any number of threads may call it, while this law exists.  All
@@ -177,7 +177,7 @@ class _LawOfGrid(Law):
 
 
 def law(roller: Roller | LawGrid) -> Law:
-    """The contact law of one scene as a function of V and omega, for integrators of one's own: Eqs. (6)-(10),
+    """Return the contact law of one scene as a function of V and omega, for integrators of one's own: Eqs. (6)-(10),
     (15)-(18).
 
     ``law(V, omega)`` is :func:`contact` at a given omega, where only V and omega remain to be checked;

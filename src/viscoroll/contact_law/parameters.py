@@ -139,7 +139,9 @@ class Parameters(Roller):
 
     @property
     def table(self) -> LawTable | None:
-        """The law of its one material, as given or computed; None of several alphas or materials."""
+        """Return the law of the one material of the scene, as given or computed; None if it has several alphas or
+        materials.
+        """
         if self._law is not None:
             return self._law
         if self.material is not None:
@@ -159,7 +161,11 @@ class Parameters(Roller):
         return self
 
     def replace(self, **changes: Any) -> Self:
-        """Return a copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
+        """Return a copy with some parameters changed.
+
+        changes: parameters by name; an alpha takes the place of a material, and the reverse.
+        Raises ParameterError for values out of range.
+        """
         material: dict[str, Any] = {}
         if changes.keys() & {"alpha", "material"}:
             material = {"alpha": None, "material": None}
@@ -241,12 +247,13 @@ _BEFORE_THE_SPLIT = ("contact", "stress", "validity", "resistance_extrema")
 def resolve_model(
     roller: Any, call: str, *, moves: bool = False, slope: Any = None
 ) -> tuple[Roller, Parameters, Scale]:
-    """Return (the roller on its slope, its dimensionless parameters, its scale) of a call.
+    """Check the first argument of a call, and return the roller on its slope with its parameters and its scale.
 
     roller: the first argument of the call.
-    call: its name, for refusals.
-    moves: whether it needs gamma.
+    call: name of the function that is called, for errors.
+    moves: whether the function needs gamma, which only a roller that moves has.
     slope: angle, rad; None: level.
+    Returns (roller, dimensionless parameters, scale).
     Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma.
     """
     if not isinstance(roller, Roller):
@@ -281,8 +288,8 @@ def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a sin
     """Raise ParameterError where a parameter is an array.
 
     scene: the parameters.
-    names: of the parameters.
-    allowed: what the message says instead.
+    names: names of the parameters.
+    allowed: what the message says is allowed.
     """
     for name in names:
         if shape := np.shape(getattr(scene, name)):

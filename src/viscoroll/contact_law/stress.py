@@ -34,14 +34,15 @@ def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers) -> Values:
 def stress(
     roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
 ) -> Values:
-    """Pressure and shear stress along the contact, Eqs. (11)-(14).
+    """Return pressure and shear stress along the contact, Eqs. (11)-(14).
 
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a :class:`Cylinder`, in SI units.
     x : position divided by l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
         value: the stresses are 0 outside the contact.
-    V, delta, omega : as for :func:`contact`; all arguments broadcast.
+    V : velocity of the axis, any sign; of a Cylinder m/s.
+    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity (rad/s).  All arguments broadcast.
 
     Returns
     -------
@@ -96,7 +97,7 @@ def stress(
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
         points = Points(mirrored, *(read(start, stop) for read in readers))
-        _fill(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
+        _compute_stresses(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
         tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, p.size, _BLOCK)
@@ -106,11 +107,13 @@ def stress(
     return Values(found, given, si=scale.si, title="Stresses", labels=labels)
 
 
-def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
-    """Compute the stresses at points.
+def _compute_stresses(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
+    """Compute the stresses at points, material by material.
 
-    scene: parameters of the roller.  alpha: alphas, or of many materials their indices; points of one material lie
-    together.  points: record of the kernel, whose fields have one value, or one for each point.  p, tau: results, (n,).
+    scene: parameters of the roller.
+    alpha: alphas, or of many materials their indices; points of one material lie together.
+    points: record of the kernel, whose fields have one value, or one for each point.
+    p, tau: pressure and shear stress divided by E', (n,), written.
     """
     from ..kernels.rows.stress import new_memory_weights, stress_loop
 
@@ -133,7 +136,10 @@ def _fill(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats)
 def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     """Return p/E' at points on a cover, by one solve for each state of the contact.
 
-    scene: with the cover.  index: which of its covers, if there are many.  points: as the kernels take them.
+    scene: parameters with a cover.
+    index: index of the cover, if there are many.
+    points: record of the kernel, with the position and the contact state of each point.
+    Returns p/E', (n,).
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = modes_of_cover(cover)

@@ -29,7 +29,8 @@ _BLOCKS_IN_QUEUE = 8
 def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
     """Return a function that gives the elements of a block of a broadcast array.
 
-    array: numbers that broadcast to ``shape``.  shape: of all work.
+    array: numbers that broadcast to ``shape``.
+    shape: shape to which all arrays of the work broadcast.
 
     Returns a function (start, stop) -> vector of the elements start to stop of the flattened broadcast array; of a
     single number always that number, (1,).  Vectors are views where memory allows it, else copies, and read-only,
@@ -41,6 +42,9 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     whole = np.broadcast_to(array, shape)
 
     def read_block(start: int, stop: int) -> Floats:
+        """Return the elements ``start`` to ``stop`` - 1 of the flattened array, (stop - start,), or (1,) of a single
+        number.
+        """
         iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
         flags = ["external_loop", "buffered", "ranged"]
         chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)
@@ -56,7 +60,8 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
 def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
     """Return an array, broadcast to a shape and flattened, as a contiguous read-only vector; a single number as (1,).
 
-    array: numbers that broadcast to ``shape``.  shape: of the result before it is flattened.
+    array: numbers that broadcast to ``shape``.
+    shape: shape of the result before it is flattened.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
     vector = whole.reshape(-1).view()
@@ -117,7 +122,7 @@ def run_blocks(
     work : function of (start, stop), the ends of a block.
     count : number of elements.
     block : elements of a block.
-    threads : as of :func:`thread_count`.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.
     progress : title of a progress bar on standard error, which appears after one second; None: no bar.
 
     Raises
@@ -149,8 +154,12 @@ def run_blocks(
 def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int) -> None:
     """Run all blocks on a pool, and await them in order.
 
-    pool: threads.  work: function of (start, stop).  edges: (start, stop) of each block.  most: blocks that wait at the
-    same time.  After an error no further block starts.
+    After an error no further block starts.
+
+    pool: threads.
+    work: function of (start, stop).
+    edges: (start, stop) of each block.
+    most: blocks that wait at the same time.
     """
     waiting: deque[Future[None]] = deque()
     try:

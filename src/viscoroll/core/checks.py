@@ -22,13 +22,17 @@ _DOUBLE = 8
 
 
 def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
-    """Return the numbers of an argument as a finite float64 array in its unit.
+    """Check an argument, and return its numbers as a float64 array in the unit of the argument.
 
     Parameters
     ----------
-    name : of the argument.
+    name : name of the argument, for errors.
     value : a number, an array or a list.
-    **bounds : ``unit``, ``low``, ``above``, ``high`` of :func:`check_array_extent`.
+    **bounds : ``unit`` of the argument, to which a value with a unit is converted (default "1"); ``low`` and ``high``,
+        smallest and largest allowed value; ``above``, number that all values must exceed.
+
+    Returns
+    ------- array of the shape of ``value``, finite
 
     Raises
     ------
@@ -42,16 +46,22 @@ def check_array_extent(
     name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf,
     above: float = -math.inf, high: float = math.inf,
 ) -> tuple[Floats, tuple[float, float]]:  # fmt: skip
-    """Return the array of :func:`check_array`, and its smallest and largest element ((0, 0) if it is empty).
+    """Check an argument as :func:`check_array`, and return its smallest and largest element too.
 
     Parameters
     ----------
-    name, value : as of :func:`check_array`.
-    unit : of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a dimensionless
-        number, or an object that has units by name, as a :class:`.scale.Scale`.
+    name : name of the argument, for errors.
+    value : a number, an array or a list, perhaps with a unit.
+    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
+        dimensionless number, or an object that has units by name, as a :class:`.scale.Scale`.
     low : smallest allowed value.
     above : number that all values must exceed.
     high : largest allowed value.
+
+    Returns
+    -------
+    array : float64, of the shape of ``value``, in ``unit``.
+    extent : (smallest, largest element); (0, 0) if the array is empty.
     """
     if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)
@@ -73,8 +83,10 @@ def _range_words(low: float, above: float, high: float) -> str:
 def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:
     """Return numbers as float64 in the unit of the argument.
 
-    name: of the argument.  value: what a caller gave.  unit: as of :func:`check_array_extent`.  bounds: low, above
-    and high of the range, for the ParameterError of a value that is not numeric.
+    name: name of the argument.
+    value: what a caller gave.
+    unit: unit of the argument, a text or an object that has units by name.
+    bounds: low, above and high of the range, for the ParameterError of a value that is not numeric.
     """
     plain = value
     if not has_no_unit(value):
@@ -99,7 +111,8 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
 def _first_wrong(array: Floats, wrong: Booleans) -> str:
     """Return the first wrong element of an array, its index, and the number of further ones.
 
-    array: numbers.  wrong: mask of the same shape.
+    array: numbers.
+    wrong: mask of the same shape.
     """
     if array.size == 1:
         return str(array.item())
@@ -120,11 +133,15 @@ def check_number(
     name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, above: float = -math.inf,
     high: float = math.inf,
 ) -> float:  # fmt: skip
-    """Return a single number, checked as by :func:`check_array`.
+    """Check an argument that is a single number, and return it as a float in the unit of the argument.
 
     Parameters
     ----------
-    name, value, unit, low, above, high : as of :func:`check_array_extent`.
+    name : name of the argument, for errors.
+    value : a number, perhaps with a unit.
+    unit : unit of the argument, to which a value with a unit is converted.
+    low, high : smallest and largest allowed value.
+    above : number that the value must exceed.
 
     Raises
     ------
@@ -165,11 +182,11 @@ def read_only(array: Floats) -> float | Floats:
 
 
 def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> int:
-    """Return a whole number.
+    """Check an argument that is a whole number, and return it as an int.
 
     Parameters
     ----------
-    name : of the argument.
+    name : name of the argument.
     value : what a caller gave.
     low, high : smallest and largest allowed value.
 
@@ -194,11 +211,11 @@ def check_choice(name: str, value: Any, *allowed: str) -> None:
 
 
 def check_bool(name: str, value: Any) -> bool:
-    """Return a truth value of Python or numpy as a bool.
+    """Check an argument that is a truth value of Python or numpy, and return it as a bool.
 
     Parameters
     ----------
-    name : of the argument.
+    name : name of the argument.
     value : what a caller gave.
 
     Raises

@@ -25,10 +25,10 @@ class Schedule:
 
     Parameters
     ----------
-    times : of the corners, (k,), ascending, >= 0; a time that occurs twice is a jump.  For an ensemble also (n, k), a
-        row for each motion.
-    values : at the corners, (k,) or (n, k).  Units of times and values are converted by the function that takes the
-        schedule.
+    times : times of the corners, (k,), ascending, >= 0; a time that occurs twice is a jump.  For an ensemble also
+        (n, k), a row for each motion.
+    values : values at the corners, (k,) or (n, k).  Units of times and values are converted by the function that
+        takes the schedule.
 
     Raises
     ------
@@ -115,9 +115,11 @@ class Feedback:
 
 
 def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
-    """Replace a field by its checked numbers, and note its unit.
+    """Replace a field by its checked numbers, and keep the unit that it was given in.
 
-    load: the schedule or feedback.  name: of the field.  low: smallest allowed number.
+    load: the schedule or feedback.
+    name: name of the field.
+    low: smallest allowed number.
     """
     numbers, unit = split_unit(name, getattr(load, name))
     object.__setattr__(load, name, read_only(check_array(name, numbers, low=low)))
@@ -128,7 +130,9 @@ def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
 def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
     """Return an argument in its unit: numbers, a schedule or a feedback.
 
-    name: of the argument.  value: what a caller gave.  units: unit of each argument by name.
+    name: name of the argument.
+    value: what a caller gave.
+    units: unit of each argument by name.
 
     Raises
     ------
@@ -151,7 +155,9 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
 def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
     """Return a schedule or a feedback with its fields in given units.
 
-    name: of the argument.  load: the schedule or feedback.  wanted: name of a field -> unit.
+    name: name of the argument.
+    load: the schedule or feedback.
+    wanted: name of a field -> unit.
     """
     converted = {
         part: convert(f"{part} of {name}", getattr(load, part), unit, wanted[part]) for part, unit in load.units.items()
@@ -160,7 +166,12 @@ def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
 
 
 def require_time_argument(name: str, function: Callable[..., Any]) -> None:
-    """Raise ParameterError for a function of the argument ``name`` that cannot be called with a time alone."""
+    """Refuse a function of time that cannot be called with a time alone.
+
+    name: name of the argument that the function is, for the error.
+    function: the function of a caller; one without a signature, as compiled code may be, is accepted.
+    Raises ParameterError.
+    """
     try:
         parameters = signature(function)
     except ValueError:  # compiled code may have no signature
@@ -177,7 +188,15 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
 
 
 def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
-    """Return (tan(theta), cos(theta)) of a slope in rad; (0, 1) for None.
+    """Return tangent and cosine of the angle of a slope.
+
+    Parameters
+    ----------
+    slope : angle, rad, a number or an array; None: level.
+
+    Returns
+    -------
+    tan, cos : of the shape of ``slope``; (0, 1) for None.
 
     Raises
     ------
@@ -197,7 +216,9 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
 def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     """Return a load divided by its unit: a number, an array, a schedule, a function of time or a feedback.
 
-    name: of the argument.  value: what a caller gave.  scale: of the roller; the values of a scene stay as they are.
+    name: name of the argument.
+    value: what a caller gave.
+    scale: scale of the roller; the values of a scene stay as they are.
 
     Raises
     ------

@@ -45,8 +45,8 @@ class ParameterError(ViscorollError, ValueError):
 
     Parameters
     ----------
-    name : of the parameter.
-    value : that was found.
+    name : name of the parameter.
+    value : value that was found.
     allowed : words that follow "must be".
     sentence : the whole message, where name, value and allowed values do not make one.
 
@@ -95,7 +95,8 @@ def describe_value(value: Any) -> str:
 def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     """Return the error of a call that must give one of two parameters.
 
-    first, second: the parameters.  both: whether both were given; else neither was.
+    first, second: the parameters.
+    both: whether both were given; else neither was.
     """
     sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
     return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
@@ -116,8 +117,10 @@ def check_one_given(**values: Any) -> str:
 def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
     """Return the error of a parameter whose value is not a known name.
 
-    name: the parameter.  value: what was found.  known: the names that are allowed.  kind: noun for these names, with
-    its article, as "a field".
+    name: name of the parameter.
+    value: what was found.
+    known: the names that are allowed.
+    kind: noun for these names, with its article, as "a field".
     """
     names = ", ".join(known)
     return ParameterError(name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}")
@@ -126,8 +129,11 @@ def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -
 def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
     """Return one name, or several, as a tuple.
 
-    values: a name or an iterable of names.  name, known, kind: as of :func:`unknown_name_error`, which is raised for
-    the first value that is not known.
+    values: a name or an iterable of names.
+    name: name of the parameter, for the error.
+    known: the names that are allowed.
+    kind: noun for these names, with its article, as "a field".
+    Raises ParameterError for the first value that is not known.
     """
     try:
         names = (values,) if isinstance(values, str) else tuple(values)
@@ -144,8 +150,8 @@ class OutOfTableError(ParameterError):
 
     Parameters
     ----------
-    name : of the coordinate.
-    value : that was found.
+    name : name of the coordinate.
+    value : value that was found.
     low, high : ends of the axis.
 
     Examples
@@ -169,7 +175,7 @@ class FileError(ViscorollError):
 
     Parameters
     ----------
-    path : of the file.
+    path : path of the file.
     problem : the reason, in words that follow the path.
 
     Examples
@@ -197,7 +203,7 @@ class MissingDependencyError(ViscorollError):
     Parameters
     ----------
     package : its name.
-    extra : of viscoroll, which installs it; None where no extra does.
+    extra : extra of viscoroll, which installs it; None where no extra does.
 
     Examples
     --------

@@ -11,8 +11,9 @@ from .errors import MissingDependencyError
 def import_extra(module: str, package: str, extra: str) -> Any:
     """Return a module of an optional package.
 
-    module: name of the module, as "fmpy.fmi2".  package: distribution that has it.  extra: extra of viscoroll that
-    installs it, as in ``pip install 'viscoroll[EXTRA]'``.
+    module: name of the module, as "fmpy.fmi2".
+    package: distribution that has it.
+    extra: extra of viscoroll that installs it, as in ``pip install 'viscoroll[EXTRA]'``.
 
     Raises
     ------

@@ -92,7 +92,7 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
 
     Parameters
     ----------
-    path : of the file.
+    path : path of the file.
     max_bytes : a larger file is refused.
     kind : noun for the file that is expected.
     remedy : advice for a damaged file.
@@ -137,10 +137,10 @@ def write_dataset(
 
     Parameters
     ----------
-    dataset : to write.
-    path : of the file.
-    encoding : of variables, as xarray takes it.  Default: no fill values (CF forbids them for coordinates), arrays of
-        numbers compressed and with Fletcher-32 checksums.
+    dataset : dataset to write.
+    path : path of the file.
+    encoding : encoding of variables, as xarray takes it.  Default: no fill values (CF forbids them for coordinates),
+        arrays of numbers compressed and with Fletcher-32 checksums.
     sealed : whether the file ends with a seal.
     """
     filters = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}

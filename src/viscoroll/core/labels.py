@@ -17,7 +17,7 @@ from .scale import HasUnits
 class Labels(NamedTuple):
     """Labels that the arguments of a call have in common.
 
-    shape : of the arguments, broadcast.
+    shape : shape of the arguments, broadcast.
     wrap : function (name, values, names of further axes behind those of ``shape``) -> the values with labels.
     dims, coords : axes and coordinates as xarray has them, for pandas too; each coordinate is (its axes, its values).
     """
@@ -30,16 +30,20 @@ class Labels(NamedTuple):
     def apply(self, name: str, values: Any, *further: str) -> Any:
         """Return values with labels, or as they are if their shape is not that of the arguments.
 
-        name: of the result.  values: array.  further: names of its axes behind those of the arguments.
+        name: name of the result.
+        values: array.
+        further: names of its axes behind those of the arguments.
         """
         shape = np.shape(values)
         fits = shape[: len(self.shape)] == self.shape and len(shape) == len(self.shape) + len(further)
         return self.wrap(name, values, further) if fits else values
 
     def renamed_coords(self, names: tuple[str, ...], prefix: str) -> tuple[tuple[str, ...], dict[str, Any]]:
-        """Return (axes, coordinates) for a dataset whose variables have some of their names.
+        """Return axes and coordinates for a dataset in which variables have the names of some axes or coordinates.
 
-        names: of the variables.  prefix: word put before an axis or a coordinate of the same name.
+        names: names of the variables.
+        prefix: word put before an axis or a coordinate of the same name.
+        Returns (names of the axes, name -> coordinate).
         """
         new = {name: f"{prefix}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
         coords = {new[name]: (tuple(new[dim] for dim in dims), values) for name, (dims, values) in self.coords.items()}
@@ -104,7 +108,11 @@ def _loaded_type(module: str, name: str) -> Any:
 
 
 def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
-    """Return (name -> values, labels) of arrays of xarray, broadcast; raise ParameterError if coordinates differ."""
+    """Broadcast arrays of xarray, and separate their values from their labels.
+
+    arrays: name -> array.
+    Returns (name -> values, labels).  Raises ParameterError if coordinates differ.
+    """
     import xarray as xr
 
     try:
@@ -124,7 +132,11 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
 
 
 def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
-    """Return (name -> values, labels) of series of pandas; raise ParameterError if their indices differ."""
+    """Separate the values of series of pandas from their labels.
+
+    series: name -> series.
+    Returns (name -> values, labels).  Raises ParameterError if the indices differ.
+    """
     import pandas as pd
 
     first, *others = series.values()

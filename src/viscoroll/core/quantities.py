@@ -48,7 +48,7 @@ def to_unit(name: str, value: Any, target: str) -> Any:
 
     Parameters
     ----------
-    name : of the argument.
+    name : name of the argument.
     value : what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.
     target : SI unit of the argument as "m s-1"; "1" of a dimensionless number.
 
@@ -73,10 +73,15 @@ def to_unit(name: str, value: Any, target: str) -> Any:
 
 
 def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
-    """Return (numbers of a value, its unit); the unit is None if it has none.
+    """Split a value into its numbers and its unit.
 
-    name: of the argument.  value: as of :func:`to_unit`.  Labels of xarray and pandas stay.  All elements of a list, or
-    of an array of objects, are converted to the unit of the first.
+    Labels of xarray and pandas stay.  All elements of a list, or of an array of objects, are converted to the unit of
+    the first.
+
+    name: name of the argument.
+    value: what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.
+
+    Returns (numbers, unit; None without unit).
 
     Raises
     ------
@@ -109,8 +114,11 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
 def convert(name: str, value: Any, unit: str, target: str) -> Any:
     """Return numbers in one unit as numbers in another.
 
-    name: of the argument.  value: number, array, or list of these.  unit: their unit.  target: wanted unit.  Errors are
-    those of :func:`to_unit`.
+    name: name of the argument.
+    value: number, array, or list of these.
+    unit: their unit.
+    target: wanted unit.
+    Raises ParameterError for a unit that is unknown or of another dimension.
     """
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
@@ -134,7 +142,8 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
 def _as_floats(name: str, value: Any) -> Any:
     """Return the numbers of a quantity as doubles, with labels; raise ParameterError if they are not numeric.
 
-    name: of the argument.  value: a number or an array.
+    name: name of the argument.
+    value: a number or an array.
     """
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     try:
@@ -155,7 +164,10 @@ def is_real(value: Any) -> bool:
 def unit_error(name: str, unit: str, target: str, known: bool = True) -> ParameterError:
     """Return the error of an argument in a unit that cannot be converted.
 
-    name: of the argument.  unit: that was found.  target: unit of the argument.  known: whether pint knows the unit.
+    name: name of the argument.
+    unit: unit that was found.
+    target: unit of the argument.
+    known: whether pint knows the unit.
     """
     allowed = "a number without dimension" if target == "1" else f"in {target}, or in another unit of that dimension"
     found = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
@@ -168,9 +180,11 @@ def _is_quantity(value: Any) -> bool:
 
 
 def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
-    """Return (numbers of a list, unit of the first); elements in other units are converted.
+    """Split the unit from the elements of a list; elements in other units than the first are converted.
 
-    name: of the argument.  values: the list.
+    name: name of the argument.
+    values: the list.
+    Returns (numbers, unit of the first element; None without unit).
     """
     parts = [split_unit(name, value) for value in values]
     units = list(dict.fromkeys(unit for _, unit in parts))
@@ -183,10 +197,13 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
 
 
 def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
-    """Return (labelled numbers, their unit) of an array of xarray, a series or an index of pandas.
+    """Split the unit from an array of xarray, a series or an index of pandas.
 
-    name: of the argument.  value: the array.  The unit is that of the elements, of the attribute ``units``, or in the
-    title of a column, as results write it.
+    The unit is that of the elements, of the attribute ``units``, or in the title of a column, as results write it.
+
+    name: name of the argument.
+    value: the array.
+    Returns (array with its labels, unit; None without unit).
     """
     is_xarray = hasattr(value, "dims")
     data = value.data if is_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
@@ -219,7 +236,8 @@ def _title_unit(title: Any) -> str | None:
 def _to_seconds(name: str, value: Any) -> Any:
     """Return durations of Python, numpy and pandas in seconds; None if the value is no duration.
 
-    name: of the argument.  value: what a caller gave.
+    name: name of the argument.
+    value: what a caller gave.
     """
     if isinstance(value, timedelta):
         value = value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)

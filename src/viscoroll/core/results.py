@@ -26,7 +26,7 @@ _MAX_ROWS = 40
 class SummaryRow(NamedTuple):
     """A line of a summary.
 
-    name : of the quantity.  value : as text.  unit : "" of a dimensionless quantity.
+    name : name of the quantity.  value : as text.  unit : "" of a dimensionless quantity.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Result:
         raise NotImplementedError
 
     def to_pandas(self) -> pd.DataFrame:
-        """The dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
+        """Return the dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
 
         A column of a quantity with a unit is called as "V [m s-1]", because pandas writes no attributes into files.
         Variables over other axes, as the corners of a drive, are left out.
@@ -59,11 +59,14 @@ class Result:
         return data.to_dataframe().rename(columns=names).rename_axis(index=names)
 
     def plot(self: Any, path: str | PathLike[str] | None = None) -> Figure:
-        """Draw the result; returns a figure of matplotlib.
+        """Draw the result, and save the figure if a path is given.
 
         Parameters
         ----------
         path : file to save it in, with a suffix that matplotlib knows; default: none.
+
+        Returns
+        ------- matplotlib.figure.Figure
 
         Raises
         ------
@@ -128,7 +131,7 @@ def column_name(name: str, unit: str) -> str:
 
 
 def format_value(value: Any) -> str:
-    """Return a number, a short array, or shape and range of a long one as text.
+    """Return a number or a short array as text; of a long array its shape and range.
 
     value: number, text or array.
     """
@@ -151,9 +154,9 @@ class Values(Result):
     values : name -> result.
     given : name -> argument, broadcast with the results.
     units : name -> unit, where the table of dimensions does not have it.
-    title : of summary, dataset and figure.
+    title : title of summary, dataset and figure.
     si : whether quantities with a dimension are in SI units.
-    labels : of the arguments.
+    labels : labels of the arguments.
     about : further attributes of the dataset.
 
     Attributes
@@ -202,7 +205,7 @@ class Values(Result):
     def __getattr__(self, name: str) -> Any:
         """Return the field of a name; AttributeError names the fields that were computed.
 
-        name: of a field.
+        name: name of a field.
         """
         if name.startswith("_"):
             raise AttributeError(name)
@@ -216,7 +219,7 @@ class Values(Result):
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]
 
     def as_dict(self) -> dict[str, Any]:
-        """The results by name.
+        """Return the results by name, numbers or arrays.
 
         Examples
         --------
@@ -236,7 +239,7 @@ class Values(Result):
         return title, [SummaryRow(name, format_value(value), units[name]) for name, value in self._values.items()]
 
     def to_xarray(self) -> xr.Dataset:
-        """All results, and the arguments that vary, as a dataset with long names and units.
+        """Return all results, and the arguments that vary, as a dataset with long names and units.
 
         An axis along which one argument alone varies has the name and the values of that argument; other axes are
         called ``state``.  Arguments with labels of xarray or pandas determine axes and coordinates.
@@ -273,9 +276,11 @@ class Values(Result):
 
 
 def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """Return (names of all axes, values of the axes along which one argument alone varies).
+    """Name the axes of a result by the arguments that vary along them.
 
-    given: name -> argument.  shape: of arguments and results, broadcast.
+    given: name -> argument.
+    shape: shape of arguments and results, broadcast.
+    Returns (names of all axes, name -> values of an axis along which one argument alone varies).
     """
     dims, values = [], {}
     for axis, size in enumerate(shape, -len(shape)):

@@ -102,7 +102,11 @@ class Scale(dict[str, Any]):
     __eq__, __hash__ = object.__eq__, object.__hash__  # type: ignore[assignment]
 
     def __missing__(self, name: str) -> Any:
-        """Compute the unit of the quantity ``name`` at its first use; 1 for a ratio."""
+        """Compute the unit of a quantity at its first use, and keep it.
+
+        name: name of the quantity.
+        Returns the factor by which a dimensionless value becomes one in SI units; 1 for a ratio.
+        """
         numerator, denominator = 1.0, 1.0
         for factor, power in _POWERS.get(name, {}).items():
             if power > 0:

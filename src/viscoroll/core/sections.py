@@ -53,8 +53,11 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
 def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
     """Return a section as an instance of a class, its keys and types checked at any depth.
 
-    path: of the file.  name: of the section.  content: of the section, as tomllib reads it.  kind: the class, of
-    msgspec or a dataclass.  Raises FileError with the line of the first key that is wrong.
+    path: path of the file.
+    name: name of the section.
+    content: content of the section, as tomllib reads it.
+    kind: the class, of msgspec or a dataclass.
+    Raises FileError with the line of the first key that is wrong.
     """
     _check_all_keys(path, name, content, kind)
     try:
@@ -83,7 +86,8 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
 def _list_choices(kind: Any, keys: list[str]) -> str:
     """Return the texts that a key may have, as ``'linear', 'log'``; "" if it is not a choice of texts.
 
-    kind: class of the section.  keys: path of the key in it.
+    kind: class of the section.
+    keys: path of the key in it.
     """
     for key in keys:
         sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
@@ -94,7 +98,7 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
 def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
     """Refuse keys that a section or its subsections do not have; raises FileError with the line of the key.
 
-    path, name: of the file and of the section.
+    path, name: path of the file and name of the section.
     content: keys and values of the section.
     kind: struct or dataclass whose fields are the allowed keys.
     """
@@ -110,7 +114,10 @@ def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
 def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
     """Raise FileError for an unknown key of a section, with the most similar allowed key.
 
-    path: of the file.  name: of the section, "" for the top level.  content: of the section.  allowed: its keys.
+    path: path of the file.
+    name: name of the section, "" for the top level.
+    content: content of the section.
+    allowed: keys that the section may have.
     """
     if not isinstance(content, dict):
         raise section_error(path, "", name, f"{name} = {content!r:.40}: must be a section [{name}]")
@@ -124,7 +131,10 @@ def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> No
 def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
     """Return the error of a key of a section, with the number of its line if that is found.
 
-    path: of the file.  name: of the section, "" for the top level.  key: "" for the section itself.  problem: words.
+    path: path of the file.
+    name: name of the section, "" for the top level.
+    key: "" for the section itself.
+    problem: what is wrong, in words.
     """
     line = None
     with suppress(OSError, UnicodeDecodeError):
@@ -136,7 +146,9 @@ def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
 def find_line(text: str, name: str, key: str) -> int | None:
     """Return the number of the line that sets a key, else of the header of its section, else None.
 
-    text: content of the file.  name: of the section.  key: in it.
+    text: content of the file.
+    name: name of the section.
+    key: key in the section.
     """
     full = f"{name}.{key}" if name else key
     plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")

@@ -103,7 +103,8 @@ _MEANINGS = {
 def attributes(name: str, si: bool = False) -> dict[str, str]:
     """Return the attributes of a quantity in a dataset: long_name, units, and of most symbol and equation.
 
-    name: quantity.  si: whether it is in SI units, else dimensionless.
+    name: quantity.
+    si: whether it is in SI units, else dimensionless.
     """
     found = {"long_name": describe_quantity(name, si), "units": si_unit(name) if si else "1"}
     if name in SYMBOLS and not (si and name in DIMENSIONS):
@@ -114,7 +115,8 @@ def attributes(name: str, si: bool = False) -> dict[str, str]:
 def describe_quantity(name: str, si: bool = False) -> str:
     """Return the meaning of a quantity in words; "" where it is not known.
 
-    name: quantity, or a slope as "dQ_dV".  si: whether it is in SI units; else the words end with its divisor.
+    name: quantity, or a slope as "dQ_dV".
+    si: whether it is in SI units; else the words end with its divisor.
     """
     if name in SYMBOLS:
         text = SYMBOLS[name].long_name

@@ -12,7 +12,7 @@ _FOLDER = Path(__file__).parent
 
 
 def path(name: str) -> Path:
-    """Path of a sample file.
+    """Return the path of a sample file.
 
     Parameters
     ----------

@@ -81,11 +81,13 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
     Parameters
     ----------
     path : path of the file.  Its ``preset`` names a scene of :mod:`presets`; its [scene] gives alpha (or prony, or
-    creep),
-        kappa, mu (gamma, j), or changes those of the preset; its [cylinder] gives R, m, E, nu, T_epsilon, T_sigma, mu
-        (j, g, plane, load) in SI units.  E to T_sigma may stand in a section [material], and [base] is the half-space
-        if it is another material.
+        creep), kappa, mu (gamma, j), or changes those of the preset; its [cylinder] gives R, m, E, nu, T_epsilon,
+        T_sigma, mu (j, g, plane, load) in SI units.  E to T_sigma may stand in a section [material], and [base] is
+        the half-space if it is another material.
     more : further sections that the file may have.
+
+    Returns
+    ------- Scene or Cylinder
 
     Raises
     ------
@@ -106,7 +108,9 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
 def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type | None]) -> None:
     """Raise FileError if sections exclude each other, or have unknown keys or values of the wrong type.
 
-    path: path of the file.  content: its content.  more: further section -> its class, None if it is checked elsewhere.
+    path: path of the file.
+    content: content of the file by section.
+    more: further section -> its class, None if it is checked elsewhere.
     """
     check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
@@ -125,7 +129,9 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
 def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
     """Return the roller of checked sections, whose numbers may be arrays.
 
-    path: path of the file.  content: its content.  materials: name of an argument of Cylinder -> material.
+    path: path of the file.
+    content: content of the file by section.
+    materials: name of an argument of Cylinder -> material.
 
     Raises ParameterError for a value out of range, FileError for a wrong series.
     """
@@ -146,7 +152,9 @@ def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, A
 def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
     """Return an error of a parameter with the section and the line that gives it.
 
-    path: path of the file.  content: its content.  error: the error, which names the parameter.
+    path: path of the file.
+    content: content of the file by section.
+    error: the error, which names the parameter.
     """
     sections = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
     default = next((name for name in SCHEMA if name in content), "")
@@ -159,6 +167,9 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     Parameters
     ----------
     path : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
+
+    Returns
+    ------- Pair, Prony, Bodies, float or Cylinder
 
     Raises
     ------

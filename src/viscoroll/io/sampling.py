@@ -112,7 +112,12 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
 
 @np.errstate(all="ignore")  # scipy may overflow for a distribution that is refused
 def _is_distribution(name: str, value: Any) -> bool:
-    """Whether the ``value`` of a quantity ``name`` is a distribution, else a number; raise ParameterError otherwise."""
+    """Return whether the value of a quantity is a distribution; else it must be a number.
+
+    name: name of the quantity.
+    value: what a caller gave.
+    Raises ParameterError for what is neither.
+    """
     random = hasattr(value, "ppf")
     try:
         check_number(name, value.ppf(0.5) if random else value)
@@ -125,8 +130,12 @@ def _is_distribution(name: str, value: Any) -> bool:
 def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int) -> Floats:
     """Return a block of points inside (0, 1), (dimensions, stop - start).
 
-    design: "random", "latin" or "sobol".  seed: seed of all points.  n: number of all points.  dimensions:
-    coordinates of a point.  start, stop: indices of the block.  block: its number.
+    design: "random", "latin" or "sobol".
+    seed: seed of all points.
+    n: number of all points.
+    dimensions: coordinates of a point.
+    start, stop: indices of the block.
+    block: number of the block.
     """
     if dimensions == 0:
         return np.empty((0, stop - start))
@@ -154,7 +163,9 @@ def _keys(seed: int, dimensions: int) -> Words:
 def permuted(index: Words, n: int, key: Words) -> Words:
     """Return the images of numbers under a permutation of 0 ... n - 1.
 
-    index: the numbers, (k,).  n: size of the permutation.  key: keys of its rounds.
+    index: the numbers, (k,).
+    n: size of the permutation.
+    key: keys of its rounds.
     """
     half = max((int(n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)
@@ -168,7 +179,9 @@ def permuted(index: Words, n: int, key: Words) -> Words:
 def _feistel(index: Words, half: int, key: Words) -> Words:
     """Return the images of numbers under a permutation of all numbers of 2 * half bits.
 
-    index: the numbers, (k,).  half: bits of half a number.  key: keys of the rounds.
+    index: the numbers, (k,).
+    half: bits of half a number.
+    key: keys of the rounds.
     """
     width, mask = np.uint64(half), np.uint64(2**half - 1)
     left, right = index >> width, index & mask
@@ -195,8 +208,9 @@ def _sequence(seed: int, dimensions: int) -> Any:
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
     """Return points of the Sobol sequence, (dimensions, stop - start).
 
-    seed: seed of the sequence.  dimensions: coordinates of a point.  start, stop: first index, and the one behind
-    the last.
+    seed: seed of the sequence.
+    dimensions: coordinates of a point.
+    start, stop: first index, and the one behind the last.
 
     ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block
     (and refuses more than 32 bits).  Its state is set instead; a test compares with a sequence from its start.

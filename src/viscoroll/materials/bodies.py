@@ -99,7 +99,11 @@ class Bodies(OneOrMany):
 
     @cached_property
     def _creep(self) -> tuple[NDArray, ...]:
-        """Creep of both bodies together: strengths, times, and the half-space's part of the strengths; (..., modes)."""
+        """Return the creep modes of both bodies together.
+
+        Returns (strengths, times in units of T_ref, part of each strength that is the half-space's), (..., modes) each,
+        dimensionless.
+        """
         share = np.asarray(self.share)[..., np.newaxis]
         parts = share * self.cylinder.J, (1.0 - share) * self.base.J
         bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.base.T)

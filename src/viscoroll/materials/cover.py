@@ -84,6 +84,16 @@ class Cover(Bodies):
         other_nu: float = 0.5,
         other: Prony | None = None,
     ) -> None:
+        """Check the parameters and make one or many covers; raises ParameterError.
+
+        series: Prony series of the cover, or its alpha.
+        nu: Poisson's ratio of the cover, in [0, 0.5].
+        thickness: thickness divided by l0, > 0, a number or (n,).
+        on: body that has the cover, "cylinder" or "base".
+        part: part of the cover in the long-time compliance, in (0, 1].
+        other_nu: Poisson's ratio of the other body.
+        other: series of the other body; None: elastic.
+        """
         if isinstance(series, Real) and not isinstance(series, bool):
             series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
         if not isinstance(series, Prony) or series.shape:

@@ -113,8 +113,8 @@ class FromPrograms:
 
         Parameters
         ----------
-        E, nu : of the elastic node, Pa: the long-time values (static stiffness "Long-term").  Without ``K`` nu is
-            taken constant in time.
+        E, nu : Young's modulus, Pa, and Poisson's ratio of the elastic node: the long-time values (static stiffness
+            "Long-term").  Without ``K`` nu is taken constant in time.
         G : shear moduli G_m of the branches, Pa, >= 0.
         tau : their relaxation times tau_m, s, > 0.
         K : bulk moduli of the branches, Pa, >= 0, at the same times; zeros where only deviatoric strains are
@@ -195,12 +195,13 @@ class FromPrograms:
         """Make a material from terms that are fractions of the instantaneous moduli; raises ParameterError.
 
         E, nu: Young's modulus, Pa, and Poisson's ratio.
-        name: of the parameter ``fractions``, for errors.
+        name: name of the parameter ``fractions``, for errors.
         fractions: terms of G(t) divided by G(0), (terms,).
         tau: relaxation times, s, (terms,).
         bulk: terms of K(t) divided by K(0), (terms,); None: nu is constant in time.
         long_term: whether E and nu are those of long times.
         more: keywords of the material.
+        Returns the material.
         """
         E, nu = check_number("E0", E, unit=SI, above=0.0), check_poisson(nu)
         values, times = check_pairs(name, fractions, "tau", tau)
@@ -252,10 +253,11 @@ def check_poisson(nu: Any) -> float:
 def check_pairs(
     name: str, values: ArrayLike, other: str, at: ArrayLike, *, above: float = 0.0
 ) -> tuple[Floats, Floats]:
-    """Return two lists of equal length as arrays; raises ParameterError.
+    """Check two lists of equal length, and return them as arrays (n,); raises ParameterError.
 
-    name, values: the first list, >= 0.
-    other, at: the second list, > 0 or, with ``above`` = -inf, >= 0.
+    name, values: name and numbers of the first list, >= 0.
+    other, at: name and numbers of the second list, > 0.
+    above: number that those of the second list must exceed; with -inf they must be >= 0.
     """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
@@ -288,7 +290,8 @@ def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, 
 def _remaining_fraction(name: str, fractions: Floats) -> float:
     """Return 1 - sum fractions, the fraction of a modulus that remains; raises ParameterError where there is none.
 
-    name, fractions: of the parameter, (terms,).
+    name: name of the parameter, for errors.
+    fractions: fractions of the modulus that relax, (terms,).
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:

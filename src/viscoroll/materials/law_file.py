@@ -180,7 +180,7 @@ def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
     """Return the SHA-256 over names and numbers of all variables: little-endian doubles, last dimension fastest.
 
     numbers: arrays by name.
-    kind: of the file, which determines the names and their order.
+    kind: kind of the file, which determines the names and their order.
     """
     digest = hashlib.sha256()
     for name in (*KINDS[kind].functions, *KINDS[kind].others):
@@ -191,11 +191,11 @@ def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
 def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], **attributes: str) -> xr.Dataset:
     """Return the dataset of a file: its numbers, their meaning and origin, and their checksum.
 
-    law: object with the variables of the kind as attributes, and ``coefficients`` with the functions last.
-    kind: of the file.
+    law: the law, an object with the variables of its kind as attributes, and ``coefficients`` with the functions last.
+    kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
     title: bodies whose law it is, in words.
-    errors: largest relative error of each function.
-    attributes: further attributes.
+    errors: function -> largest relative error, dimensionless.
+    attributes: further attributes of the dataset.
     """
     import xarray as xr
 
@@ -248,10 +248,11 @@ def read_law(path: str | PathLike[str]) -> Content:
 def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Content:
     """Read a netCDF file by h5py alone, which takes a tenth of the time of xarray.
 
-    path: of the file.
+    path: path of the file.
     expected: kind of file in words, for errors.
     remedy: what to do about a damaged file, for errors.
     Raises FileError for a file that cannot be read or whose seal does not match it, and any error of h5py.
+    Returns the :class:`Content`.
     """
     import h5py
 
@@ -270,8 +271,8 @@ def _to_scalar(value: Any) -> Any:
 def check_law(content: Content, path: Any) -> None:
     """Raise FileError for a file that is no law of this schema, or whose numbers do not match its checksum.
 
-    content: of the file.
-    path: of the file, for errors.
+    content: content of the file.
+    path: path of the file, for errors.
     """
     numbers, attributes = content
     kind = attributes.get(KIND)

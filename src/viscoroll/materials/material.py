@@ -225,6 +225,9 @@ class Material(FromPrograms):
         ----------
         omega : angular frequencies, rad/s, >= 0, of any shape.
 
+        Returns
+        ------- number or array, Pa, of the shape of ``omega``
+
         Raises
         ------
         ParameterError
@@ -240,7 +243,8 @@ class Material(FromPrograms):
         return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
-        """Return the loss modulus E'', Pa; arguments and errors as of :meth:`storage`.
+        """Return the loss modulus E'', Pa, of the shape of ``omega`` (angular frequencies, rad/s, >= 0); errors as of
+        :meth:`storage`.
 
         Examples
         --------
@@ -252,7 +256,8 @@ class Material(FromPrograms):
         return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
-        """Return the loss factor E''/E', dimensionless; arguments and errors as of :meth:`storage`.
+        """Return the loss factor E''/E', of the shape of ``omega`` (angular frequencies, rad/s, >= 0); errors as of
+        :meth:`storage`.
 
         Examples
         --------
@@ -271,6 +276,9 @@ class Material(FromPrograms):
         ----------
         t : times, s, >= 0, of any shape.
 
+        Returns
+        ------- number or array, Pa, of the shape of ``t``
+
         Raises
         ------
         ParameterError
@@ -287,7 +295,7 @@ class Material(FromPrograms):
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
     def creep(self, t: ArrayLike) -> Any:
-        """Return the creep compliance in tension times E, from E/E(0) to 1; arguments as of :meth:`relaxation`.
+        """Return the creep compliance in tension times E, from E/E(0) to 1, of the shape of ``t`` (times, s, >= 0).
 
         Examples
         --------
@@ -355,9 +363,9 @@ class Material(FromPrograms):
         >>> import viscoroll as vr
         >>> vr.Material.elastic(2.1e11, 0.3).to_netcdf("steel.nc")
         """
-        from .material_netcdf import save_material
+        from ..core.files import write_dataset
 
-        save_material(self, path)
+        write_dataset(self.to_xarray(), path, sealed=True)
 
     @classmethod
     def from_netcdf(cls, path: str | PathLike[str]) -> Material:
@@ -401,7 +409,8 @@ class Material(FromPrograms):
         """Return t divided by each of several times, (..., times).
 
         t: s, >= 0, of any shape.
-        times: in units of T_ref.
+        times: times in units of T_ref, (times,).
+        Returns the ratios, dimensionless, of the shape of t with a last axis of the times.
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)

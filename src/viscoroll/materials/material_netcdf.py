@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import __version__
 from ..core.errors import FileError, ParameterError
-from ..core.files import seal_matches, write_dataset
+from ..core.files import seal_matches
 from .law_file import read_content
 from .measured import Measured
 from .prony import Prony
@@ -76,15 +76,10 @@ def material_as_dataset(material: Any) -> xr.Dataset:
     )  # fmt: skip
 
 
-def save_material(material: Any, path: str | PathLike[str]) -> None:
-    """Write a ``material`` to the file ``path``, sealed; raises FileError."""
-    write_dataset(material_as_dataset(material), path, sealed=True)
-
-
 def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
-    """Read a file of :func:`save_material`; raises FileError.
+    """Read a file of :meth:`viscoroll.Material.to_netcdf`; raises FileError.
 
-    path: of the file.
+    path: path of the file.
     make: constructor of the material, called with its parameters by name.
     Returns the material.
     """

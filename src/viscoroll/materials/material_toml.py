@@ -108,8 +108,8 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
 def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
     """Return the materials of a file that was read; raises FileError as :func:`read_materials` does.
 
-    path: of the file.
-    content: its sections.
+    path: path of the file.
+    content: sections of the file.
     """
     return {name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content}
 
@@ -117,8 +117,8 @@ def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material
 def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
     """Return the shifts of those materials of a file that have one; raises FileError.
 
-    path: of the file.
-    content: its sections.
+    path: path of the file.
+    content: sections of the file.
     Returns functions a_T(temperature in degrees Celsius) by section, which are 1 at the temperature of the section.
     """
     sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
@@ -129,7 +129,11 @@ def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[f
 
 
 def material_as_toml(material: Material, section: str = "material") -> str:
-    """Return the ``section`` of a TOML file that reads back as this ``material``, to the bit."""
+    """Return the TOML section that reads back as a material, to the bit.
+
+    material: the material.
+    section: name of the section.
+    """
     band = material.measured
     values = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
     values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
@@ -155,7 +159,7 @@ def _quote(text: str) -> str:
 def _parse_section(path: Any, name: str, content: Any) -> Any:
     """Return a section as a FileSection or MaterialSection; raises FileError.
 
-    path, name: of the file and of the section.
+    path, name: path of the file and name of the section.
     content: keys and values of the section.
     """
     kind = FileSection if isinstance(content, dict) and "file" in content else MaterialSection
@@ -165,7 +169,7 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
 def _parse_material(path: Any, name: str, content: Any) -> Material:
     """Return the material of a section at its temperature; raises FileError.
 
-    path, name: of the file and of the section.
+    path, name: path of the file and name of the section.
     content: keys and values of the section.
     """
     section = _parse_section(path, name, content)
@@ -190,7 +194,7 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
 def _read_other_file(path: Any, name: str, other: Path) -> Material:
     """Return the material of a file that a section names; raises FileError.
 
-    path, name: of the file and of the section that names it.
+    path, name: path of the file and name of the section that names it.
     other: netCDF file of a material or of its law, or TOML file with a section of this name or [material].
     """
     try:
@@ -220,8 +224,8 @@ def _material_of_law(path: Path) -> Material:
 def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     """Return the material of a section at its reference temperature; raises FileError and ParameterError.
 
-    path, name: of the file and of the section.
-    section: its content.
+    path, name: path of the file and name of the section.
+    section: checked content of the section.
     """
     more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
     more["temperature"] = section.reference
@@ -239,7 +243,7 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
 def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     """Return the series of a section by its key prony or creep, or None without these; raises FileError.
 
-    path, name: of the file and of the section.
+    path, name: path of the file and name of the section.
     given: keys and values; strengths and times may be arrays with one value for each of many materials.
     """
     forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
@@ -260,7 +264,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
 def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | None:
     """Return the time-temperature shift of a ``section``, or None; raises FileError for two.
 
-    path, name: of the file and of the section, for errors.
+    path, name: path of the file and name of the section, for errors.
     """
     if section.wlf is not None and section.arrhenius is not None:
         raise section_error(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")

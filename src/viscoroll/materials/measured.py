@@ -46,7 +46,7 @@ class Measured:
             raise ParameterError("source", f"{self.source!r:.60}", "a text")
 
     def shifted(self, a_T: float) -> Measured:
-        """Return the band at a temperature where all times are ``a_T`` times longer.
+        """Return the measured band at a temperature where all times are ``a_T`` times longer, as :class:`Measured`.
 
         Examples
         --------

@@ -107,7 +107,9 @@ class Pair:
 
     @property
     def E_prime(self) -> Any:
-        """E' of the pair at long times, Pa; 2 E'_1 on a rigid base."""
+        """Return the contact modulus E' of the pair at long times, Pa, of Sect. 3.1; on a rigid base twice that of the
+        other body alone.
+        """
         one, other = self._moduli
         if self.like:
             return one
@@ -129,8 +131,9 @@ class Pair:
 
     @cached_property
     def law(self) -> Prony | Bodies:
-        """The material of the law: a :class:`Prony` series for like bodies, else :class:`Bodies`; times in units of
-        ``T_ref``.
+        """Return the material of the law: a :class:`Prony` series for like bodies, else :class:`Bodies`.
+
+        Its times are in units of ``T_ref``, its moduli in units of the long-time ones.
 
         Raises
         ------
@@ -151,7 +154,7 @@ class Pair:
         Parameters
         ----------
         l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array for many
-        covers.
+            covers.
 
         Raises
         ------
@@ -181,7 +184,8 @@ class Pair:
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
-    """Return E' of Sect. 3.1, in the unit of E.
+    """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper, in the unit of E; in plane stress pi
+    E.
 
     E: Young's modulus.
     nu: Poisson's ratio.

@@ -108,6 +108,12 @@ class Prony(OneOrMany):
     by_creep: bool
 
     def __init__(self, E: ArrayLike = (), tau: ArrayLike = ()) -> None:
+        """Make one or many materials from their relaxation modulus, divided by its long-time value.
+
+        E: strengths, >= 0, dimensionless, (modes,) or (n, modes).
+        tau: relaxation times in units of T_ref, > 0, in the shape of E.
+        Raises ParameterError.
+        """
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
@@ -213,7 +219,7 @@ class Prony(OneOrMany):
         return self._convert(self._strengths, self._times, self.alpha)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """Yield materials in blocks of equal numbers of modes.
+        """Yield materials in blocks of equal numbers of modes, as :class:`Block`.
 
         which: indices of the materials, (m,).
         """
@@ -226,7 +232,10 @@ class Prony(OneOrMany):
 
     @cached_property
     def _other_form(self) -> tuple[NDArray, NDArray]:
-        """Strengths and times of the form that was not given; for many, 0 and 1 behind the last mode."""
+        """Return the modes of the form that was not given: creep if relaxation was given, and the reverse.
+
+        Returns (strengths, times), (modes,) each; for many materials (n, modes), 0 and 1 behind the last mode.
+        """
         names = ("E", "a") if self.by_creep else ("J", "b")
         if not self.shape:
             strengths, rates = (getattr(self.modes, name) for name in names)
@@ -317,8 +326,8 @@ class Prony(OneOrMany):
 def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
     """Check modes and sort them; raises ParameterError.
 
-    names: of both parameters, for errors.
-    strengths, times: (modes,) or (n, modes); dimensionless, in units of T_ref.
+    names: names of both parameters, for errors.
+    strengths, times: strengths and times of the modes, (modes,) or (n, modes); dimensionless, in units of T_ref.
     Returns strengths and times by descending time, modes without strength dropped or, for many, set behind the others.
     """
     values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, above=0.0)
@@ -357,9 +366,9 @@ def series_of_alpha(alpha: float) -> Prony:
 def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floats]:
     """Sort modes by descending time, add those of equal times, and put those without strength behind the others.
 
-    strengths, times: (..., modes).
+    strengths, times: strengths and times of the modes, (..., modes), any unit.
     parts: parts of the strengths, (..., modes) each, which are treated like them.
-    Returns strengths, times and parts.
+    Returns [strengths, times, *parts], each (..., modes).
     """
     order = np.argsort(-times, axis=-1, kind="stable")
     values, each, *rest = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts))

@@ -50,7 +50,7 @@ class Modes:
 
 
 def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
-    """Compute both forms from that of relaxation.
+    """Compute the :class:`Modes`, both forms of a series, from its relaxation form.
 
     E: strengths, (..., modes).
     tau: times, descending, (..., modes).
@@ -66,7 +66,7 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
 
 
 def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
-    """Compute both forms from that of creep.
+    """Compute the :class:`Modes`, both forms of a series, from its creep form.
 
     J: strengths, (..., modes).
     T: times, descending, (..., modes).
@@ -91,15 +91,16 @@ def _rate_differences(times: NDArray) -> Floats:
 
 
 def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """Return gap[..., j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum
-    weight_j/(pole_j - s).
+    """Return the gaps between the zeros s_i of constant + sum weight_j/(pole_j - s) and its poles, to full relative
+    accuracy.
 
     The sum increases from pole to pole: one zero lies between two neighbours, and one right of the last if
     ``constant`` > 0.
 
     spread: pole_j - pole_l, [..., j, l]; poles are ascending.
-    weight: positive, (..., poles).
-    constant: >= 0, (...).
+    weight: weights of the poles, positive, (..., poles).
+    constant: the constant, >= 0, (...).
+    Returns gap[..., j, i] = s_i - pole_j.
     """
     poles, constant = weight.shape[-1], constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
@@ -131,12 +132,12 @@ def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
 
 
 def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """Return the sum at s = pole[origin] + step, (..., zeros).
+    """Return constant + sum weight_j/(pole_j - s) at s = pole[origin] + step, (..., zeros).
 
-    step: (..., zeros).
+    step: distance of s from the pole of its origin, (..., zeros).
     seen: poles relative to the origin of each zero, [..., i, j].
-    weight: (..., poles).
-    constant: (..., 1).
+    weight: weights of the poles, (..., poles).
+    constant: the constant, (..., 1).
     """
     return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 
@@ -144,15 +145,17 @@ def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) 
 def _improve_distance(
     distance: NDArray, origin: NDArray, side: NDArray, seen: NDArray, weight: NDArray, constant: NDArray
 ) -> Floats:
-    """Return the distances after one step of Newton's method for weight[origin] = distance side (the rest of the
-    sum).
+    """Improve the distances of zeros from their poles by one step of Newton's method.
 
-    distance: of each zero from its origin, (..., zeros).
+    The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.
+
+    distance: distance of each zero from its origin, (..., zeros).
     origin: index of the pole that each zero is measured from, (..., zeros).
     side: 1 for a zero right of its origin, -1 left of it, (..., zeros).
     seen: poles relative to the origin of each zero, [..., i, j].
-    weight: (..., poles).
-    constant: (..., 1).
+    weight: weights of the poles, (..., poles).
+    constant: the constant of the sum, (..., 1).
+    Returns the distances, (..., zeros), in the unit of the poles.
     """
     inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)

@@ -161,7 +161,7 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
 
 
 def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
-    """Replace fields of a frozen dataclass by numbers above their lower bounds; raises ParameterError.
+    """Check that fields of a frozen dataclass are numbers above lower bounds, and convert them; raises ParameterError.
 
     instance: the dataclass.
     unit: unit of all these fields, or an object that has units by name.

@@ -71,6 +71,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     method: "auto", "flow" or "integrate", as of :func:`viscoroll.ensemble`.
     speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
     Raises ParameterError for method "flow" where no map applies.
+    Returns the :class:`Solution`.
     """
     scene = batch.problem.scene
     free = not batch.problem.driven and scene.like_bodies
@@ -93,12 +94,15 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
 
 
 def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowResult | None:
-    """Look motions up in the flow map of their scene, which counts in the material's own time.
+    """Look motions up in the flow map of their scene.
+
+    The map counts in the material's own time, to which the motions are converted.
 
     batch: motions of one scene.
-    speed: as of :func:`solve_batch`.
-    about: receives the error and the problem of the map.
-    Returns None where all motions are at rest, or the stated error exceeds rtol.
+    speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
+    about: dict that receives the error and the problem of the map.
+    Returns the result, in which motions outside the map have a status below 0; None where all motions are at rest, or
+    the stated error exceeds rtol.
     """
     scene, rows = batch.problem.scene, batch.rows
     rtol, threshold, _ = batch.problem.limits
@@ -128,7 +132,7 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
 def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     """Integrate the motions that have no result yet, status < 0.
 
-    found: receives their results.
+    found: results, into which theirs are written.
     batch: all motions.
     Returns the steps of each motion, (n,).
     """
@@ -137,6 +141,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
+        """Integrate the motions ``start`` to ``stop`` - 1 of those without a result, and write their results."""
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:
             return
@@ -157,9 +162,10 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """Return the function that gives the kernel's law of some motions.
 
+    The function takes alphas and indices of motions, and returns (law; whether bodies differ).
+
     scene: parameters of the motions.
     unsteady: whether the added mass acts; then several materials are requested for one motion at a time.
-    The function takes alphas and indices of motions, and returns (law; whether bodies differ).
     """
     several: Any = scene.material_array
     if several is None and not np.ndim(scene.alpha):
@@ -168,6 +174,12 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
         return lambda alpha, index: law
 
     def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
+        """Return the law of some motions as the kernel takes it.
+
+        alpha: alphas of the motions.
+        index: indices of the motions.
+        Returns (law, whether the bodies differ).
+        """
         if several is not None:
             index = np.minimum(index, len(several) - 1)
         if unsteady:

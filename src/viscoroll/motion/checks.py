@@ -73,8 +73,9 @@ def _shape(value: Any) -> tuple[int, ...]:
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:
     """Check the limits of an integration.
 
-    rtol, max_steps: as of :func:`viscoroll.roll`.
-    rest: threshold, dimensionless.
+    rtol: relative tolerance.
+    max_steps: largest number of steps of a motion.
+    rest: rest threshold, the speed below which a motion ends, dimensionless; None: none.
     Returns (rtol, threshold of rest or 0, step limit).
     Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
@@ -88,7 +89,7 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     """Return start speeds, checked: floats as they are, else arrays.
 
-    V0, omega0: dimensionless, numbers or arrays.
+    V0, omega0: start speeds, dimensionless, numbers or arrays.
     Raises ParameterError unless both are finite and at most 1e100 in size, and the larger is 0 or at least 1e-300.
     """
     low, high = SPEED_RANGE

@@ -72,10 +72,10 @@ class Drive(NamedTuple):
 
 
 def _is_zero(name: str, value: Any) -> bool:
-    """Say whether a load is 0 at all times; a callable never counts as 0.
+    """Return whether a load is 0 at all times; a callable never counts as 0.
 
     name: name of the argument, for refusals.
-    value: as given.
+    value: what the caller gave: a number, an array, a schedule, a function or a feedback.
     Raises ParameterError for what is no number and no function of time.
     """
     if isinstance(value, Feedback):
@@ -94,8 +94,8 @@ class PlainArguments(NamedTuple):
 def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainArguments:
     """Return start speeds and drive in the units of a roller, as plain numbers.
 
-    start: V0 and omega0 as given.
-    drive: as given.
+    start: V0 and omega0, as the caller gave them.
+    drive: loads and prescribed speeds, as the caller gave them.
     units: units of the roller.
     Raises ParameterError for a unit of another dimension.
     """

@@ -99,7 +99,7 @@ class _Sampled:
         end: last time, in T_ref.
         rtol: relative tolerance of the motion.
         low: smallest value allowed.
-        samples: their number.
+        samples: number of samples.
         """
         self.name, self.function, self.low, self.taken = name, function, low, 0
         self.share = _SHARE * rtol
@@ -120,10 +120,10 @@ class _Sampled:
         return float(self.values(np.array([t]))[0])
 
     def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
-        """Fit a piece.
+        """Fit the callable between two times by one polynomial.
 
-        start, stop: its ends, in T_ref.
-        so_far: largest value before it.
+        start, stop: ends of the piece, in T_ref.
+        so_far: largest value of the callable before the piece, dimensionless.
         Returns (the piece, None if its fit is not good; where to cut it, None for its middle).
         """
         middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
@@ -159,9 +159,10 @@ class _Sampled:
     def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
         """Return the neighbouring doubles between which the callable jumps.
 
-        t, values: ascending times of a piece and the values there, (n,).
+        t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,).
         allowed: error allowed to a fit at its end.
-        Returns None unless one jump is most of the variation.
+        Returns (last time before the jump, first time behind it), in T_ref; None unless one jump is most of the
+        variation.
         """
         change = np.abs(np.diff(values))
         n = int(change.argmax())
@@ -184,6 +185,7 @@ def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
 
     low, high: times between which it does, in T_ref.
     is_before: the condition.
+    Returns (last time before, first time behind), in T_ref.
     """
     low, high = float(low), float(high)
     while low < (middle := 0.5 * (low + high)) < high:
@@ -196,7 +198,8 @@ def fit_callable(
 ) -> tuple[Floats, Floats, float]:
     """Fit a callable by piecewise polynomials.
 
-    name, function: the argument and the callable.
+    name: name of the argument, for errors.
+    function: the callable, of the time in T_ref.
     end: last time, in T_ref.
     rtol: relative tolerance of the motion.
     low: smallest value allowed.
@@ -220,7 +223,7 @@ def fit_callable(
 
 
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
-    """Return good pieces of which no two neighbours could be one.
+    """Fit a callable by pieces as long as the tolerance allows: no two neighbours could be one.
 
     sampled: the callable.
     end: last time, in T_ref.
@@ -254,9 +257,9 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 
 
 def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
-    """Return the pieces without the short ones that contain a corner: their neighbours then meet in it.
+    """Return the pieces without the short ones that contain a corner; their neighbours are extended to the corner.
 
-    pieces: consecutive.
+    pieces: consecutive pieces of the fit.
     sampled: the callable.
     """
     merged: list[Piece] = []
@@ -281,6 +284,7 @@ def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
 
     before, behind: the neighbours.
     between: the piece.
+    Returns the time, in T_ref.
     """
 
     def is_above(t: float) -> bool:

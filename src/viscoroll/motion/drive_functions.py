@@ -110,10 +110,11 @@ class DriveFunctions:
         return [slice(first, first + step) for first in range(0, max(count, 1), step)]
 
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
-        """Return (value at t = 0, largest size) of a prescribed speed, of every motion that has its own.
+        """Return the value of a prescribed speed at t = 0, and its largest size.
 
         name: name of the speed.
         Raises ParameterError where it jumps.
+        Returns (values, largest sizes), with one number for each motion that has its own speed, dimensionless.
         """
         speed, firsts, sizes = self.functions[name], [], []
         for part in self._blocks(count_motions(speed)):
@@ -125,7 +126,9 @@ class DriveFunctions:
 
     @cached_property
     def pieces(self) -> Floats:
-        """All functions over common pieces, in the layout of the kernels, (1 or m, k, columns)."""
+        """Return all functions over common pieces, dimensionless, in the layout of the kernels, (1 or m, k,
+        columns).
+        """
         zero, name = piecewise(np.zeros(())), self.prescribed
         force, torque, brake, speed = (
             piecewise(self.functions[f]) if f in self.functions else zero for f in ("force", "torque", "brake", name)
@@ -175,12 +178,14 @@ def prepare_drive(
 ) -> DrivenStart:
     """Check a drive and the start speeds.
 
-    drive: dimensionless.
+    drive: drive, dimensionless.
     V0, omega0: start speeds, dimensionless; None where they are prescribed.
     end: last time, in T_ref.
-    rtol, resolve: as of :func:`viscoroll.roll`.
+    rtol: relative tolerance of the motion.
+    resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what follows
     from them given as well; a start that is not the prescribed one; ``resolve`` without a callable.
+    Returns the :class:`DrivenStart`.
     """
     if resolve is not None and not drive.has_callable:
         sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
@@ -224,7 +229,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
 
     name: "V" or "omega".
     stated: the start that the caller gave; None without.
-    functions: with the prescribed speed.
+    functions: functions of the drive, with the prescribed speed.
     speed: the prescribed speed as the caller gave it.
     Raises ParameterError where ``stated`` is another start, or where the speed jumps.
     """
@@ -252,8 +257,8 @@ def _gains(drive: Drive) -> Floats:
 def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: threshold, dimensionless; 0 for none.  Where nothing drives, speeds below it stay below.
-    functions: that drive.
+    rest: rest threshold, the speed below which the motion ends, dimensionless; 0 for none.
+    functions: functions of the drive, or None.
     """
     if rest > 0.0 and functions is not None and functions.acts_at_end:
         sentence = f"rest = {rest:g} is given, but the motion is driven to its end: leave it out"

@@ -52,7 +52,7 @@ def ensemble(
     threads: int | None = None,
     progress: bool = False,
 ) -> Ensemble:
-    """Motions of n cylinders or n starts; the result has the same bits for any number of threads.
+    """Compute the motions of n cylinders or n starts; the result has the same bits for any number of threads.
 
     Parameters
     ----------
@@ -61,8 +61,7 @@ def ensemble(
     V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
     t : output times, ascending, common to all; one number: the final state only.
     force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`; numbers may be
-    arrays
-        (n,), times and values of a :class:`Schedule` of shape (n, k).
+        arrays (n,), times and values of a :class:`Schedule` of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
         error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
@@ -143,7 +142,7 @@ def ensemble(
 def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
     """Return the parameters and start speeds of an ensemble, and the number of its motions.
 
-    problem: its motions.
+    problem: checked motions of the ensemble.
     drives: numbers that drive them, by name.
     Returns (arrays of one or n values by name; n).
     Raises ParameterError where they do not broadcast to (n,).
@@ -160,10 +159,11 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
 
 
 def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
-    """Return the fields of an :class:`Ensemble` in the units of its roller, by name.
+    """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its roller.
 
-    batch: its motions.
-    solution: dimensionless.
+    batch: motions of the ensemble.
+    solution: motions, dimensionless.
+    Returns the fields by name.
     """
     found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))

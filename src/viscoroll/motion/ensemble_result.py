@@ -47,9 +47,8 @@ class Ensemble(RollResult):
     t : output times.
     V, omega, x, angle, delta, regime : shape (n, len(t)); those not requested are None.
     slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_epsilon)^2 or in J/m: the
-    integrals of
-        gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
-        (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
+        integrals of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what (V^2 + j
+        omega^2)/2 has fallen by (at rest: all of it).
     force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
     rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
@@ -89,7 +88,7 @@ class Ensemble(RollResult):
         return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
 
     def messages(self) -> dict[str, int]:
-        """How many motions ended in which way, in words.
+        """Return the number of motions that ended in each way, by the way in words.
 
         Examples
         --------
@@ -101,11 +100,11 @@ class Ensemble(RollResult):
         return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
 
     def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
-        """Moments, quantiles and histograms over the motions, per output time, named as those of a run's store.
+        """Compute moments, quantiles and histograms over the motions, per output time, named as those of a run's store.
 
         Parameters
         ----------
-        quantiles : in [0, 1].
+        quantiles : levels of the quantiles, in [0, 1].
 
         Returns
         -------
@@ -168,7 +167,7 @@ class Ensemble(RollResult):
         return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Title and rows of the printed report."""
+        """Return title and rows of the printed report."""
         ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
@@ -183,7 +182,7 @@ class Ensemble(RollResult):
         return f"Ensemble of {len(self)} motions", rows + ends
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over (motion, t) with starts, outputs, onset and status.
+        """Return the dataset over (motion, t) with starts, outputs, onset and status.
 
         Examples
         --------

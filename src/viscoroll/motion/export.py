@@ -56,12 +56,13 @@ def provenance(title: str) -> dict[str, str]:
 def _dataset(
     result: RollResult, title: str, dims: tuple[str, ...], variables: dict[str, Any], about: dict[str, Any]
 ) -> xr.Dataset:
-    """Return the dataset of a result.
+    """Return the dataset of a motion or an ensemble.
 
-    result: its rows, drive and roller are put into the dataset.
+    result: motion or ensemble, whose rows, drive and roller are put into the dataset.
     title: title of the dataset.
-    dims: dimensions of the rows.
-    variables, about: further variables and attributes.
+    dims: names of the dimensions of the rows, ("t",) or ("motion", "t").
+    variables: further variables by name, as xarray takes them.
+    about: further attributes by name.
     """
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims
@@ -86,11 +87,11 @@ def _dataset(
 
 
 def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return (variables ``drive_force`` and the like, with the times of schedules; attributes for callables) of a
-    result.
+    """Describe the drive of a result by variables and attributes of its dataset.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
     motions have times of their own (motion, drive_force_corner); gains of a feedback are attributes.
+    Returns (variables ``drive_force`` and the like, with the times of schedules; attributes for callables and gains).
     """
     variables: dict[str, Any] = {}
     texts: dict[str, Any] = {}

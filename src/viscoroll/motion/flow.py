@@ -62,7 +62,7 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
 
     scene : parameters of one scene.
     speed : highest speed that the map must cover, > 0, dimensionless.
-    threads : number of threads.
+    threads : number of threads; None: all cores available.
 
     A damaged map on disk is built again, with a RuntimeWarning.  If the disk cannot be written, the map is kept in
     memory.
@@ -74,7 +74,8 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
 def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
     """Return a flow map from memory, from disk, or built; the last few stay in memory.
 
-    parameters, octave : as of :func:`map_key`.
+    parameters : (material, kappa, mu, j).
+    octave : the map covers kappa V < 2**octave at onset.
     threads : number of threads.
     """
     path = path_of(parameters, octave)
@@ -167,7 +168,9 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
 def _stiff_time(new_map: FlowMap, speed: float) -> float:
     """Return the relaxation time 1/k0 of omega - V for an onset near a speed.
 
-    new_map : the map.  speed : V at onset, dimensionless.
+    new_map : the map.
+    speed : V at onset, dimensionless.
+    Returns the time gamma t, dimensionless.
     """
     from ..kernels.flow.layout import PLUS, views
 

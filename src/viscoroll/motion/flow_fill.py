@@ -44,7 +44,9 @@ def fill_tables(new_map: FlowMap, threads: int | None) -> str:
 def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2.
 
-    problem : the scene.  parts : views of the tables.  Raises :class:`NoFlowMap`.
+    problem : the scene.
+    parts : views of the tables.
+    Raises :class:`NoFlowMap`.
     """
     _, kappa, mu, j = problem.parameters
     V, least = SPEEDS.x / kappa, 2.0**layout.LOW / kappa

@@ -37,8 +37,11 @@ def fill_layers(
 ) -> None:
     """Fill the tables of the boundary layers and asymptotes of one family.
 
-    problem : the scene.  sign : sign of omega - V at onset.  first : lowest octave of kappa V at onset.
-    slow : the slow manifold.  asymptote, layer : views of the tables, written.
+    problem : the scene.
+    sign : sign of omega - V at onset.
+    first : lowest octave of kappa V at onset.
+    slow : the slow manifold.
+    asymptote, layer : views of the tables, written.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
@@ -67,11 +70,11 @@ def fill_layers(
     slow_log_at_V = slow.slow_log[first - layout.LOW :][: layout.OCTAVES]
     above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
-    excess = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
+    excess = [_pad(_COARSE.powers(value)) for value in (x, angle, lost)]
     asymptote[:] = np.concatenate(
         [
-            interleave_pairs(slow_log_at_V + _padded(above), rates),
-            _padded(split_powers),
+            interleave_pairs(slow_log_at_V + _pad(above), rates),
+            _pad(split_powers),
             interleave_pairs(*excess[:2]),
             excess[2],
         ],
@@ -89,12 +92,13 @@ def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
 
 
 def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Floats) -> tuple[Floats, Floats]:
-    """Return (V, delta) in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip.
+    """Return the state in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip.
 
     problem : the scene.
     sign : sign of omega - V.
     V : speeds at onset, (n,).
     gamma : time scale of each motion, (n,).
+    Returns (V, delta), (n,) each, dimensionless.
     """
     _, _, mu, j = problem.parameters
     state = problem.contact_states(V, np.zeros(V.shape))
@@ -106,10 +110,13 @@ def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Flo
 def _layer_motions(
     problem: FlowProblem, sign: float, V0: Floats, k0: Floats, split: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Motions of a boundary layer at the nodes of its tables.
+    """Integrate the motions of a boundary layer, and return them at the nodes of its tables.
 
-    problem : the scene.  sign : sign of omega - V at onset.  V0 : speeds at onset, (octaves, nodes).
-    k0 : relaxation rates there.  split : splits there.
+    problem : the scene.
+    sign : sign of omega - V at onset.
+    V0 : speeds at onset, (octaves, nodes).
+    k0 : relaxation rates of omega - V at these onsets, (octaves, nodes).
+    split : values of E at which the table is split, near delta = 0 (:func:`_split_powers`), (octaves, nodes).
 
     Returns V and delta, (octave, node of V, octave of u, node of u), and V at the end of the layer, (octave, node of
     V).
@@ -157,7 +164,7 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
     return powers
 
 
-def _padded(powers: Floats) -> Floats:
+def _pad(powers: Floats) -> Floats:
     """Pad coefficients with zeros to the number of powers of functions of one variable.
 
     powers : coefficients, (rows, powers).

@@ -42,11 +42,12 @@ class SlowManifold(NamedTuple):
     slow_log: Floats
 
     def path_between(self, start: Floats, span: Floats, rate: float) -> tuple[Floats, Floats]:
-        """Return (distance, angle) along the manifold, as ``manifold_path`` of :mod:`..kernels.flow.lookup`.
+        """Return distance and angle of a motion along the slow manifold, while its slow logarithm decreases.
 
         start : slow logarithms at the beginning.
-        span : their decrease.
-        rate : decrease in unit time.
+        span : decrease of the slow logarithms.
+        rate : decrease of the slow logarithm in unit time.
+        Returns (distance, angle), of the shape of ``start``.
         """
         end, value = start - span, self.rows.value
         x, angle = (value(powers, start) - value(powers, end) for powers in self.path)
@@ -57,12 +58,14 @@ class SlowManifold(NamedTuple):
 
 
 def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
-    """Fill the tables of the slow manifold, and return it.
+    """Fill the tables of the slow manifold.
 
-    problem : the scene.  parts : views of the tables.
+    problem : the scene.
+    parts : views of the tables.
 
     One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and loss are
     integrals from V -> 0 upward.
+    Returns the :class:`SlowManifold`.
     """
     rows, V, delta = _integrate_manifold(problem)
     slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]

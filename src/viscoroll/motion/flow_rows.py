@@ -32,19 +32,22 @@ class Nodes:
     def powers(self, values: Floats) -> Floats:
         """Return the coefficients of the powers of t in [-1, 1] of the polynomials through values at the nodes.
 
-        values : at the nodes, along the last axis.
         Chebyshev coefficients are computed between, which limits the rounding errors.
+
+        values : values at the nodes, (..., nodes).
+        Returns the coefficients, (..., powers), ascending.
         """
-        return _applied(self._powers, _applied(self._chebyshev, values))
+        return _multiply(self._powers, _multiply(self._chebyshev, values))
 
     def integrals(self, slopes: Floats, half: Any, start: Any = 0.0) -> Floats:
         """Return the integral at the nodes, from a value at the left end of the first row.
 
         slopes : values of the integrand, (rows, nodes).
-        half : half the length of each row.
-        start : value at the left end.
+        half : half the length of each row, a number or (rows,).
+        start : value of the integral at the left end of the first row.
+        Returns the integral, (rows, nodes).
         """
-        whole = _applied(self._integrals, slopes) * np.asarray(half)[..., None]
+        whole = _multiply(self._integrals, slopes) * np.asarray(half)[..., None]
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
         return whole[..., :-1] + (start + rises)[..., None]
 
@@ -54,10 +57,10 @@ class Nodes:
         slopes : values of the integrand, (..., rows, nodes).
         half : half the length of each row.
         """
-        return (_applied(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
+        return (_multiply(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
 
 
-def _applied(matrix: Floats, values: Floats) -> Floats:
+def _multiply(matrix: Floats, values: Floats) -> Floats:
     """Apply a matrix along the last axis, without BLAS, whose last bits differ between machines.
 
     matrix : (m, n).
@@ -99,6 +102,7 @@ class Rows:
 
         powers : coefficients, (row, power).
         target : values, of the shape of ``x``; the upper end is returned for values beyond it.
+        Returns the arguments, of the shape of ``target``.
         """
         slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]
         x = np.interp(np.log(target), np.log(self.value(powers, self.x).ravel()), self.x.ravel())

@@ -66,7 +66,10 @@ def folder() -> Path:
 
 @lru_cache(maxsize=1)
 def _digest(package: Path) -> str:
-    """SHA-256 of the sources of kernels, materials and motions in the folder ``package``, its first 16 digits."""
+    """Return the SHA-256 of the sources of kernels, materials and motions, its first 16 digits.
+
+    package: folder of the package.
+    """
     from ..kernels.compile.cache import sources_digest
 
     digest = hashlib.sha256(sources_digest().encode())
@@ -118,7 +121,11 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
 
 
 def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
-    """The map in the bytes ``content`` of a file; raises ValueError if it is damaged or of other ``parameters``."""
+    """Return the map in the bytes of a file; raises ValueError if it is damaged or of another scene.
+
+    content: bytes of the file.
+    parameters: (material, kappa, mu, j) that the map must have.
+    """
     from ..kernels.flow.layout import SIZE
 
     if not seal_matches(content):

@@ -43,9 +43,9 @@ class Histogram(msgspec.Struct):
 
     @classmethod
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
-        """Return the histogram of the finite ones of some values.
+        """Make the histogram of those values that are finite.
 
-        values: (n,); those that are not finite are left out.
+        values: numbers, (n,); those that are not finite are left out.
         exact: whether to keep the values, for exact quantiles.
         """
         kept = values[np.isfinite(values)]
@@ -62,8 +62,9 @@ class Histogram(msgspec.Struct):
     def merge(self, other: Histogram) -> Histogram:
         """Return the histogram of the values of two histograms, without keeping the values.
 
-        other: the second histogram.
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
+
+        other: the second histogram.
         """
         if not self.count or not other.count:
             return self if self.count else other
@@ -83,8 +84,10 @@ class Histogram(msgspec.Struct):
     def quantiles(self, levels: tuple[float, ...]) -> Floats:
         """Return the quantiles, (levels,); NaN without values.
 
-        levels: in [0, 1]. Where the values were not kept, each quantile lies between the two values beside it, which
-        are known to their bins.
+        Where the values were not kept, each quantile lies between the two values beside it, which are known to their
+        bins.
+
+        levels: levels of the quantiles, in [0, 1].
         """
         if not self.count:
             return np.full(len(levels), np.nan)
@@ -99,6 +102,9 @@ class Histogram(msgspec.Struct):
         """Return the values of ranks from 0, as if those of each bin were evenly spread.
 
         The bin of zero is no interval of values: it holds 0 and values below 1e-310, and all of them count as 0.
+
+        ranks: ranks among the values in ascending order, from 0, (k,).
+        Returns the values, (k,), in the unit of the quantity.
         """
         below, above = edges_of(self.bins)
         above = np.where(self.bins == 0, below, above)

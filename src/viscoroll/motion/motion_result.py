@@ -88,7 +88,7 @@ class Motion(RollResult):
 
     @property
     def message(self) -> str:
-        """The status in words; for a motion that was given up also the state that it had reached."""
+        """Return the status in words; for a motion that was given up also the state that it had reached."""
         text = self.status.message
         if self.success or self.status == MotionStatus.CAUGHT:
             return text
@@ -105,7 +105,7 @@ class Motion(RollResult):
 
     @cached_property
     def _last_reached(self) -> Motion:
-        """The motion at the last time that it reached, for one that was given up."""
+        """Return the motion at the last output time that it reached, for one that was given up."""
         reached = float(self._step_ends.max(initial=0.0))
         # A last step that is cut at this end may take more steps than one that was not.
         limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
@@ -124,10 +124,10 @@ class Motion(RollResult):
         return self.torque * self.omega
 
     def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
-        """Contact state (:func:`viscoroll.contact`) along the motion.
+        """Return the contact state (:func:`viscoroll.contact`) along the motion.
 
-        At rest, and where V passes through zero while sliding, the limits V -> 0 stand.  At times that the
-        motion did not reach everything is NaN, and ``full_slip`` False.
+        At rest, and where V passes through zero while sliding, the fields have their limits for V -> 0.  At times that
+        the motion did not reach everything is NaN, and ``full_slip`` False.
 
         Parameters
         ----------
@@ -184,7 +184,7 @@ class Motion(RollResult):
         return self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Title and rows of the printed report."""
+        """Return title and rows of the printed report."""
         rows = [self._row_of_times()]
         rows += [
             SummaryRow(name, _describe_values(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
@@ -206,7 +206,7 @@ class Motion(RollResult):
         return "Motion", [*rows, SummaryRow("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})")]
 
     def at(self, t: ArrayLike) -> Motion:
-        """The same motion at other times within [0, end], by the dense output of the steps.
+        """Return the same motion at other times within [0, end], by the dense output of the steps.
 
         Parameters
         ----------
@@ -249,7 +249,7 @@ class Motion(RollResult):
         return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes.
+        """Return the dataset over t with V, omega, x, angle, delta and regime, and the scene as attributes.
 
         Examples
         --------
@@ -268,6 +268,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
 
     problem: checked problem of one motion.
     times: output times, ascending, in the unit of its roller; the motion is integrated to its end in any case.
+    Returns the :class:`Motion`.
     """
     scale, end = problem.roller.scale, problem.end
     T, t = scale["t"], np.minimum(times / scale["t"], end)
@@ -291,9 +292,9 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
 
 
 def _describe_values(t: NDArray, values: NDArray) -> str:
-    """Describe values over time: the first, the last that was reached, and the largest between them with its time.
+    """Return a text on values over time: the first, the last that was reached, the largest between them with its time.
 
-    t, values: (times,); NaN where the motion did not get.
+    t, values: times and values, (times,); values are NaN at times that the motion did not reach.
     """
     if np.isnan(values).all():
         return "not reached"

@@ -60,9 +60,10 @@ def check_function(
     end: last time, in T_ref.
     rtol: relative tolerance of the motion, of which the fit of a callable takes a tenth.
     low: smallest value allowed.
-    resolve: largest spacing of samples, as of :func:`viscoroll.roll`.
+    resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is neither a number, a schedule nor a callable; values that are not finite or below
     ``low``; a callable that polynomials do not follow.
+    Returns the function as :class:`TimeFunction`: a number, an array, a schedule, or a fit as :class:`Piecewise`.
     """
     if isinstance(function, Feedback):
         function = function.value
@@ -99,7 +100,11 @@ def count_corners(function: TimeFunction) -> int:
 
 
 def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
-    """Return a function for some motions, by an index of numpy; itself where it is the same for all."""
+    """Return a function of time for some of the motions; the function itself where it is the same for all.
+
+    function: number, numbers of the motions, schedule or fitted callable.
+    index: index of numpy that selects the motions.
+    """
     if isinstance(function, Piecewise) or count_motions(function) == 1:
         return function
     if isinstance(function, Schedule):
@@ -109,7 +114,10 @@ def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
 
 
 def piecewise(function: TimeFunction) -> Piecewise:
-    """Return a function as polynomials; a schedule is linear between its times, constant outside."""
+    """Return a function of time as piecewise polynomials; a schedule is linear between its times, constant outside.
+
+    function: number, numbers of the motions, schedule or fitted callable; dimensionless.
+    """
     if isinstance(function, Piecewise):
         return function
     if not isinstance(function, Schedule):
@@ -133,8 +141,9 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     """Return the derivative of a prescribed speed.
 
     name: name of the argument, for the refusal.
-    speed: in the unit of the kernels.
+    speed: prescribed speed, dimensionless.
     Raises ParameterError where the speed jumps.
+    Returns :class:`Piecewise`, dimensionless.
     """
     lengths = speed.ends - speed.starts
     first, last = values_at_start(speed.terms), speed.terms.sum(axis=-1)
@@ -158,10 +167,11 @@ def values_at_start(terms: Floats) -> Floats:
 
 
 def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
-    """Return pieces that start at 0 where their first value is rounding, by which a motion would leave rest.
+    """Set the value at the left end of pieces to 0 where it is rounding, as it would move a cylinder at rest.
 
-    terms: (..., terms).
-    rounding: first value divided by the size of the terms that counts as rounding.
+    terms: polynomials, (..., terms).
+    rounding: ratio of that value to the size of the terms below which it is rounding.
+    Returns the polynomials, (..., terms).
     """
     first, size = values_at_start(terms), np.abs(terms).sum(axis=-1)
     shifted = terms.copy()
@@ -220,7 +230,7 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
     """Return the index of the piece that acts at each time: the last that starts by then.
 
     begins: when pieces start, (1 or m, k), ascending, the first at 0.
-    times: (m, n), >= 0.
+    times: times in the unit of ``begins``, (m, n), >= 0.
     Returns (m, n), in 0 ... k - 1.  Takes memory in proportion to its input, and n log k steps.
     """
     if len(begins) == 1:
@@ -234,9 +244,10 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
 def _substitute(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray) -> Floats:
     """Return the terms of polynomials on parts of their pieces, by Horner's scheme with x -> shift + scale x.
 
-    terms: (m, k, terms).
+    terms: coefficients of the polynomials, (m, k, terms).
     first, last: start and end of each piece, (m, k); inf for one without end, which is constant.
     starts, ends: start and end of each part, (m, k).
+    Returns the coefficients on the parts, (m, k, terms).
     """
     endless = np.isinf(last) | (last == first)
     length = np.where(endless, 1.0, last - first)

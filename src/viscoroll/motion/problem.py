@@ -90,11 +90,12 @@ def make_problem(
 
     roller: scene or cylinder.
     start: V0 and omega0 in its units, plain numbers; None where they are prescribed.
-    drive: in its units, plain numbers.
+    drive: loads and prescribed speeds in its units, plain numbers.
     end: last output time, in its unit.
     options: how to integrate.
     single: whether only one motion is allowed.
     Raises ParameterError for everything that :func:`viscoroll.roll` and :func:`viscoroll.ensemble` refuse.
+    Returns the :class:`MotionProblem`.
     """
     acts = drive.acts
     if single:
@@ -108,8 +109,7 @@ def make_problem(
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     try:
         limits, last = controls(rtol, make_dimensionless("rest", rest, scale), max_steps), float(end) / scale["t"]
-        if last == math.inf:
-            refuse_end(float(end), scale["t"])
+        refuse_end(float(end), scale["t"])
         V0, omega0 = make_dimensionless("V0", start[0], scale), make_dimensionless("omega0", start[1], scale)
         spacing = None if resolve is None else make_dimensionless("resolve", resolve, scale)
         prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
@@ -130,8 +130,8 @@ def make_problem(
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """Return whether the added mass acts; raises ParameterError where N, or the part of either body, is not known.
 
-    unsteady: as given.
-    scene: parameters.
+    unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
+    scene: dimensionless parameters of the roller.
     """
     if not check_bool("unsteady", unsteady):
         return False
@@ -145,7 +145,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
 def _standstill_time(rested: Any, units: HasUnits) -> float:
     """Return the time of the standstill before the start, infinite for a long one, in the unit of the roller.
 
-    rested: as given.
+    rested: argument of the caller: a truth value, or a time.
     units: units of the roller.
     Raises ParameterError for what is not one number >= 0.
     """
@@ -160,10 +160,10 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    start: speeds and drive, dimensionless.
-    scene: parameters.
+    start: start speeds and drive, dimensionless.
+    scene: dimensionless parameters of the roller.
     rested: time of the standstill, in T_ref.
-    Returns (V0, omega0, whether the cylinder stays in its indentation).
+    Returns (V0, omega0, whether the cylinder stays in its indentation); the speeds are dimensionless.
     Raises ParameterError for a prescribed speed, or a start in full slip, whose cost is not known.
     """
     if rested == 0.0:
@@ -186,7 +186,7 @@ def integrate(
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """Integrate motions in the kernel.
 
-    count: their number.
+    count: number of motions.
     batch: law, whether bodies differ, kappa, mu, gamma, j, V0, omega0, each one number or (count,).
     drive: drive of the motions as the kernels take it.
     times: output times, ascending, in T_ref.
@@ -203,11 +203,12 @@ def integrate(
 
 
 def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
-    """Integrate one motion; returns all rows (rows, times), and status, steps, switches, onset and rest time.
+    """Integrate one motion.
 
     problem: checked problem of one motion.
     times: output times, ascending, in T_ref.
-    notes: as of :func:`integrate`.
+    notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
+    Returns (all rows, (rows, times); [status, steps, switches, onset time, rest time]), dimensionless.
     """
     scene = problem.scene
     if problem.immobile:
@@ -233,7 +234,7 @@ def integrate_motions(
     starts: V0 and omega0, (n,).
     gamma: time scale of each motion, (n,).
     t: output times, common to all.
-    threads: to use.
+    threads: number of threads; None: all cores available.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss (8, n, times); status, steps, switches, onset
     and rest time (n, 5)).
     """

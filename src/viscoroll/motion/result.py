@@ -66,7 +66,10 @@ class RollResult(Result):
 
         report: validity of the states of the motions.
         roller: roller of the motions.
-        V: speeds in its unit, (times, ...); rolls, x, ends: as of :meth:`.Steadiness.along`.
+        V: speeds in its unit, (times, ...);
+        rolls: where the motions are not in full slip, (times, ...).
+        x: distances travelled, (times, ...); NaN where they are not known.
+        ends: whether the unsteadiness is that of each motion as a whole, else at each time.
         """
         free = FreeRolling.of_scene(roller.scene(), V / roller.scale["V"]).scaled(roller.scale)
         return report._replace(steady=Steadiness.along(free, rolls, x, ends=ends))

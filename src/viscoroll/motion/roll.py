@@ -41,7 +41,7 @@ def roll(
     max_steps: int = 100_000,
     resolve: float | None = None,
 ) -> Motion:
-    """Motion of the cylinder from (V0, omega0), Eq. (22), through all regimes.
+    """Integrate the motion of the cylinder from (V0, omega0), Eq. (22), through all regimes.
 
     Parameters
     ----------

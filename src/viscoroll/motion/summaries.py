@@ -136,7 +136,7 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
 
 
 def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summary:
-    """Return the summary of a block.
+    """Return the summary of the motions of a block, which merges with those of other blocks.
 
     motions: an ensemble.
     names: names of the quantities.
@@ -197,7 +197,9 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
 
     name: name of the quantity.
     histograms: one for each output time, or one.
-    levels, si: as of :func:`summary_dataset`.
+    levels: levels of the quantiles, in [0, 1].
+    si: whether the units are those of a cylinder.
+    Returns name of the variable -> variable of xarray.
     """
     about, times = QUANTITIES[name].about(si), ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))

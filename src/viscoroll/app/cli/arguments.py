@@ -50,7 +50,9 @@ COMMANDS: dict[str, Command] = {}
 def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
     """Return a decorator that adds a function to :data:`COMMANDS`.
 
-    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.  options: as of :class:`Command`.
+    words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.
+    options: options of the command, in the order of its help; a list of them is a group of which one at most may be
+    given.
     """
 
     def add(run: CommandFunction) -> CommandFunction:
@@ -85,6 +87,7 @@ def _numbers_of_member(text: str) -> Any:
     """Return a float, or the array of a range; raise ArgumentTypeError.
 
     text: a member of the list of :func:`numbers`.
+    Returns a float, or an array (n,).
     """
     try:
         low, *rest = text.split(":")
@@ -102,8 +105,9 @@ def _numbers_of_member(text: str) -> Any:
 def roller_of_argument(text: str) -> Any:
     """Return the scene or the cylinder of a TOML file, or the preset of a name.
 
-    text: path of the file, or the name. Raises ParameterError for an unknown preset; FileError for a file that
-    cannot be read, or whose name does not end in .toml.
+    text: path of the file, or the name.
+    Raises ParameterError for an unknown preset; FileError for a file that cannot be read, or whose name does not end in
+    .toml.
     """
     from ...io.config import preset, read_roller
 
@@ -117,11 +121,17 @@ def roller_of_argument(text: str) -> Any:
 def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
     """Return the option of an output file; a path that cannot be written is refused before any work.
 
-    suffixes: allowed suffixes.  name: name of the option; without its dashes it names the argument, "output" for -o.
-    required: whether it must be given.  more: text behind the suffixes in the help.
+    suffixes: allowed suffixes.
+    name: name of the option; without its dashes it names the argument, "output" for -o.
+    required: whether it must be given.
+    more: text behind the suffixes in the help.
     """
 
     def path(text: str) -> Path:
+        """Return the path of an argument; raises ArgumentTypeError for another suffix or a file that cannot be written.
+
+        text: the argument.
+        """
         text = text.rstrip("/") if text.endswith(".zarr/") else text  # as shells complete the name of a folder
         if Path(text).suffix.lower() not in suffixes:
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")

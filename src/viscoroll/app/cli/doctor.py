@@ -25,7 +25,7 @@ _EXTRAS = {"runs": "zarr", "cluster": "distributed"}
 def doctor(arguments: Namespace) -> int:
     """Print the lines of a problem report: versions, cache, threads, a check of the law, packages.
 
-    arguments: none.
+    arguments: parsed command line, not used.
     Returns 1 if a required package is missing, else 0.
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()
@@ -66,7 +66,10 @@ def _lines() -> Iterator[tuple[str, str]]:
 
 
 def _check() -> str:
-    """Return the state of a contact, the time that it took, and the warnings."""
+    """Evaluate one state of the contact, as a check that the package works.
+
+    Returns a line of text: values of the state, the time that the call took, and the warnings that it gave.
+    """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         start = time.perf_counter()

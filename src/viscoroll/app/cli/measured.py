@@ -21,7 +21,7 @@ from .arguments import FIGURES, command, option, output
 def show(arguments: Namespace) -> None:
     """Print the moduli, relaxation modes and creep modes of each material of a file.
 
-    arguments: with file, a TOML file with [material] or [base], or the netCDF of a material.
+    arguments: parsed command line with file, a TOML file with [material] or [base], or the netCDF of a material.
     Raises FileError.
     """
     import pandas as pd
@@ -69,11 +69,11 @@ def show(arguments: Namespace) -> None:
 def fit(arguments: Namespace) -> int:
     """Fit a Prony series to a DMA, print the fit, and write its material if that is wanted.
 
-    arguments: data, units, column, decimal, encoding and mode, as of :func:`viscoroll.read_dma`; temperature,
-    reference, on, modes and misfit, as of :func:`viscoroll.fit_prony`; wlf, three numbers with commas between; nu
-    and name of the material; output, a .toml or .nc path or None; force, whether to write a fit that misses the
-    misfit. Returns 1 if the fit misses the misfit, or has an error above 5 %, and force is not given; else 0. Raises
-    ParameterError and FileError.
+    arguments: parsed command line with data, units, column, decimal, encoding and mode, as of
+    :func:`viscoroll.read_dma`; temperature, reference, on, modes and misfit, as of :func:`viscoroll.fit_prony`; wlf,
+    three numbers with commas between; nu and name of the material; output, a .toml or .nc path or None; force, whether
+    to write a fit that misses the misfit. Returns 1 if the fit misses the misfit, or has an error above 5 %, and force
+    is not given; else 0. Raises ParameterError and FileError.
     """
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
@@ -107,7 +107,7 @@ def fit(arguments: Namespace) -> int:
 
 
 def _columns(texts: list[str] | None) -> dict[str, str]:
-    """Return quantity -> heading of the options --column; raise ParameterError.
+    """Return the options --column as a dict, quantity -> heading; raise ParameterError for another form.
 
     texts: the options, each "NAME=HEADING"; None without.
     """
@@ -142,8 +142,9 @@ def _wlf(text: str) -> vr.WLF:
 def identify(arguments: Namespace) -> None:
     """Fit the unknowns of a cylinder to measurements, print the report, and write report and figure if wanted.
 
-    arguments: file, a TOML file of measurements; robust, starts and seed, as of :func:`viscoroll.identify`; output,
-    a .txt, .json or .nc path or None; plot, path of a figure or None. Raises ParameterError and FileError.
+    arguments: parsed command line with file, a TOML file of measurements; robust, starts and seed, as of
+    :func:`viscoroll.identify`; output, a .txt, .json or .nc path or None; plot, path of a figure or None. Raises
+    ParameterError and FileError.
     """
     from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     """Print or write a result by its ``to_xarray`` and ``to_pandas``.
 
-    arguments: parsed arguments with output and format.  result: a result of the library.  heading: first line of the
-    text; default: the title of the data.
+    arguments: parsed arguments with output and format.
+    result: a result of the library.
+    heading: first line of the text; default: the title of the data.
     Raises FileError as :func:`deliver`.
     """
     import numpy as np
@@ -37,8 +38,11 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
 def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading: str) -> None:
     """Print a table in the required format, or write it or the dataset in the format of the suffix.
 
-    arguments: with output (a path or None) and format.  data: for netCDF, and the meanings of its variables.
-    frame: the same as a table.  heading: first line of the text.  Raises FileError if the file cannot be written.
+    arguments: parsed command line with output (a path or None) and format.
+    data: dataset for netCDF, which has the meanings of the variables.
+    frame: the same as a table.
+    heading: first line of the text.
+    Raises FileError if the file cannot be written.
     """
     path = arguments.output
     suffix = arguments.format if path is None else path.suffix.lower()[1:]
@@ -62,7 +66,8 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
 def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
     """Return a table as aligned columns below a heading.
 
-    frame: the table; without rows the heading stands alone.  heading: first lines.
+    frame: the table; without rows the heading stands alone.
+    heading: first lines.
     meanings: name -> meaning; with these a single row is printed as one line for each number.
     """
     if frame.empty:

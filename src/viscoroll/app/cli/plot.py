@@ -24,7 +24,7 @@ _SPEEDS = 301
 def plot(arguments: Namespace) -> None:
     """Draw a file and write the figure.
 
-    arguments: what, path of the file, a .nc, .toml or .zarr; output, path of the figure.
+    arguments: parsed command line with what, path of the file, a .nc, .toml or .zarr; output, path of the figure.
     Raises ParameterError for another suffix, FileError for a file that cannot be read or written.
     """
     from ...core.plots.style import save
@@ -61,7 +61,8 @@ def _figure_of_netcdf(path: str) -> Any:
 def _figure_of_toml(path: str) -> Any:
     """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material.
 
-    path: path of a TOML file.  Raises FileError.
+    path: path of a TOML file.
+    Raises FileError.
     """
     import numpy as np
 

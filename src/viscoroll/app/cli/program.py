@@ -43,7 +43,7 @@ class Parser(argparse.ArgumentParser):
         # argparse takes a value like -1:1:5 or -1e-3 for an option unless it matches this
         self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
         for kind, words in ((float, "a number"), (int, "a whole number")):
-            self.register("type", kind, partial(_converted, kind, words))
+            self.register("type", kind, partial(_convert_argument, kind, words))
         self.register("action", None, _StoreOnce)
 
     def error(self, message: str) -> NoReturn:
@@ -59,9 +59,12 @@ class _StoreOnce(argparse.Action):
         """Store the value of an option or a positional argument; raise ArgumentError where the option had one
         before.
 
-        parser: not used.  namespace: values of all arguments; its ``stored`` is the set of those that have a value.
-        values: the value.  name: name of the option; None of a positional argument.
         The signature is that of ``argparse.Action``.
+
+        parser: not used.
+        namespace: values of all arguments; its ``stored`` is the set of those that have a value.
+        values: the value.
+        name: name of the option; None of a positional argument.
         """
         stored = vars(namespace).setdefault("stored", set())
         if name is not None and self.dest in stored:
@@ -70,10 +73,12 @@ class _StoreOnce(argparse.Action):
         setattr(namespace, self.dest, values)
 
 
-def _converted(kind: type, words: str, text: str) -> Any:
-    """Return the value of an argument.
+def _convert_argument(kind: type, words: str, text: str) -> Any:
+    """Convert the text of an argument to a value; raises ArgumentTypeError where that fails.
 
-    kind: its type.  words: the type in words, for the error.  text: the argument.
+    kind: type of the value.
+    words: the type in words, for the error.
+    text: the argument.
     """
     try:
         return kind(text)
@@ -111,9 +116,10 @@ def parser() -> Parser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the program and return its exit code.
+    """Run the program.
 
     argv: arguments; default: those of the process.
+    Returns the exit code: 0 success, 1 a check failed, 2 an error.
     """
     if sys.stdout is None:  # closed by the shell
         sys.stdout = io.StringIO()
@@ -139,10 +145,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(argv: Sequence[str]) -> int:
-    """Parse the arguments, run the command and return its exit code.
+    """Parse the arguments and run the command.
 
     argv: the words of the command line without the name of the program.
-    Raises what the command raises; UsageError where the line does not parse.
+    Returns the exit code of the command, 0 or 1.  Raises what the command raises; UsageError where the line does not
+    parse.
     """
     try:
         arguments = parser().parse_args(argv)
@@ -159,7 +166,9 @@ def _run(argv: Sequence[str]) -> int:
 def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """Print a warning in one line.
 
-    message: the warning.  Other arguments are not used: the signature is that of ``warnings.showwarning``.
+    Other arguments are not used: the signature is that of ``warnings.showwarning``.
+
+    message: the warning.
     """
     _print_line(f"warning: {message}")
 
@@ -188,7 +197,8 @@ def _print_line(message: object) -> None:
 def _discard(stream: TextIO) -> None:
     """Discard the buffer and all further text of a stream that cannot be written.
 
-    stream: standard output or standard error.
     The interpreter would try to write it at its end, and exit with its own code.
+
+    stream: standard output or standard error.
     """
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -25,8 +25,8 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
 def ensemble(arguments: Namespace) -> None:
     """Roll the motions of a run file and print their summaries; without a store estimate time and memory.
 
-    arguments: run_file, a TOML file; output, folder of the results or None; cluster and threads, as of
-    :func:`viscoroll.runs.run_ensemble`.
+    arguments: parsed command line with run_file, a TOML file; output, folder of the results or None; cluster and
+    threads, as of :func:`viscoroll.runs.run_ensemble`.
     Raises ParameterError and FileError.
     """
     run = vr.runs.read_run(arguments.run_file)
@@ -51,7 +51,7 @@ def ensemble(arguments: Namespace) -> None:
 def verify(arguments: Namespace) -> int:
     """Compare the files of a results store with their SHA-256 and print the verdict.
 
-    arguments: store, folder of the results.
+    arguments: parsed command line with store, folder of the results.
     Returns 1 if a file differs or is missing, else 0.  Raises FileError for a folder that is no store.
     """
     verdict = vr.runs.verify(arguments.store)
@@ -68,7 +68,8 @@ def verify(arguments: Namespace) -> int:
 def sensitivity(arguments: Namespace) -> None:
     """Compute the Sobol indices of a run file, and print or write them.
 
-    arguments: run_file, a TOML file; n, number of base points; output and format, as of :func:`.output.deliver`.
+    arguments: parsed command line with run_file, a TOML file; n, number of base points; output and format, as of
+    :func:`.output.deliver`.
     Raises ParameterError and FileError.
     """
     from ...io.runs.sensitivity import sobol_indices, table

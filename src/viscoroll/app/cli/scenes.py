@@ -37,8 +37,8 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 def contact(arguments: Namespace) -> None:
     """Print or write the state of the contact for all pairs of speed and creepage.
 
-    arguments: scene, a file or a preset; V, and delta or omega, each a number or a vector; output and format, as of
-    :func:`.output.deliver`.
+    arguments: parsed command line with scene, a file or a preset; V, and delta or omega, each a number or a vector;
+    output and format, as of :func:`.output.deliver`.
     Raises ParameterError and FileError.
     """
     import numpy as np
@@ -52,8 +52,8 @@ def contact(arguments: Namespace) -> None:
 def stress(arguments: Namespace) -> None:
     """Print or write pressure and shear stress at positions from one end of the contact to the other.
 
-    arguments: scene, a file or a preset; V, and delta or omega, numbers; output and format, as of
-    :func:`.output.deliver`.
+    arguments: parsed command line with scene, a file or a preset; V, and delta or omega, numbers; output and format, as
+    of :func:`.output.deliver`.
     Raises ParameterError and FileError.
     """
     import numpy as np
@@ -79,8 +79,8 @@ def stress(arguments: Namespace) -> None:
 def roll(arguments: Namespace) -> None:
     """Integrate a motion without a drive, and print or write it.
 
-    arguments: scene, a file or a preset; V0 and omega0, start speeds; t, output times; output and format, as of
-    :func:`.output.deliver`.
+    arguments: parsed command line with scene, a file or a preset; V0 and omega0, start speeds; t, output times; output
+    and format, as of :func:`.output.deliver`.
     Raises ParameterError and FileError.
     """
     with warnings.catch_warnings():
@@ -104,9 +104,11 @@ def roll(arguments: Namespace) -> None:
 def steady(arguments: Namespace) -> None:
     """Print or write the equilibria of rolling under each load, and why a load has none.
 
-    arguments: scene, a file or a preset; force, torque, slope and V, numbers, vectors or None; output and format, as
-    of :func:`.output.deliver`. Raises ParameterError and FileError.  A load without an equilibrium is a warning
-    where the output is no text.
+    A load without an equilibrium is a warning where the output is no text.
+
+    arguments: parsed command line with scene, a file or a preset; force, torque, slope and V, numbers, vectors or None;
+    output and format, as of :func:`.output.deliver`.
+    Raises ParameterError and FileError.
     """
     import numpy as np
 
@@ -130,7 +132,8 @@ def steady(arguments: Namespace) -> None:
 def validity(arguments: Namespace) -> None:
     """Print which assumptions of the model hold.
 
-    arguments: scene, a file or a preset; V, speed of the axis; omega, angular velocity or None.
+    arguments: parsed command line with scene, a file or a preset; V, speed of the axis; omega, angular velocity or
+    None.
     Raises ParameterError and FileError.
     """
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

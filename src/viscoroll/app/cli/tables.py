@@ -46,7 +46,8 @@ def _print_size(path: Path) -> None:
 def law(arguments: Namespace) -> None:
     """Write the law of a material, pair or cover, or of every alpha of a range.
 
-    arguments: file, of the material, or None; alpha, (low, high), or None; output, path whose suffix is the format.
+    arguments: parsed command line with file, of the material, or None; alpha, (low, high), or None; output, path whose
+    suffix is the format.
     Raises ParameterError and FileError.
     """
     from ...io.config import read_law_source
@@ -68,8 +69,8 @@ def law(arguments: Namespace) -> None:
 def build(arguments: Namespace) -> None:
     """Compute a grid of the contact and write it.
 
-    arguments: scene, a file or a preset; V, delta and alpha, nodes of the axes, alpha perhaps None; method, "table"
-    or "direct"; output, path whose suffix is the format. Raises ParameterError and FileError.
+    arguments: parsed command line with scene, a file or a preset; V, delta and alpha, nodes of the axes, alpha perhaps
+    None; method, "table" or "direct"; output, path whose suffix is the format. Raises ParameterError and FileError.
     """
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
     vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
@@ -80,7 +81,8 @@ def build(arguments: Namespace) -> None:
 def info(arguments: Namespace) -> None:
     """Print what a table file contains.
 
-    arguments: file, path of a law or a grid.  Raises FileError.
+    arguments: parsed command line with file, path of a law or a grid.
+    Raises FileError.
     """
     print(vr.tables.info(arguments.file))
 
@@ -91,7 +93,7 @@ def info(arguments: Namespace) -> None:
 def validate(arguments: Namespace) -> int:
     """Check a table file at random points and print the differences.
 
-    arguments: file, path of a law or a grid; n, number of points.
+    arguments: parsed command line with file, path of a law or a grid; n, number of points.
     Returns 1 if an error is larger than the file states, else 0.  Raises ParameterError and FileError.
     """
     from ...io.tables.check import Report, check_table
@@ -106,7 +108,7 @@ def validate(arguments: Namespace) -> int:
 def export(arguments: Namespace) -> None:
     """Write the results of a run, or a table, in another format.
 
-    arguments: file, a results store or a table file; output, path whose suffix is the format.
+    arguments: parsed command line with file, a results store or a table file; output, path whose suffix is the format.
     Raises ParameterError for a suffix that the content does not have, and FileError.
     """
     path = arguments.output
@@ -131,9 +133,11 @@ def export(arguments: Namespace) -> None:
 def fmu(arguments: Namespace) -> None:
     """Build an FMU of a cylinder or a law.
 
-    arguments: file, of a cylinder, a material or a law; model, "Roller" or "ContactElement"; fmi, 2 or 3; output,
-    path of the FMU. Raises ParameterError, FileError and MissingDependencyError.  A dimensionless scene gives its
-    law alone, with a warning.
+    A dimensionless scene gives its law alone, with a warning.
+
+    arguments: parsed command line with file, of a cylinder, a material or a law; model, "Roller" or "ContactElement";
+    fmi, 2 or 3; output, path of the FMU.
+    Raises ParameterError, FileError and MissingDependencyError.
     """
     from ...core.sections import read_toml
     from ...io.config import SCENES, read_law_source, read_roller

@@ -16,7 +16,7 @@ from .arguments import command
 def warm_up(arguments: Namespace) -> None:
     """Compile all kernels into the cache by small calls, with a progress bar.
 
-    arguments: none.
+    arguments: parsed command line, not used.
     """
     from tqdm import tqdm
 

@@ -29,7 +29,7 @@ class Column(NamedTuple):
     name : name of its quantity, a key of :data:`.vocabulary.UNITS`.
     mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
     log : whether its numbers are logarithms to base 10.
-    unit : in which its numbers are.
+    unit : unit in which its numbers are.
     stated : whether the file or the user gives the unit, or it is assumed.
     """
 
@@ -53,7 +53,7 @@ def columns_of(
 ) -> tuple[list[Column], dict[str, str]]:
     """Find the columns whose quantity is known.
 
-    table : with headings.
+    table : table with headings.
     named : quantity -> heading, of columns that the user named.
     overruling : quantity -> unit that overrules the file.
     defaults : quantity -> unit where the file gives none.
@@ -111,10 +111,11 @@ def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
 
 
 def numbers_of(table: Table, column: Column) -> Numbers:
-    """Return the numbers of a column's quantity in rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
+    """Return the numbers of a column in the unit of its quantity: rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
 
     table : the table that has the column.
     column : a column whose quantity is known.
+    Returns :class:`Numbers`, (n,): the values, and half of the last digit that the file states of each.
     Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed.
     """
     name, unit = column.name, column.unit

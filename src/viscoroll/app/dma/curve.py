@@ -149,7 +149,7 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     """Check columns and sort them by the first.
 
     kind : :class:`Curve` or :class:`Relaxation`.
-    columns : its fields by the names under which they were given, in their order.
+    columns : fields of the curve by the names under which the caller gave them, in the order of ``kind``.
     fewest : least number of points.
     Returns the curve.
 
@@ -181,11 +181,12 @@ def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int 
 
 
 def thinned(data: _Data) -> _Data:
-    """Return the means of logarithmic bins where there are more than :data:`MOST_POINTS`, else the data as they are.
+    """Average a curve of more than :data:`MOST_POINTS` points in logarithmic bins; return a shorter curve as it is.
+
+    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of measurement that is 0
+    on average stays so.
 
     data : a curve.
-    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of
-    measurement that is 0 on average stays so.
     """
     x = np.log(data[0])
     if x.size <= MOST_POINTS:
@@ -202,7 +203,7 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     """Compare the loss modulus with the local form of the Kramers-Kronig relations, E'' = (pi/2) dE'/d ln omega.
 
     curve : storage and loss modulus.
-    Returns the ratio of both sides at each point.
+    Returns :class:`KramersKronig`, the ratio of both sides at each point.
 
     The form is exact for a power law in the limit of small exponents, and good where E' bends little within a decade
     (H. C. Booij and G. P. J. M. Thoone, Rheologica Acta 21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is

@@ -63,7 +63,10 @@ class DynamicModuli(Result):
         return self.temperature is None or float(np.ptp(self.temperature)) <= SAME_TEMPERATURE
 
     def __iter__(self) -> Iterator[Floats]:
-        """omega, storage, loss; with a warning where temperatures or shear would be lost by that."""
+        """Yield omega, storage and loss, so that ``omega, storage, loss = read_dma(path)`` works; three arrays (n,).
+
+        Warns where the record has temperatures or moduli of shear, which these three arrays do not state.
+        """
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
             text = (
@@ -84,7 +87,7 @@ class DynamicModuli(Result):
         return super().__getitem__(name)
 
     def to_xarray(self) -> xr.Dataset:
-        """All columns over ``point``, with their units; mode, source and notes as attributes.
+        """Return all columns over ``point`` as a dataset, with their units; mode, source and notes are attributes.
 
         Examples
         --------
@@ -101,7 +104,7 @@ class DynamicModuli(Result):
         return xr.Dataset(data, attrs=about)
 
     def _figure(self) -> Figure:
-        """Both moduli over angular frequency."""
+        """Return the figure of storage and loss modulus over angular frequency, both axes logarithmic."""
         from ...core.plots.style import new_figure
 
         figure, axes = new_figure(f"{self.source or 'Dynamic moduli'}, {self.mode}")
@@ -111,7 +114,7 @@ class DynamicModuli(Result):
         return figure
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """What was understood, in three lines: the points, the columns they are from, the notes."""
+        """Return title and rows of the printed report: the points, the columns that they are from, the notes."""
         words = [f"{self.omega.size} points", f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s"]
         words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")
         if self.temperature is not None:

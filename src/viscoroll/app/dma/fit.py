@@ -209,10 +209,11 @@ def _mode(mode: Any) -> Mode:
 def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
     """Fit a series to measured moduli.
 
-    curve : all that was measured.
-    modes, misfit : as of :func:`fit_prony`.
-    Returns (the data that were fitted, the fields of a fit that are of its data and its series, the root mean square
-    of the relative errors of each modulus).
+    curve : measured moduli over frequency or time, all points.
+    modes : largest number of modes; None: as few as the misfit needs.
+    misfit : root mean square of the relative errors that each modulus may have.
+    Returns (the data that were fitted, perhaps thinned; the fields of a fit that state its data and its series, by
+    name; the root mean square of the relative errors of each modulus).
     """
     target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)

@@ -17,8 +17,9 @@ _NU = 0.49
 
 
 def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
-    """Return the title and the lines that ``print(fit)`` shows of a
-    :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    """Return the title and the lines that ``print(fit)`` shows.
+
+    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
@@ -27,7 +28,7 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 
 
 def _rows(fit: Any) -> Iterator[SummaryRow]:
-    """Yield the lines of the report below its title.
+    """Yield the lines of the report below its title, as :class:`SummaryRow`.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """
@@ -45,6 +46,8 @@ def _rows(fit: Any) -> Iterator[SummaryRow]:
         yield SummaryRow(
             "thinned", f"the means of {fit.data[0].size} logarithmic bins replace the points, here and below"
         )
+    target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
+    yield SummaryRow("misfit", f"{fit.misfit_text(2)} (rms, relative); {target}")
     yield from fit._rows()
     yield SummaryRow("outside", _outside(fit))
     yield SummaryRow("wider", "fits with a wider range of times, two times per decade:")
@@ -63,13 +66,9 @@ def symbol_of(fit: Any) -> str:
 
 
 def of_dynamic(fit: Any) -> list[SummaryRow]:
-    """Return the lines on misfit, Kramers-Kronig and shifts of a ``fit``, a :class:`viscoroll.Fit`."""
+    """Return the lines on Kramers-Kronig and shifts of a ``fit``, a :class:`viscoroll.Fit`."""
     symbol = symbol_of(fit)
-    misfit = f"{fit.misfit.storage:.2%} in {symbol}', {fit.misfit.loss:.2%} in {symbol}'' (rms, relative)"
-    rows = [
-        SummaryRow("misfit", misfit + _target(fit)),
-        SummaryRow(f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)),
-    ]
+    rows = [SummaryRow(f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol))]
     if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
         return rows
     factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
@@ -90,18 +89,10 @@ def of_dynamic(fit: Any) -> list[SummaryRow]:
 
 
 def of_relaxation(fit: Any) -> list[SummaryRow]:
-    """Return the lines on the misfit of a ``fit``, a :class:`viscoroll.RelaxationFit`."""
+    """Return the line on the error of the loss modulus of a ``fit``, a :class:`viscoroll.RelaxationFit`."""
     symbol = symbol_of(fit)
-    misfit = f"{fit.misfit:.2%} in {symbol}(t) (rms, relative){_target(fit)}"
-    return [
-        SummaryRow("misfit", misfit),
-        SummaryRow("", f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more"),
-    ]
-
-
-def _target(fit: Any) -> str:
-    """Return the words on the misfit that was requested."""
-    return f"; target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
+    text = f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more"
+    return [SummaryRow("", text)]
 
 
 def _kramers_kronig(median: float, symbol: str) -> str:

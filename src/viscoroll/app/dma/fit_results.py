@@ -14,14 +14,14 @@ from ...contact_law.validity.assumptions import Assumption, assess_measured_band
 from ...core.array_types import Booleans, Floats, Numbers
 from ...core.checks import check_array
 from ...core.errors import ParameterError
-from ...core.plots.measurements import moduli_fit, relaxation_fit
+from ...core.plots.measurements import series_fit
 from ...core.results import Result, SummaryRow
 from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 from .curve import UNITS, Curve, KramersKronig, Relaxation
-from .fit_report import of_dynamic, of_relaxation, summarize_fit
+from .fit_report import of_dynamic, of_relaxation, summarize_fit, symbol_of
 from .master_curve import Shifts
 from .spectrum import FLOOR, Data, spectrum_of
 
@@ -83,6 +83,17 @@ class SeriesFit(Result):
         raise NotImplementedError
 
     @property
+    def symbols(self) -> list[str]:
+        """Symbols of the measured moduli: E' and E'', or E(t); G in place of E where they are of shear."""
+        signs = ["(t)"] if self.data._fields[0] == "t" else ["'", "''"]
+        return [symbol_of(self) + sign for sign in signs]
+
+    def misfit_text(self, digits: int) -> str:
+        """Return the misfit of each modulus in per cent with a number of ``digits`` behind the decimal point."""
+        pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
+        return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
+
+    @property
     def largest_misfit(self) -> float:
         """The misfit; of storage and loss the larger one."""
         return float(np.max(self.misfit))
@@ -99,7 +110,8 @@ class SeriesFit(Result):
 
     @cached_property
     def wider(self) -> tuple[Any, ...]:
-        """Fits on grids of times one and two decades wider on either side, no time left out.
+        """Return two fits on grids of times that are one and two decades wider on either side, with a mode at every
+        time.
 
         For each ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose transit times lie within
         the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.ExtendedGridFit`).  They are
@@ -120,14 +132,17 @@ class SeriesFit(Result):
     def material(
         self, nu: float = 0.49, *, name: str = "", density: float | None = None, thickness: float | None = None
     ) -> Material:
-        """The fit as a :class:`viscoroll.Material`, ``measured`` and ``temperature`` with it; of data in Pa.
+        """Return the fit as a :class:`viscoroll.Material` with its ``measured`` band and ``temperature``; the data must
+        be in Pa.
 
         A shear modulus becomes Young's by E = 2 (1 + nu) G; ``measured.source`` then says so.
 
         Parameters
         ----------
         nu : Poisson's ratio, constant in time.
-        name, density, thickness : as there; density in kg/m^3, thickness in m.
+        name : name of the material, free text.
+        density : density, kg/m^3; None: not known.
+        thickness : thickness of the layer, m; None for a half-space.
 
         Raises
         ------
@@ -203,7 +218,9 @@ class SeriesFit(Result):
         return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 
     def to_xarray(self) -> xr.Dataset:
-        """Data and fit over omega or t, the series over ``mode``, and the constants as attributes."""
+        """Return a dataset of data and fit over omega or t, of the series over ``mode``, and of the constants as
+        attributes.
+        """
         import xarray as xr
 
         x, *names = self.data._fields
@@ -216,7 +233,7 @@ class SeriesFit(Result):
         about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
         return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
 
-    _summary = summarize_fit
+    _summary, _figure = summarize_fit, series_fit
 
     def _rows(self) -> list[SummaryRow]:
         """Return the lines of the report on misfit and data."""
@@ -261,8 +278,9 @@ class Fit(SeriesFit):
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
         """Return storage and loss modulus of the fit in the unit of the data, of the shape of ``omega``.
 
-        omega : angular frequencies, rad/s.
         They are E' and E'', or G' and G'' where ``mode`` is "shear".
+
+        omega : angular frequencies, rad/s.
 
         Examples
         --------
@@ -275,7 +293,7 @@ class Fit(SeriesFit):
         storage, loss = self._moduli(omega)
         return storage, loss
 
-    _rows, _figure = of_dynamic, moduli_fit
+    _rows = of_dynamic
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -325,4 +343,4 @@ class RelaxationFit(SeriesFit):
         """
         return self._moduli(t)[0]
 
-    _rows, _figure = of_relaxation, relaxation_fit
+    _rows = of_relaxation

@@ -66,7 +66,7 @@ def master_curve(
     shift: ArrayLike | Callable[[float], float] | None,
     on: Literal["both", "storage"] = "both",
 ) -> tuple[Curve, Shifts]:
-    """All points at the reference temperature, frequencies times a_T.
+    """Shift the curves of several temperatures to one, by frequencies times a_T.
 
     Parameters
     ----------
@@ -75,6 +75,10 @@ def master_curve(
     reference : degrees Celsius; default: where a given shift is 1, else the middle one of the curves.
     shift : factors in the order of the curves, a function of the temperature, or None: by the overlap of neighbours.
     on : the moduli by whose overlap shifts are found.
+
+    Returns
+    ------- tuple
+        The master curve, a :class:`Curve` at the reference temperature; the :class:`Shifts` of the temperatures.
 
     Raises
     ------
@@ -141,8 +145,9 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
 
     curves : one for each temperature, the coldest first.
     temperatures : temperatures of the curves, degrees Celsius.
-    Returns (ln a_T over the coldest, the mismatch of neighbours,
-    their decades of freedom); raises ParameterError for neighbours that do not overlap.
+    Returns (ln a_T of each curve relative to the coldest, (curves,); mean square mismatch of each pair of neighbours,
+    (curves - 1,); decades by which the shift of each pair may vary, (curves - 1,)).
+    Raises ParameterError for neighbours that do not overlap.
     """
     found = [_align(*pair) for pair in pairwise(curves)]
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):

@@ -41,14 +41,14 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
     ParameterError
         If no grid of times leaves a long-time modulus.
     """
-    starts = _starts(data, None if modes else target)
+    starts = _fit_wider_grids(data, None if modes else target)
     if not starts:
         raise data.fluid
     limit = _NEAR_BEST * min(_size(data, spectrum) for spectrum, _ in starts)
-    reached = any(_reaches(data, spectrum, target) for spectrum, _ in starts)
+    reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)
 
     def good(tried: Spectrum) -> bool:
-        return _reaches(data, tried, target) if reached else _size(data, tried) <= limit
+        return _reaches_target(data, tried, target) if reached else _size(data, tried) <= limit
 
     fewest = modes or 1
     enough = (start for start in starts if (good(start[0]) if modes is None else start[0].tau.size >= modes))
@@ -60,16 +60,18 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
         spectrum = fewer
     last = refined(data, spectrum, ends, _LAST_CALLS)
     spectrum = last if modes is not None or good(last) else spectrum
-    return spectrum, ends, _reaches(data, spectrum, target)
+    return spectrum, ends, _reaches_target(data, spectrum, target)
 
 
-def _starts(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:
+def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:
     """Fit spectra on wider and wider, denser and denser grids of times until one reaches the target.
 
+    The slow end of a grid is shortened until the fit has a long-time modulus.
+
     data : the curve.
-    target : largest misfit of each row; None: all grids.
-    Returns pairs of a spectrum and the ends of its grid.  The
-    slow end of a grid is shortened until there is a long-time modulus.
+    target : largest misfit of each row, dimensionless; None: all grids are fitted.
+    Returns [(spectrum, (shortest, longest time of its grid)), ...], in the order of the grids; the last reaches the
+    target.
     """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
     low, high = data.band
@@ -79,7 +81,7 @@ def _starts(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[floa
             if ends[1] > ends[0] and has_plateau(data, found := on_times(data, grid_of_times(ends, density))):
                 starts.append((refined(data, found, ends, _CALLS), ends))
                 break
-        if target is not None and starts and _reaches(data, starts[-1][0], target):
+        if target is not None and starts and _reaches_target(data, starts[-1][0], target):
             break
     return starts
 
@@ -87,14 +89,15 @@ def _starts(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[floa
 def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
     """Return times from the longest down, both ends among them.
 
-    ends : shortest and longest time.
-    density : times a decade.
+    ends : shortest and longest time, s.
+    density : number of times in a decade.
+    Returns times in equal ratios, s, shape (times,).
     """
     decades = math.log10(ends[1] / ends[0])
     return np.geomspace(ends[1], ends[0], max(2, 1 + round(decades * density)))
 
 
-def _reaches(data: Data, spectrum: Spectrum, target: float) -> bool:
+def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
     """Return whether no row of the data has a misfit above the target.
 
     data : the curve.
@@ -112,12 +115,12 @@ def _size(data: Data, spectrum: Spectrum) -> float:
 def _leave_out_mode(
     data: Data, spectrum: Spectrum, ends: tuple[float, float], good: Callable[[Spectrum], bool] | None
 ) -> Spectrum | None:
-    """Return the best spectrum with one mode less, None if none of the best candidates, refined, is acceptable.
+    """Return a spectrum with one mode less; None if none of the best candidates, with refined times, is acceptable.
 
     data : the curve.
-    spectrum : the spectrum from which a mode is left out.
+    spectrum : spectrum of the curve from which a mode is left out.
     ends : shortest and longest time that is allowed.
-    good : whether a spectrum is acceptable; None: any is.
+    good : function that returns whether a spectrum is acceptable; None: any is.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
@@ -130,9 +133,10 @@ def _leave_out_mode(
 
 
 def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
-    """Return lists of times with one left out, or with two neighbours at their mean time.
+    """Return the candidates for one mode less: times with one left out, or with two neighbours replaced by their mean.
 
-    spectrum : the spectrum; means are of the logarithms of its times, weighted by strength.
+    spectrum : the spectrum, of n modes; means are of the logarithms of its times, weighted by strength.
+    Returns a list of 2 n - 1 arrays of times, s, shape (n - 1,) each.
     """
     tau, strength = spectrum.tau, spectrum.strength
     without = [np.delete(tau, n) for n in range(tau.size)]

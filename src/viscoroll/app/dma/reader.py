@@ -46,9 +46,8 @@ def read_dma(
         compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
         file without headings are called "column 0", "column 1" ...; three of them are frequency, storage and loss.
     units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
-    -> unit,
-        in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in Pa, with a
-        warning.
+        -> unit, in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in
+        Pa, with a warning.
     decimal : "." or ","; default: the one that the numbers have.
     encoding : encoding of the file; default: by its first bytes.
 
@@ -90,12 +89,14 @@ def read_dma(
     notes = [f"{table.parts} tables"] * (table.parts > 1)
     # as rheometers write; instruments of tension name E
     beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
-    mode, pair, columns_of_quantity = _choose(table, found, others)
+    mode, pair, columns_of_quantity = _choose_columns(table, found, others)
     if not mode:
         mode = "shear" if beside else "tension"
         reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
         notes.append(f"{mode} is assumed, since {reason}")
-    numbers = {quantity: _agreeing(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()}
+    numbers = {
+        quantity: _agreeing_numbers(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()
+    }
     temperature = numbers.get("temperature")
     if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
         temperature = None
@@ -138,9 +139,10 @@ class _Choice(NamedTuple):
 
 
 def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the units by quantity that overrule the file, and those of columns for which the file gives none.
+    """Split the argument ``units`` into those that overrule the file and those that supplement it.
 
-    units : as of :func:`read_dma`.
+    units : argument ``units`` of :func:`read_dma`.
+    Returns (quantity -> unit in place of that of the file, quantity -> unit where the file gives none).
     Raises ParameterError for another form, a unit that is unknown or of another dimension.
     """
     by_name = isinstance(units, Mapping)
@@ -168,7 +170,7 @@ def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
     return len(quantities) > 1 or not set(named.values()).isdisjoint(filter(None, cells))
 
 
-def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
+def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
     """Choose the columns that are read.
 
     table : the table that has the columns; the message lists its headings.
@@ -176,6 +178,7 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
     others : headings of the other columns, and why they are left out; those of another mode or kind than the pair, and
         measured frequencies beside reduced ones, are added.
     Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
+    Returns the :class:`_Choice`.
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
     quantities = {column.quantity for column in found}
@@ -201,7 +204,7 @@ def _choose(table: Table, found: list[Column], others: dict[str, str]) -> _Choic
     raise FileError(table.path, f"no column was found for {missing}{problems}; headings: {headings}; give columns=")
 
 
-def _agreeing(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
+def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
     """Return the numbers of the first of several columns of one quantity; the others must agree with it.
 
     table : the table that has the columns.

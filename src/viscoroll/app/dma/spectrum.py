@@ -45,19 +45,18 @@ def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
 
     prony : strengths divided by the long-time modulus, times over T_ref.
     E : long-time modulus.
-    T_ref : time that those of the series are counted in, s.
+    T_ref : unit of the times of the series, s.
     """
     return Spectrum(E, prony.E * E, prony.tau * T_ref)
 
 
-def _relative(data: Data, constant: float, modes: Floats) -> Floats:
-    """Return the columns of the least squares: the responses of a constant and of modes, divided by the measured
-    moduli.
+def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
+    """Return the matrix of the least squares: responses of a constant and of modes, divided by the measured moduli.
 
-    data : the curve.
-    constant : long-time modulus.
-    modes : responses of modes in each row, shape (rows, n, modes).
-    Returns shape (rows n, 1 + modes).
+    data : the curve, with ``rows`` moduli at n points.
+    constant : long-time modulus, in the unit of the data.
+    modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
+    Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
     """
     found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
     found[..., 0], found[..., 1:] = np.multiply(constant, data.constant)[:, None], modes
@@ -70,9 +69,10 @@ def _residuals(data: Data, values: Floats) -> Floats:
 
     data : the curve.
     values : long-time modulus, strengths, times; shape (1 + 2 modes,).
+    Returns shape (rows n,), dimensionless.
     """
     count = values.size // 2
-    return _relative(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
+    return _relative_columns(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
 
 
 def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
@@ -80,6 +80,7 @@ def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
 
     data : the curve.
     spectrum : the fit.
+    Returns a number for each row, dimensionless.
     """
     errors = _residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(len(data.constant), -1)
     return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
@@ -94,7 +95,7 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
     """
     from scipy.optimize import nnls
 
-    columns, floor = _relative(data, 1.0, data.responses(tau)), _floor(data)
+    columns, floor = _relative_columns(data, 1.0, data.responses(tau)), _least_modulus(data)
     size = np.sqrt((columns * columns).sum(axis=0))
     found, _ = nnls(columns / size, 1.0 - floor * columns[:, 0], maxiter=100 * size.size)
     order = np.argsort(-tau, kind="stable")
@@ -105,14 +106,14 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
 def has_plateau(data: Data, spectrum: Spectrum) -> bool:
     """Return whether the least squares give a long-time modulus above the least that is allowed."""
-    return spectrum.E > 1.0001 * _floor(data)
+    return spectrum.E > 1.0001 * _least_modulus(data)
 
 
 def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
     """Refine a spectrum by varying its times too.
 
-    data : the curve.
-    spectrum : the start.
+    data : the measured moduli.
+    spectrum : spectrum from which the search starts.
     ends : shortest and longest time that is allowed.
     calls : largest number of evaluations of the residuals.
     Returns the refined spectrum.
@@ -122,7 +123,7 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
         return spectrum
     start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
     low, high = start - _RANGE, start + _RANGE
-    low[0], high[0] = np.log(_floor(data)), np.inf
+    low[0], high[0] = np.log(_least_modulus(data)), np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
     return on_times(data, np.exp(_minimize(data, start, low, high, calls)[1 + count :]))
 
@@ -178,6 +179,7 @@ def _normal_matrix(slopes: Floats) -> Floats:
     """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads.
 
     slopes : slopes of the residuals, shape (residuals, unknowns).
+    Returns shape (unknowns, unknowns).
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))
@@ -195,9 +197,9 @@ def _slopes(logs: Floats, data: Data) -> Floats:
     strength, tau = values[1 : 1 + count], values[1 + count :]
     responses = data.responses(tau)
     by_times = data.slopes(tau, responses) * strength
-    return _relative(data, values[0], np.concatenate([responses * strength, by_times], axis=2))
+    return _relative_columns(data, values[0], np.concatenate([responses * strength, by_times], axis=2))
 
 
-def _floor(data: Data) -> float:
+def _least_modulus(data: Data) -> float:
     """Return the least long-time modulus that is allowed, :data:`FLOOR` of the lowest modulus of the first row."""
     return FLOOR * float(data.values[0].min())

@@ -48,14 +48,14 @@ class ExtendedGridFit:
 def fit_on_extended_grid(
     data: Data, prony: Prony, E: float, T_ref: float, grid: tuple[float, float], decades: float
 ) -> ExtendedGridFit:
-    """Fit strengths on the times of a fit and on a wider grid, no time left out.
+    """Fit strengths on the times of a fit and of a wider grid together; no mode is left out.
 
     data : the curve.
     prony, E, T_ref : series, long-time modulus and reference time of the fit.
     grid : shortest and longest time of its grid.
-    decades : by which the grid becomes wider on either side.
-    Returns the wider fit.  With as few modes as possible
-    those outside the data would be left out first, though the data allow them.
+    decades : number of decades by which the grid becomes wider on either side.
+    Returns the wider fit.  A fit with as few modes as possible would leave out those outside the data first, though the
+    data allow them.
     """
     reach = 10.0**decades
     times = grid_of_times((max(grid[0] / reach, data.shortest), grid[1] * reach), _TIMES)
@@ -71,6 +71,7 @@ def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats
 
     prony : series of the fit.
     slow, fast : lowest and highest frequency of the data, times T_ref.
+    Returns kappa V and kappa M, (n,) each, dimensionless.
     """
     low, high = np.log10(slow / np.sqrt(prony.alpha)), np.log10(fast)
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))

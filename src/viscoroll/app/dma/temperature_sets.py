@@ -97,6 +97,7 @@ def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
     temperatures : temperatures of the sets, ascending.
     unshifted : temperatures at which the shift is 1; the first within the sets is the reference, else the middle set
     is.
+    Returns the temperature, degrees Celsius.
     """
     low, high = temperatures[0], temperatures[-1]
     return next((T for T in unshifted if low <= T <= high), float(temperatures[temperatures.size // 2]))
@@ -122,6 +123,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     sets : the sets of the points.
     base : reference, degrees Celsius; None: where a factor is 1, else the middle set.
     Raises ParameterError for factors that do not fit the curves, and for a reference where no factor is given.
+    Returns (factors of the sets, dimensionless, (sets,); reference temperature, degrees Celsius).
     """
     factors, temperatures = check_array("shift", shift), sets.temperature
     if not (factors > 0.0).all():

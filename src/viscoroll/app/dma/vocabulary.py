@@ -88,7 +88,7 @@ class Meaning(NamedTuple):
 
     name : name of the quantity, a key of :data:`UNITS`.
     mode : mode of the modulus, "tension", "shear", or "" where the heading does not say.
-    unit : in the heading or in the row of units, "" without.
+    unit : unit in the heading or in the row of units, "" without.
     log : whether the numbers are logarithms to base 10.
     """
 
@@ -101,7 +101,7 @@ class Meaning(NamedTuple):
 def meanings(heading: str, row: str = "") -> list[Meaning]:
     """Return all quantities that a heading may name, the likeliest first; none where a word is not in the vocabulary.
 
-    heading : as the file has it, with its unit or without.
+    heading : text of the heading, with its unit or without.
     row : the cell of a row of units for this column, "" without.
     """
     found = [(_quantity(name), unit, log) for name, unit, log in readings(heading, row)]
@@ -109,7 +109,11 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
 
 
 def _quantity(name: str) -> tuple[str, str] | None:
-    """Return quantity and mode that a name without unit says, None where its words name no quantity."""
+    """Return quantity and mode of a column by its name without unit.
+
+    name : words of the heading.
+    Returns (quantity, mode), texts, the mode "" where the name does not say it; None if the words name no quantity.
+    """
     if re.search("[%°º]", name):  # of a unit
         return None
     text = unicodedata.normalize("NFKD", name.replace("\u2033", "''"))

@@ -108,7 +108,9 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
 def _contact_length_of_cover(table: LawTable) -> float:
     """Return the contact length at rest that the law of a cover is for, in m; 0.0 if the FMU need not check it.
 
-    table: a law.  It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.
+    It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.
+
+    table: a law.
     """
     if table.cover is None or table.pair is None:
         return 0.0
@@ -121,7 +123,7 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
 
     variables: variables of the model.
     given: argument of :func:`build`; the numbers of a Cylinder become start values, for 1 m of its width.
-    table: its law, which has T_ref and, of SI materials, E_prime.
+    table: law of ``given``, which has T_ref and, of SI materials, E_prime.
     l0: contact length of a cover in m, or 0.0; the load at the start is the one that makes it.
     """
     values: dict[str, Any] = {"T_ref": table.T_ref}
@@ -143,7 +145,9 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
 def _write_sources(folder: Path, headers: Path, model: str, version: int, constants: str) -> str:
     """Write all that ``cc fmu.c`` needs beside law.h, and return the token.
 
-    folder: where law.h is.  headers: folder of the headers of the standard.  model, version: as of :func:`build`.
+    folder: where law.h is.
+    headers: folder of the headers of the standard.
+    model, version: as of :func:`build`.
     constants: text of model.h, to which the token is added.
     Returns the GUID or instantiation token that the description and the library share: a digest of all sources.
     """
@@ -165,8 +169,10 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
 def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
     """Return the C text of the variables: their references, names, kinds and start values; reference 0 is time.
 
-    variables: variables of the model, in the order of their references.  starts: start values by name.
     Kinds are 0 (cannot be set), 1 (any finite number) and 2 (above 0).
+
+    variables: variables of the model, in the order of their references.
+    starts: start values by name.
     """
     rows = [("time", 0, 0.0)]
     rows += [(v.name, 0 if v.start is None else 1 + v.positive, starts.get(v.name, 0.0)) for v in variables]
@@ -183,9 +189,12 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
 def _stubs(source: str, header: str, version: int) -> str:
     """Return C definitions of the functions of the standard that fmu.c leaves out.
 
-    source: text of fmu.c.  header: text of the standard's header of function types.  version: 2 or 3.
     A change of mode returns OK; a function that gets or sets values returns OK for none and an error for some; every
     other one returns an error, or NULL.
+
+    source: text of fmu.c.
+    header: text of the standard's header of function types.
+    version: 2 or 3.
     """
     lines = []
     plain = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
@@ -203,7 +212,9 @@ def _stubs(source: str, header: str, version: int) -> str:
 def _compile(compiler: str, source: Path, library: Path) -> None:
     """Compile fmu.c to a shared library; raise FileError with the compiler's message if that fails.
 
-    compiler: path of cc.  source: path of fmu.c, beside the headers.  library: file to write.
+    compiler: path of cc.
+    source: path of fmu.c, beside the headers.
+    library: file to write.
     """
     result = subprocess.run(
         [compiler, *_FLAGS, str(source), "-lm", "-o", str(library)], capture_output=True, text=True, check=False

@@ -25,9 +25,11 @@ _TOLERANCE = "1e-5"
 def model_description(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
     """Return the text of modelDescription.xml.
 
-    version: version of the standard, 2 or 3.  name: name of the model, a key of MODELS.
+    version: version of the standard, 2 or 3.
+    name: name of the model, a key of MODELS.
     starts: start values of the variables that can be set, by name, in their units.
-    token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.  title: title of the law.
+    token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.
+    title: title of the law.
     """
     model = MODELS[name]
     root = Element(
@@ -64,7 +66,10 @@ def _as_text(root: Element) -> str:
 def _add_interfaces(root: Element, version: int, name: str, model: Model) -> None:
     """Add ModelExchange and, of a model with states, CoSimulation.
 
-    root: element to add to.  version: 2 or 3.  name: name of the model and of its library.  model: its variables.
+    root: element to add to.
+    version: 2 or 3.
+    name: name of the model and of its library.
+    model: variables of the model.
     """
     steps = {2: {"completedIntegratorStepNotNeeded": "true"}, 3: {"needsCompletedIntegratorStep": "false"}}
     interfaces = {"ModelExchange": steps[version]}
@@ -81,8 +86,11 @@ def _add_variable(
 ) -> None:
     """Add a variable.
 
-    parent: element ModelVariables.  version: 2 or 3.  variable: to add.
-    references: value references by name.  starts: start values by name.
+    parent: element ModelVariables.
+    version: 2 or 3.
+    variable: variable to add.
+    references: value references by name.
+    starts: start values by name.
     """
     varies = "continuous" if variable.causality != "parameter" else "tunable" if variable.positive else "fixed"
     about = {
@@ -103,7 +111,10 @@ def _add_variable(
 def _add_structure(parent: Element, version: int, model: Model, references: dict[str, str]) -> None:
     """Add the lists of outputs, rates and initial unknowns.
 
-    parent: element ModelStructure.  version: 2 or 3.  model: its variables.  references: value references by name.
+    parent: element ModelStructure.
+    version: 2 or 3.
+    model: variables of the model.
+    references: value references by name.
     """
     outputs = [references[variable.name] for variable in model.variables if variable.causality == "output"]
     rates = [references[f"der_{state}"] for state in model.states]

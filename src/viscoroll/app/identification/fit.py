@@ -67,8 +67,7 @@ class Identification(Result):
     noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation; of
         robust fits both as a tenth of outliers changes them little.
     misfit : names of quantities whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or,
-    of robust
-        fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
+        of robust fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     records : the data by name.
     planned : whether the records have no values: standard deviations and intervals are those to expect.
 
@@ -109,7 +108,9 @@ class Identification(Result):
         return {record_name: self._predict(record, record_name, _LEVEL) for record_name, record in self.records.items()}
 
     def _delta_chi2(self, level: float = _LEVEL) -> float:
-        """Return the rise of chi2 at the ends of an interval: chi-squared where sigma is given, F where it is
+        """Return the rise of chi2 at the ends of a confidence interval, dimensionless.
+
+        It is a quantile of the chi-squared distribution where sigma is given, of the F distribution where it is
         estimated.
 
         level : confidence level, in (0, 0.9999].
@@ -130,6 +131,10 @@ class Identification(Result):
         Parameters
         ----------
         level : confidence level, in (0, 0.9999].
+
+        Returns
+        ------- dict of str to (float or None, float or None)
+            Name of the unknown -> ends of its interval, SI units.
 
         Raises
         ------
@@ -161,11 +166,12 @@ class Identification(Result):
         """Return products of powers of the :attr:`undetermined` unknowns that the data determine, with their
         intervals.
 
-        First those that hold over the whole intervals: exponents in which all points that fit lie nearest to each
-        other, and the profile of just these.  Then, where it is much narrower, what holds near the values found
-        alone, by the slopes there.
+        First the products that hold over the whole intervals are returned; their exponents are those on which all
+        points that fit agree best, and their intervals are profiles.  Then follow products with much narrower intervals
+        that hold near the values found only, by the slopes there.
 
         level : confidence level, in (0, 0.9999].
+        Returns a list of :class:`Product`, the best determined first.
         """
         return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
@@ -212,11 +218,15 @@ class Identification(Result):
         )
 
     def _predict(self, record: Record, record_name: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
-        """Predict a record, with bands.
+        """Predict the quantities of a record, with confidence bands.
 
         record : the record.
-        record_name : its name among the data, by which its own unknowns are found; "" of another record.
-        level, draws, seed : as of :meth:`predict`.
+        record_name : name of the record among the data, which its own unknowns bear; "" of a record that was not
+        fitted.
+        level : confidence level of the bands, in (0, 0.9999].
+        draws : number of random values of the unknowns from which the bands are taken; 0: from slopes.
+        seed : seed of the draws.
+        Returns the :class:`Prediction`.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
@@ -243,8 +253,9 @@ class Identification(Result):
     def residuals(self, values: Mapping[str, float]) -> Floats:
         """Return residuals over sigma of all records, in their order, and of the prior, shape (residuals,).
 
-        values : name -> value of unknowns; others are at their start.
         For optimisers and samplers of other packages; a motion that fails has residuals of 1e6.
+
+        values : name -> value of unknowns; others are at their start.
         """
         return self._problem.residuals(self._coordinates(values))
 

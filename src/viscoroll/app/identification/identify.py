@@ -136,12 +136,13 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
 
 
 def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Minimum]:
-    """Return all minima near the best one that a ridge of chi2 separates, the best first.
+    """Return the best minimum of chi2, and other minima that are nearly as good and lie in other valleys of chi2.
 
     problem : the least squares.
     count : number of searches, the first from the start of the problem.
     seed : seed of the other starts.
     progress : whether a progress bar is drawn.
+    Returns the minima, the best first.
     """
     from tqdm import tqdm
 
@@ -167,8 +168,9 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
     """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
 
     problem : the least squares.
-    count : number of starts, and one more, from which the first search began.
+    count : number of starts plus 1, as the first search began from the start of the problem.
     seed : seed of the hypercube.
+    Yields coordinates of a start, (unknowns,).
     """
     from scipy.stats import qmc
 
@@ -181,12 +183,13 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
 
 
 def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
-    """Return two starts on either side of a minimum far from the start, along the direction that is determined
-    least.
+    """Return two starts of a search, on either side of a minimum along the direction that the data determine least.
+
+    Other valleys of chi2 lie beyond ridges across that direction.
 
     problem : the least squares.
     u : coordinates of the minimum.
-    Ridges of a valley lie across that direction.
+    Returns two vectors of coordinates, (unknowns,).
     """
     if np.abs(u - problem.start).max() < _NEAR:
         return []
@@ -197,11 +200,11 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
 
 
 def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
-    """Return whether no ridge lies between two minima.
+    """Return whether chi2 has no ridge between two minima.
 
     problem : the least squares.
-    first, other : the minima.
-    chi2 is minimised at three points between, with the coordinate that differs most fixed and all others free.
+    first, other : the minima. At three points between them chi2 is minimised with the coordinate that differs most
+    fixed and all others free.
     """
     difference = other.u - first.u
     largest = int(np.argmax(np.abs(difference)))

@@ -38,6 +38,10 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 
     path : path of the TOML file.
 
+    Returns
+    ------- dict
+        Arguments of :func:`.identify.identify` by name.
+
     Raises
     ------
     FileError

@@ -106,8 +106,8 @@ class Problem:
     ) -> None:  # fmt: skip
         """Collect the data of all records and find the active unknowns.
 
-        cylinder : with the values that are fixed.
-        unknowns : with start, range and prior.
+        cylinder : cylinder with the values that are fixed.
+        unknowns : unknowns with start, range and prior.
         records : name -> record.
         robust : whether outliers count less.
         shifts : body -> shift factor over temperature.
@@ -132,7 +132,10 @@ class Problem:
         self.active = self._find_active()
 
     def _find_active(self) -> list[int]:
-        """Return the unknowns that change a residual at the start or at one of four other points."""
+        """Return the unknowns that change a residual at the start or at one of four other points.
+
+        Returns indices of these unknowns, ascending.
+        """
         rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
         others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (4, middle.size))
         idle = [*range(middle.size)]
@@ -153,7 +156,8 @@ class Problem:
 
         record : the record.
         u : coordinates of the unknowns.
-        record_name : name of the record, by which its own unknowns are found.
+        record_name : name of the record, by which its own unknowns are found; "" of a record that was not fitted.
+        Returns quantity -> values, SI units, in the shape of the coordinates of the record.
         """
         values = self.values(u)
         own = {name.removesuffix(f":{record_name}"): value for name, value in values.items()}
@@ -215,9 +219,10 @@ class Problem:
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return (residuals, their derivatives), each row times the square root of its weight in chi2.
+        """Return the residuals and their derivatives, each row multiplied by the square root of its weight in chi2.
 
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, shape (unknowns,).
+        Returns (residuals, (n,); derivatives with respect to the coordinates, (n, unknowns)), dimensionless.
         """
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
@@ -228,7 +233,7 @@ class Problem:
 
         u : coordinates of the point.
         fixed : powers of a combination of coordinates that keeps its value at u; None: all are free.
-        tolerance : relative, of chi2, coordinates and gradient.
+        tolerance : relative tolerance of chi2, coordinates and gradient.
         steps : largest number of evaluations.
         Returns the minimum.
         """
@@ -262,7 +267,7 @@ class Problem:
     def estimate_sigma(self, best: Minimum) -> Minimum:
         """Estimate each standard deviation that was not given from its residuals and fit again, until both converge.
 
-        best : minimum with the standard deviations of today.
+        best : minimum with the present standard deviations.
         Returns the minimum with the estimated ones.
         """
         estimated = [column for column in self.columns if column.estimated]
@@ -282,6 +287,7 @@ class Problem:
         """Return statistics of the residuals of each column, by the words "quantity of record".
 
         u : coordinates of the unknowns.
+        Returns "quantity of record" -> :class:`Noise`.
         """
         found, r = {}, self.residuals(u)
         for column in self.columns:

@@ -91,8 +91,8 @@ class Likelihood:
     cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
     sd : standard deviations, shape (unknowns,).
     correlations : correlations of the coordinates, shape (unknowns, unknowns).
-    others : other minima and the start, from which branches are sought.
-    ends : points at the ends of all intervals, likewise; empty until an interval is open.
+    others : other minima and the start of the fit, from which other branches of the fit are searched.
+    ends : points at the ends of all intervals, further starts of that search; empty until an interval is open.
     """
 
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
@@ -111,19 +111,24 @@ class Likelihood:
         self._profiles = cache(lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile())
 
     def profile(self, powers: Floats, delta_chi2: float) -> Profile:
-        """Return the interval of a combination within which chi2 rises by no more than a bound.
+        """Return the interval of a combination of coordinates within which chi2 rises by no more than a bound.
+        combination is the sum of the coordinates, each times its power.  As most coordinates are logarithms of
+        unknowns, it is the logarithm of a product of powers.  Beyond the ends of the interval the search goes on from
+        other minima, the start, and the ends of other unknowns.
 
         powers : powers of the coordinates, shape (unknowns,).
         delta_chi2 : the bound.
-        Beyond the ends of the interval the search goes on from other minima, the start, and the ends of other unknowns.
+        Returns the :class:`Profile`.
         """
         return self._profiles(delta_chi2, *powers.tolist())
 
     def axes(self, delta_chi2: float) -> dict[int, Profile]:
-        """Return the profile of each active unknown.
+        """Return the profile of each active unknown by itself.
+
+        Where a side is open, all are computed again with the ends of the others as further starts.
 
         delta_chi2 : bound of the rise of chi2 above the best.
-        Where a side is open, all are computed again with the ends of the others as further starts.
+        Returns index of the unknown -> :class:`Profile`.
         """
         found = {i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active}
         if self.ends or not any(None in profile.ends for profile in found.values()):
@@ -138,6 +143,7 @@ class Likelihood:
         """Return the indices of unknowns with a wide interval, and of those that are correlated with them.
 
         delta_chi2 : bound of the rise of chi2 above the best.
+        Returns the indices, ascending.
         """
         wide = []
         for i, profile in self.axes(delta_chi2).items():
@@ -148,24 +154,29 @@ class Likelihood:
         return [i for i in self.problem.active if (np.abs(self.correlations[i, wide]) > _TOGETHER).any()]
 
     def products(self, which: list[int], delta_chi2: float) -> list[Product]:
-        """Return the products of undetermined unknowns that the data determine.
+        """Return the products of powers of undetermined unknowns that the data determine.
 
-        which : indices of these unknowns.
+        They are found by the points that fit, or if those give none by the slopes at the best; then those are added
+        that hold near the best alone but are much narrower.
+
+        which : indices of the undetermined unknowns.
         delta_chi2 : bound of the rise of chi2 above the best.
-        First by points that all fit, else by slopes at the best; then those near the best that are much narrower.
         """
         if len(which) < 2:
             return []
-        by_slopes = [*self._by_slopes(which)]
-        found = self._narrow(self._by_points(which, delta_chi2), delta_chi2) or self._narrow(by_slopes, delta_chi2)
+        by_slopes = [*self._combinations_by_slopes(which)]
+        found = self._bounded_products(
+            self._combinations_by_points(which, delta_chi2), delta_chi2
+        ) or self._bounded_products(by_slopes, delta_chi2)
         least = min((product.high - product.low for product in found), default=math.inf)
-        near = self._narrow(by_slopes, delta_chi2, near=True)
+        near = self._bounded_products(by_slopes, delta_chi2, near=True)
         return found + [product for product in near if product.high - product.low < _SHARPER * least]
 
-    def _narrow(self, family: Iterable[Floats], delta_chi2: float, near: bool = False) -> list[Product]:
-        """Return products with their intervals, up to the first one that is open or wide.
+    def _bounded_products(self, family: Iterable[Floats], delta_chi2: float, near: bool = False) -> list[Product]:
+        """Return the products of a family whose intervals are narrow, up to the first product with an open or wide
+        interval.
 
-        family : powers of combinations, the best determined first.
+        family : powers of the coordinates of each product, shape (unknowns,) each, the best determined first.
         delta_chi2 : bound of the rise of chi2 above the best.
         near : whether intervals are by slopes at the best, else by profiles.
         """
@@ -183,12 +194,14 @@ class Likelihood:
             found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
         return found
 
-    def _by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
-        """Yield combinations in which all points that fit lie nearest to each other, the best first.
+    def _combinations_by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
+        """Yield combinations of unknowns on which the points that fit agree best, by their principal axes.
 
-        which : indices of unknowns.
+        Exponents are rounded as far as the points keep nearly the same spread.
+
+        which : indices of the unknowns.
         delta_chi2 : bound of the rise of chi2 above the best.
-        Exponents are rounded as far as that keeps the points near to each other.
+        Yields powers of the coordinates, shape (unknowns,), the best determined combination first.
         """
         axes = self.axes(delta_chi2)
         within = np.concatenate([axes[i].within for i in which])[:, which]
@@ -199,7 +212,7 @@ class Likelihood:
             powers = next((p for p in rounded if np.ptp(within @ p) <= width), np.round(exact, 2))
             yield powers @ np.eye(self.best.u.size)[which]
 
-    def _by_slopes(self, which: list[int]) -> Iterator[Floats]:
+    def _combinations_by_slopes(self, which: list[int]) -> Iterator[Floats]:
         """Yield combinations of unknowns with indices ``which`` by the covariance, the best determined first."""
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
@@ -249,7 +262,10 @@ class ProfileWalk:
         return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
 
     def profile(self) -> Profile:
-        """Find both ends of the interval and return the profile."""
+        """Find both ends of the interval, by minima of chi2 with the combination fixed.
+
+        Returns the :class:`Profile`.
+        """
         problem, ends, limits, pieces = self.problem, [], [], False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
             reach = self.distance(np.where(self.powers > 0.0, near, far))
@@ -265,10 +281,10 @@ class ProfileWalk:
         return Profile(ends, limits, pieces, min(self.visited, key=attrgetter("chi2")), within)
 
     def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
-        """Find the distance at which chi2 has risen to the bound.
+        """Find the distance of the combination at which chi2 has risen to the bound.
 
         reach : distance of the bound of the ranges, with the sign of the side.
-        start : a minimum at which it is lower.
+        start : a minimum at which chi2 is lower.
         Returns (the distance, None if chi2 stays below up to ``reach``; the minimum there).
         """
         from scipy.optimize import brentq
@@ -299,8 +315,8 @@ class ProfileWalk:
     def search_beyond(self, d: float, reach: float) -> list[Minimum]:
         """Search other branches of the fit at an end of the interval and behind it.
 
-        d : distance of the end from the best minimum.
-        reach : distance of the bound of the ranges.
+        d : distance of the combination at the end from that at the best minimum.
+        reach : distance of the combination at the bound of the ranges.
         Returns the minima where chi2 is below the bound, the farthest last.
         """
         found, problem = [], self.problem
@@ -317,7 +333,7 @@ class ProfileWalk:
     def limiting_bounds(self, u: Floats) -> list[str]:
         """Return the names of unknowns at a bound beyond which chi2 would fall, with the combination fixed.
 
-        u : the end of an interval.  The fall is by slopes there.
+        u : coordinates at the end of an interval; whether chi2 would fall is decided by its slopes there.
         """
         problem = self.problem
         if not (at := [i for i in problem.at_bounds(u) if not self.powers[i]]):

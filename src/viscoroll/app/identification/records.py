@@ -101,6 +101,7 @@ class Record:
 
         Raises ParameterError for a single one of several quantities, and for a quantity that the record does not
         have.
+        Returns quantity -> standard deviation, in its unit.
         """
         among, given = self.measured or self.QUANTITIES, {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
@@ -177,6 +178,7 @@ class Resistance(Record):
 
         cylinder : the cylinder with the present values of the unknowns.
         values : name -> value of brake and drag, 0 where they are missing.
+        Returns {"M": values, "F": values}, in the shape of the speeds of the record.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -283,11 +285,12 @@ class Coastdown(Record):
         return found
 
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
-        """Return the speed at the release that the data show, and a range about it.
+        """Estimate the speed at the release of the cylinder from the first data.
 
         name : "V0" or "omega0".
         R : radius of the cylinder, m.
         Raises ParameterError where the data do not show it.
+        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s.
         """
         data: Any = self.V if name == "V0" else self.omega
         if data is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:

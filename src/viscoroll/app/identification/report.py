@@ -79,7 +79,7 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
-    """Return the words on the products that the data determine.
+    """Return a sentence on the products of unknowns that the data determine.
 
     found : products, of :meth:`viscoroll.app.identification.Identification.products`.
     """
@@ -141,7 +141,7 @@ def _phases(fit: Any) -> Iterator[str]:
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
-    """Return a ``fit`` as a dataset.
+    """Return an identification, ``fit``, as a dataset.
 
     Values are over ``unknown``; each record's coordinates, data, fit and sigma over an axis of its own.
     """

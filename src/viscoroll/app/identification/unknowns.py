@@ -82,7 +82,7 @@ class Unknown(NamedTuple):
 def unknowns_of(
     cylinder: Cylinder, requested: Mapping[str, Any], records: Mapping[str, Record], priors: Mapping[str, Any]
 ) -> list[Unknown]:
-    """Return the unknowns that are requested, and those that records leave open.
+    """Return the unknowns that the caller requests, and those that records leave open, as a list of :class:`Unknown`.
 
     cylinder : the cylinder from whose inputs the search starts.
     requested : name -> range.
@@ -106,18 +106,18 @@ def unknowns_of(
                 ranges.setdefault(f"{name}:{record_name}", span)
     check_names("unknown", ranges, starts, "an input")
     check_names("prior", priors, ranges, "an unknown")
-    return [_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
+    return [_make_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
 
 
-def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
-    """Return an unknown after checks.
+def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
+    """Check range and prior of an unknown, and return it as :class:`Unknown`.
 
     name, start : name and start value of the unknown.
-    span : (low, high).
-    prior : (value, standard deviation), None without.
+    span : range of the unknown, (low, high), in SI units.
+    prior : value and standard deviation known beforehand, or None.
     Raises ParameterError for a range or a prior that is none.
     """
-    low, high = _pair("unknown", name, span)
+    low, high = _check_pair("unknown", name, span)
     if not low <= start <= high:
         raise ParameterError(
             f"unknown {name}", f"({low:g}, {high:g})", f"a range that contains the initial guess, {start:.6g}"
@@ -126,12 +126,12 @@ def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     unknown = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
     if prior is None:
         return unknown
-    mean, sd = _pair("prior", name, prior)
+    mean, sd = _check_pair("prior", name, prior)
     sd = check_number(f"standard deviation of prior {name}", sd, above=0.0)
     return unknown._replace(mean=float(unknown.to_u(mean)), sd=sd / (unknown.unit or 1.0))
 
 
-def _pair(argument: str, name: str, numbers: Any) -> list[float]:
+def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
     """Return two numbers, each a value that the unknown may have.
 
     argument : "unknown" or "prior", of :func:`.identify.identify`.
@@ -154,9 +154,9 @@ def cylinder_of(
 ) -> Cylinder:
     """Return the cylinder with other values, at the load and the temperature of a record.
 
-    cylinder : with the values that are fixed.
+    cylinder : cylinder with the values that are fixed.
     values : name -> value of unknowns.
-    record : whose load, mass and temperature are taken; None: those of the cylinder.
+    record : record whose load, mass and temperature are taken; None: those of the cylinder.
     shifts : body -> shift factor over temperature.
 
     Raises
@@ -167,7 +167,7 @@ def cylinder_of(
     changes: dict[str, Any] = {name: values[name] for name in _OF_CYLINDER if name in values}
     changes |= {} if record is None else record.overrides
     for section, body in _bodies(cylinder).items():
-        changed = _with_values(body, _PREFIX[section], values)
+        changed = _replace_values(body, _PREFIX[section], values)
         if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
             if section not in shifts:
                 allowed = f"given with a shift of the {section}, as vr.WLF(T0=20.0)"
@@ -191,13 +191,14 @@ def _inputs(body: Material) -> dict[str, float]:
     return {name: getattr(body, name) for name in _OF_MATERIAL} | modes
 
 
-def _with_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
-    """Return a material with other values.
+def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
+    """Return a material in which unknowns have other values.
+
+    With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
 
     body : the material.
     prefix : prefix of the names of its unknowns, "" or "base_".
     values : name -> value of unknowns, of other bodies too.
-    With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
     """
     old = _inputs(body)
     new = {name: values.get(prefix + name, value) for name, value in old.items()}

@@ -67,8 +67,12 @@ def loads_of(
 ) -> Loads:
     """Check and broadcast the loads of a call of :func:`.steady.steady`.
 
-    scene : parameters, on the slope.  force, torque : numbers, arrays or :class:`Feedback`.  slope : angle, rad.
-    V : given speeds, or None.  Raises ParameterError as ``steady`` does.
+    scene : parameters, on the slope.
+    force, torque : numbers, arrays or :class:`Feedback`.
+    slope : angle, rad.
+    V : given speeds, or None.
+    Raises ParameterError as ``steady`` does.
+    Returns the :class:`Loads`, vectors of one length.
     """
     if type(scene.alpha) is not float:
         refuse_arrays(scene, ("alpha",))
@@ -89,8 +93,11 @@ def loads_of(
 
 
 def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
-    """(value at V = omega = 0, gain on V, gain on omega) of the load ``name``, whose ``value`` is a number, an array
-    or a Feedback.
+    """Split a load into its value without feedback and the gains of its feedback.
+
+    name: name of the load, for errors.
+    value: a number, an array or a :class:`Feedback`; None: no load.
+    Returns (value at V = omega = 0, gain on V, gain on omega), in the units of the roller.
     """
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
@@ -104,8 +111,11 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
 
 
 def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -> str:
-    """Name of the load that is given beside V: "force" or "torque"; ``slope`` alone counts as the force.  Raises
-    ParameterError.
+    """Return the name of the load that is given beside V: "force" or "torque".
+
+    slope: angle, rad, or None; without another load the force counts as the one that is given.
+    loads: force and torque by name, None where they are not given.
+    Raises ParameterError where both are given or none.
     """
     names = [name for name, value in loads.items() if value is not None]
     for name in names:

@@ -120,7 +120,7 @@ class Branches:
 
 
 def resistance_extrema(roller: Roller) -> ResistanceExtrema:
-    """Every local maximum and minimum of the rolling resistance M over the speed.
+    """Find every local maximum and minimum of the rolling resistance M over the speed.
 
     A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
 
@@ -164,9 +164,10 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
 
 @lru_cache(maxsize=16)
 def branches(law: LawTable, gain: float) -> Branches:
-    """The curve of a material and a gain.
+    """Return the curve kappa (M - G V) over speed, divided into branches on which it is monotone.
 
-    law : rows of the material.  gain : G, dimensionless.
+    law : rows of the material.
+    gain : G, slope of the load in V, dimensionless.
 
     Raises
     ------
@@ -190,7 +191,11 @@ def branches(law: LawTable, gain: float) -> Branches:
 
 
 def speed_nodes(law: LawTable) -> Floats:
-    """Nodes of log2(u), ascending, closely spaced where the material of the rows ``law`` relaxes."""
+    """Return nodes of log2(u), u = kappa V, closely spaced where the material relaxes.
+
+    law : rows of the material.
+    Returns the nodes, ascending, (n,).
+    """
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
     high = math.ceil(-math.log2(times.min())) + _CLOSE_OCTAVES
@@ -211,8 +216,9 @@ def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
 def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
     """Find the zeros of a function between nodes, including pairs of zeros between neighbouring nodes.
 
-    function : vectorised function of one variable.  nodes : ascending, (n,).  noise : rounding error of the function
-    at the nodes; nodes with smaller values have no sign.
+    function : vectorised function of one variable.
+    nodes : ascending, (n,).
+    noise : rounding error of the function at the nodes; nodes with smaller values have no sign.
 
     Returns the zeros, ascending, bisected to the rounding of the nodes.  A pair of zeros is found where |function|
     has a minimum at a node.
@@ -231,18 +237,21 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
 
 
 def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
-    """Return (lower ends, upper ends, whether the function rises) of the intervals in which y changes its sign.
+    """Find the intervals between points in which a function changes its sign.
 
-    x: points, ascending, (n,).  y: values of the function there.
+    x: points, ascending, (n,).
+    y: values of the function there.
+    Returns (lower ends, upper ends, whether the function rises), (intervals,) each.
     """
     at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)
     return x[at], x[at + 1], y[at + 1] > 0.0
 
 
 def _refine_near_double_roots(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
-    """Points and values that separate two zeros between the neighbours of a node.
+    """Find points that separate two zeros between the neighbours of a node.
 
-    function : vectorised function.  x, y : nodes and values.
+    function : vectorised function of one variable.
+    x, y : nodes, ascending, and values of the function there, (n,).
 
     Returns a list of (points, values), one for each pair of zeros.
     """

@@ -134,7 +134,9 @@ class Steady(Values):
 
     @cached_property
     def loss(self) -> Loss:
-        """Powers, coefficient of rolling resistance, efficiency."""
+        """Return the powers of each equilibrium, its coefficient of rolling resistance and its efficiency, as
+        :class:`Loss`.
+        """
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
         )
@@ -172,7 +174,7 @@ class Steady(Values):
     message = reason
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return (title, rows): of one load its equilibria, of several their number."""
+        """Return title and rows of the printed report: of one load its equilibria, of several loads their number."""
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
             speeds = SummaryRow("V", format_value(np.asarray(self.V)), unit_of(self._attributes("V")))
@@ -187,7 +189,7 @@ class Steady(Values):
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers.
+        """Return a dataset over the loads and ``equilibrium``, with names and units; ``loss_...`` are the powers.
 
         Examples
         --------
@@ -219,8 +221,12 @@ def append_axis(unit: Any) -> Any:
 def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None) -> Steady:
     """Pack sorted states into arrays over loads and equilibria.
 
-    loads : the loads.  states : existing states, sorted.  reasons : data of missing equilibria.  scale : units of
-    the result.  labels : of the arguments, or None.
+    loads : the loads.
+    states : existing states, sorted by load and |V|.
+    reasons : data of the loads without equilibrium.
+    scale : units of the roller, which the result has.
+    labels : labels of the arguments, or None.
+    Returns the :class:`Steady`, padded with NaN where loads have fewer equilibria than others.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

@@ -58,7 +58,7 @@ class _ScanProblem(NamedTuple):
     """One load in the frame of the motion.
 
     law : rows of the material.  load_rows : force and torque as rows of (value at rest, gain on V, gain on omega).
-    kappa, mu : parameters.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
     """
 
     law: LawTable
@@ -89,8 +89,11 @@ class _ScanProblem(NamedTuple):
         return Q - M_half_space + self.loads_at(V, V + slip)[0]
 
     def rows(self, V: NDArray, slip: NDArray) -> tuple[NDArray, NDArray]:
-        """(rows of :class:`Field` with slopes at V and slip = omega - V, full slip included; residuals of the sum of
-        the equations and of the equation of V).
+        """Evaluate the law and the residuals of the equations of equilibrium, full slip included.
+
+        V, slip : speed and omega - V, (n,), dimensionless.
+        Returns (rows of :class:`Field` with slopes; residuals of the sum of the equations and of the equation of V, (2,
+        n)).
         """
         rows = state_rows(self.law, self.kappa, self.mu, V, slip / V)
         force, torque = self.loads_at(V, V + slip)
@@ -100,9 +103,11 @@ class _ScanProblem(NamedTuple):
 
 
 def scan_states(law: LawTable, loads: Loads) -> States:
-    """All states of rolling, without rest.
+    """Find all states of rolling under loads with a gain on omega, by a scan over the speed; rest is not among them.
 
-    law : rows of the material.  loads : the loads, with gains on omega.
+    law : rows of the material.
+    loads : the loads, with gains on omega.
+    Returns the :class:`States`, unsorted.
     """
     gains = loads.gains
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
@@ -152,7 +157,11 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
 
 
 def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
-    """x = log2(kappa V) and slip of every state of ``problem``, where omega follows from V."""
+    """Find the states of a load by a scan over V, where the equations give omega at each V.
+
+    problem : the load and its rows.
+    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless.
+    """
 
     def beyond(x: NDArray, part: float) -> NDArray:
         free = problem.free_rolling(x)
@@ -178,7 +187,11 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 
 
 def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
-    """x = log2(kappa V) and slip of every state of ``problem``, where the sum of the equations determines V."""
+    """Find the states of a load by a scan over the slip, where the sum of the equations gives V at each slip.
+
+    problem : the load and its rows.
+    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless.
+    """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
     positions, slips = [np.empty(0)], [np.empty(0)]
@@ -198,9 +211,11 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 
 
 def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
-    """Rows of the states after some Newton steps in V and slip.
+    """Refine approximate states by Newton steps in V and slip.
 
-    problem : the load.  V, slip : approximate states, (n,).
+    problem : the load and its rows.
+    V, slip : speed and omega - V of the approximate states, (n,), dimensionless.
+    Returns rows of :class:`Field` with slopes at the refined states.
 
     A step that does not reduce the residuals is rejected.  Where the contact passes from full slip to full slip
     within the rounding of V, two zeros are one state, or none.

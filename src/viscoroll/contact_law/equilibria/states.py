@@ -64,10 +64,13 @@ class States(NamedTuple):
 
     @classmethod
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
-        """States from rows with slopes.
+        """Make the states from the law at them.
 
-        loads : the loads.  load : index of the load of each state.  sign : sign of V.  answers : rows of
-        :class:`Field` with slopes, in a frame where V > 0.
+        loads : the loads.
+        load : index of the load of each state.
+        sign : sign of V.
+        answers : rows of :class:`Field` with slopes, in a frame where V > 0.
+        Returns the :class:`States`.
         """
         rows = answers.copy()
         rows[[Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] *= sign
@@ -77,9 +80,13 @@ class States(NamedTuple):
 
     @classmethod
     def at_rest(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
-        """States of V = omega = 0, the limit of slow rolling: Carter's contact, and V' = -rate V with omega in step.
+        """Return the states of V = omega = 0, the limit of slow rolling.
 
-        loads : the loads.  load : index of the load of each state.  law : rows of the material.
+        The contact is that of Carter; a disturbance decays as V' = -rate V, with omega in proportion to V.
+
+        loads : the loads.
+        load : index of the load of each state.
+        law : rows of the material.
         """
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
@@ -115,10 +122,11 @@ class States(NamedTuple):
 
 
 def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
-    """Eigenvalues of small disturbances of (V, omega) over gamma t.
+    """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
-    slopes : dQ/dV, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n).  gains : feedback.  j : moments of inertia,
-    (n,).
+    slopes : dQ/dV, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n).
+    gains : feedback.
+    j : moments of inertia, (n,).
 
     Returns rows: real part of the faster and of the slower eigenvalue, imaginary part of the slower.  The
     determinant is b (M'(V) - gain)/j without a gain on omega; it is computed without the cancellation of the large
@@ -142,9 +150,12 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
 
 
 def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
-    """Fields of the contact at V > 0 and delta, one row for each of ``names``.
+    """Return fields of the contact at V > 0 and delta, one row for each of ``names``, dimensionless.
 
-    law : rows of the material.  kappa, mu : parameters.  V : speeds, (n,).  delta : creepage.
+    law : rows of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
+    V : speeds, (n,).
+    delta : creepage.
     """
     return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
@@ -152,7 +163,10 @@ def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any
 def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
     """Return delta_0 at V > 0, the creepage at which Q = 0; 0.0 of half-spaces.
 
-    law : rows of the material.  kappa, mu : parameters.  V : speeds, (n,).
+    law : rows of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
+    V : speeds, (n,).
+    Returns the creepage, (n,), dimensionless.
     """
     return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
 
@@ -166,9 +180,11 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
 
 
 def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
-    """Speeds at which kappa (M - gain V) equals a total.
+    """Find the speeds at which kappa (M - gain V) equals a given total.
 
-    law : rows of the material.  gain : G.  total : kappa (force + torque), (n,).
+    law : rows of the material.
+    gain : slope of the load in V, dimensionless.
+    total : kappa (force + torque), (n,).
 
     Returns (index of the load, sign of V, kappa |V|), one entry for each crossing.
     """
@@ -187,10 +203,13 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 
 
 def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
-    """Steady states at given V > 0, whether or not the friction suffices.
+    """Return the steady states at given V > 0, whether or not the friction suffices.
 
-    law : rows of the material.  loads : the loads.  load : index of the load of each state, (n,).  sign : sign of
-    the motion, in whose frame V > 0.  V : speeds, (n,).
+    law : rows of the material.
+    loads : the loads.
+    load : index of the load of each state, (n,).
+    sign : sign of the motion, in whose frame V > 0.
+    V : speeds, (n,).
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V

@@ -32,7 +32,7 @@ def steady(
     slope: Numbers | None = None,
     V: Numbers | None = None,
 ) -> Steady:
-    """Steady rolling: every pair of V and omega at which force and torque balance, and whether it is stable.
+    """Find steady rolling: every pair of V and omega at which force and torque balance, and whether it is stable.
 
     Arguments and what rolls broadcast against each other.
 
@@ -120,9 +120,10 @@ def steady(
 
 
 def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
-    """Indices of the loads under which the cylinder can be at rest.
+    """Return the indices of the loads under which the cylinder can be at rest, (n,).
 
-    loads : the loads.  neutral : whether any speed is steady without a load (elastic bodies).
+    loads : the loads.
+    neutral : whether every speed is steady without a load, as of elastic bodies.
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
@@ -131,9 +132,12 @@ def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
 
 
 def _states_under_load(law: LawTable, loads: Loads) -> States:
-    """All states of rolling under loads without a gain on omega.
+    """Find all states of rolling under loads without a gain on omega; rest is not among them.
 
-    law : rows of the material.  loads : the loads.  Raises ParameterError for loads outside the range of the nodes.
+    law : rows of the material.
+    loads : the loads.
+    Raises ParameterError for loads outside the range of the nodes.
+    Returns the :class:`States`, unsorted.
     """
     with np.errstate(over="ignore"):  # what is infinite is refused
         gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)

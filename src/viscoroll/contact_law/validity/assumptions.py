@@ -196,7 +196,7 @@ def assess_small_contact(reach: Any) -> Assumption:
 
 
 def assess_position(epsilon: Any) -> Assumption:
-    """Say whether the axis is above the contact, which the theory does not require.
+    """State whether the axis is above the contact, which the theory does not require.
 
     epsilon: shift of the contact towards the leading edge in half contact lengths, any shape.
     Returns the assumption ``under_axis``.

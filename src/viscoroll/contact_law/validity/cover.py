@@ -39,7 +39,7 @@ def stated_error(thickness: float) -> float:
 def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]:
     """Return the lengths of the contact on a cover, and the assumption ``thick``.
 
-    scene: with a cover.
+    scene: dimensionless parameters of a roller with a cover.
     V: speeds, dimensionless, any shape.
     Returns (contact lengths; the assumption, whose value is half the contact length divided by the thickness; it holds
     where one stick zone in front with slip behind is right at every creepage).

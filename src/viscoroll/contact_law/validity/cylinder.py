@@ -73,7 +73,9 @@ class BodyData:
 
     @cached_property
     def records(self) -> dict[str, Measured]:
-        """What was measured of each different body whose share of the compliance counts, by the name of the body."""
+        """Return what was measured of each different body whose share of the compliance counts, by the name of the
+        body.
+        """
         pair = self.pair
         bodies: dict[str, tuple[Material, float]] = {}
         if pair is not None and pair.like:
@@ -88,7 +90,7 @@ class BodyData:
 
     @cached_property
     def measured_rates(self) -> tuple[float, float] | None:
-        """(Lowest, highest) |V|/l0, 1/s, at which the transit frequency is in the data of all bodies.
+        """Return the lowest and the highest |V|/l0, 1/s, at which the transit frequency is in the data of all bodies.
 
         None where nothing was measured.
         """
@@ -107,7 +109,7 @@ class BodyData:
 
     @cached_property
     def measured_speeds(self) -> tuple[float, float] | None:
-        """(Lowest, highest) |V|, m/s, at which every cylinder is inside the data; None where nothing was measured.
+        """Return the lowest and the highest |V|, m/s, at which every cylinder is inside the data; None without data.
 
         :data:`NO_SPEEDS` for a fit that misses its data.
         """
@@ -147,8 +149,8 @@ class BodyData:
     def wave_ratio(self, speed: Any, density: float | None) -> WaveRatio:
         """Return the ratio of a speed to the slowest shear wave of both bodies, by their long-time shear moduli.
 
-        speed: m/s, any shape.
-        density: of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
+        speed: the speed, m/s, any shape.
+        density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
         """
         bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, density)]
         if self.pair is not None:
@@ -166,10 +168,10 @@ class BodyData:
     def extend_validity(self, report: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
         """Add the assumptions that need quantities in SI units to the report of a state.
 
-        report: of the dimensionless scene.
+        report: report of the dimensionless scene.
         lam: contact length divided by l0, dimensionless.
         V, omega: speeds, m/s and rad/s; omega may be None.
-        density: as of :func:`.validity.validity`.
+        density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
         Returns the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
         """
         if density is not None:

@@ -87,7 +87,7 @@ class FreeRolling:
     Attributes
     ----------
     materials : alphas or series in their own times.
-    index : of the material of each state, in the shape of u.
+    index : index of the material of each state, in the shape of u.
     u : kappa |V| in the material's own time, dimensionless, any shape.
     g : gamma/(1 + j) in the material's own time.
     speed, time, length : 1 of u, of the own time and of l0, in the units of the caller.
@@ -139,7 +139,10 @@ class FreeRolling:
         return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays})
 
     def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
-        """Yield each material that occurs, and the flat index of its states."""
+        """Yield each material that occurs, and its states.
+
+        Yields (alpha or series in its own time, index of numpy that selects its states in the flat arrays).
+        """
         if len(self.materials) == 1:
             yield self.materials[0], slice(None)
             return
@@ -163,7 +166,7 @@ class FreeRolling:
         """Evaluate a function of the curve of each material at its states.
 
         function: takes a curve, u, g and ``more`` of some states, (n,), and returns several arrays (n,).
-        elastic: its values for an elastic material, which has no curve.
+        elastic: values of the function for an elastic material, which has no curve.
         more: further arguments, broadcast to u.
         Returns the arrays in the shape of u.
         """
@@ -187,9 +190,20 @@ class FreeRolling:
         return self._evaluate(lambda curve, u, g: [curve.distance(u) / g], [np.inf])[0] * self.length
 
     def reach(self, level: float) -> Reach:
-        """Return the part of free rolling in which the unsteadiness is below a level, dimensionless."""
+        """Return the part of free rolling in which the unsteadiness is below a level.
+
+        level: of the unsteadiness, the relative error of the quasi-steady assumption, dimensionless.
+        """
 
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
+            """Return the fields of :class:`Reach` for states of one material.
+
+            Both in the material's own time.
+
+            curve: free rolling of the material.
+            u: kappa V at the start, (n,).
+            g: gamma/(1 + j), (n,).
+            """
             end, below = np.empty(u.size), np.empty(u.size, bool)
             levels, group = np.unique(g, return_inverse=True)
             for n, value in enumerate(levels):
@@ -204,7 +218,10 @@ class FreeRolling:
         return Reach(end * self.speed, time * self.time, way * self.length, left * self.length)
 
     def start(self, rested: float = math.inf) -> Start:
-        """Return the losses of a start after a standstill; ``rested``: its time, in the unit of the caller."""
+        """Return the losses of a start after a standstill, as :class:`Start`.
+
+        rested: time of the standstill, in the unit of the caller; infinite for a long one.
+        """
 
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
             way = curve.distance(u)

@@ -83,7 +83,7 @@ class Curve:
         """Return the speed at which |N| reaches a level in free rolling.
 
         u: kappa V at the start, any shape.
-        level: of |N|, > 0.
+        level: level of |N|, > 0.
         Returns (u at which |N| first reaches the level, 0 if never; where |N| is above it at the start already, the
         next higher u from which on it is below; whether |N| is below the level at the start).
         """
@@ -97,16 +97,17 @@ class Curve:
         return ends[np.where(below, index - 1, np.minimum(index, ends.size - 1))], below
 
     def work(self, u: Floats, distance: Floats, rested: Floats) -> Floats:
-        """Return the work W of leaving the indentation of a standstill; in SI units it is P l0^2 W/(4 R).
+        """Return the work W that it takes to roll out of the indentation of a standstill; in SI units P l0^2 W/(4 R).
 
-        The last term is what the contact gains as it shrinks.  Under a load P the elastic energy and the height of a
-        contact of half length a and compliance C hold C ln(1/a), so that they differ between rest and fast rolling,
-        both of the instantaneous compliance 1/alpha, by ln(a_rest/a_fast)/(4 alpha).  After a long rest that is
-        sqrt(alpha): ln(alpha)/(8 alpha); without a rest the contact starts as short as it rolls, and it is 0.  Between
-        the two the slowest mode rules how much of it there is; the term is below 0.05 for every alpha.
+        The last term is the elastic and potential energy that is released as the contact shrinks.  Under a load P the
+        elastic energy and the height of a contact of half length a and compliance C hold C ln(1/a), so that they differ
+        between rest and fast rolling, both of the instantaneous compliance 1/alpha, by ln(a_rest/a_fast)/(4 alpha).
+        After a long rest that ratio is sqrt(alpha), and the term is ln(alpha)/(8 alpha); without a rest the contact
+        starts as short as it rolls, and the term is 0.  Between the two the term is taken in proportion to the
+        relaxation of the slowest mode; it is below 0.05 for every alpha.
 
         u: kappa V at the start, (n,).
-        distance: to rest, in units of l0, (n,).
+        distance: distance travelled until rest, in units of l0, (n,).
         rested: time of the standstill in the material's own time, (n,).
         Returns W, dimensionless, (n,).
         """

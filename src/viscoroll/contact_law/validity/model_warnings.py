@@ -43,6 +43,12 @@ _SLOW_PART = 0.1
 #: every material: (kappa V)^2 |N| is at most 1.35/16 of 1 - 1/alpha (docs/validity.md), and the distance grows at least
 #: in proportion to V.
 _FAST = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
+#: kappa V, dimensionless, from which on (kappa V)^2 N of one relaxation time is at least 0.6/16 of 1 - 1/alpha; at
+#: lower speeds N passes 0.  The least found is 0.64/16, at this speed and alpha near 1.
+_LEAST_FAST_ROLLING = 1.0
+#: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, below which the error of V exceeds 10 % at the
+#: start already, for one relaxation time and kappa V above that speed.
+_SLOW = 0.6 / 16.0 / STEADY_LIMIT
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256
 #: Data of materials for which this process has warned already.
@@ -76,7 +82,7 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 
     roller: scene or cylinder; a scene has no data to compare with.
     V: speeds, m/s, any shape; None for prescribed ones that are not known.
-    extent: (smallest, largest) of them, m/s, where the caller knows them.
+    extent: (smallest, largest) of the speeds, m/s, where the caller knows them.
     motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined.
     """
     data = roller.body_data
@@ -94,7 +100,7 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 def _warn_of_band(data: BodyData, V: Any) -> None:
     """Warn of transit frequencies outside the measured band, once for each material in a process.
 
-    data: of a cylinder with measured bodies.
+    data: data of the bodies of a cylinder, of which at least one was measured.
     V: speeds, m/s, any shape.
     """
     records = data.records.values()
@@ -118,7 +124,7 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
 def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
     """Warn of motions of a run that start outside the measured band of a material.
 
-    share: their share of all motions, 0 to 1; 0 gives no warning.
+    share: fraction of all motions that start outside, 0 to 1; 0 gives no warning.
     records: what was measured of the bodies; contacts do not warn of them again.
     Returns whether a warning was given.
     """
@@ -157,7 +163,7 @@ def warn_of_start(
     One motion from two floats costs one or two microseconds; of many some, evenly spaced, are examined.
 
     roller: scene or cylinder, on its slope.
-    scene: its dimensionless parameters.
+    scene: dimensionless parameters of the roller.
     start: the start speeds as the caller gave them, m/s and rad/s for a cylinder; None for prescribed ones.
     V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
     driven: whether something drives the motions, or they are rolled with the added mass N.
@@ -179,13 +185,13 @@ def warn_of_start(
 def _start_faults(
     material: Any, kappa: float, mu: float, gamma: float, j: float, V0: float, omega0: float, driven: bool
 ) -> list[str]:
-    """Return the faults of the model for one motion.
+    """Return sentences on what the model does not describe in one motion, judged by its start.
 
-    material: its alpha, Prony series or bodies.
+    material: alpha, Prony series or bodies of the roller.
     kappa, mu, gamma, j: parameters of the scene, dimensionless.
     V0, omega0: start speeds, dimensionless.
-    driven: as of :func:`warn_of_start`.
-    Returns sentences without numbers.
+    driven: whether something drives the motion, or it is rolled with the added mass N.
+    Returns the sentences, without numbers; none where the model describes the motion.
     """
     faults: list[str] = []
     one_time = type(material) is float
@@ -201,22 +207,42 @@ def _start_faults(
             )
     # the speed at the start, or that at which it begins to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
-    if not driven and type(material) is not Cover and u > 0.0 and u * u * (1.0 + j) < _FAST * gamma * part:
-        lower_ends, slow = _slow_starts(material, gamma, j)
-        if slow[max(bisect(lower_ends, u) - 1, 0)]:
-            faults.append(
-                "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a tenth of "
-                "the distance"
-            )
+    if not driven and type(material) is not Cover and u > 0.0 and _is_too_slow(material, u, gamma, j):
+        faults.append(
+            "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a tenth of "
+            "the distance"
+        )
     return faults
 
 
-def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
-    """Return the faults of the three motions of an ensemble that are worst by bounds of each fault.
+def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
+    """Return whether a free motion from a speed is too slow for the law of steady rolling.
 
-    scene: parameters, numbers or arrays (n,).
+    Bounds of N decide most motions: the table of :func:`_slow_starts` takes a second where its kernels are not compiled
+    yet.
+
+    material: alpha, Prony series or bodies.
+    u: kappa V at the start, > 0.
+    gamma, j: parameters of the scene, dimensionless.
+    """
+    one_time = type(material) is float
+    ratio = u * u * (1.0 + j)
+    scale = gamma * (1.0 - 1.0 / (material if one_time else material.alpha))
+    if ratio >= _FAST * scale:
+        return False
+    if one_time and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
+        return True
+    lower_ends, slow = _slow_starts(material, gamma, j)
+    return slow[max(bisect(lower_ends, u) - 1, 0)]
+
+
+def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
+    """Return the faults of the model in those motions of an ensemble, three at most, in which they are largest by
+    simple bounds.
+
+    scene: dimensionless parameters of the roller, numbers or arrays (n,).
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
-    driven: as of :func:`warn_of_start`.
+    driven: whether something drives the motions, or they are rolled with the added mass N.
     Returns different sentences without numbers.
     """
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
@@ -242,7 +268,7 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
 
 @lru_cache(maxsize=64)
 def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tuple[list[float], list[bool]]:
-    """Tabulate over kappa V whether a free motion from there is too slow for the law of steady rolling.
+    """Tabulate whether a free motion that starts at kappa V is too slow for the law of steady rolling.
 
     material: alpha, Prony series or bodies, not elastic.
     gamma, j: parameters of the scene, dimensionless.

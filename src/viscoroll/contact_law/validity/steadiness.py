@@ -60,7 +60,7 @@ class Steadiness(Assumption):
         """Return the assumption ``steady`` of motions.
 
         free: states at the output times, (times, ...).
-        rolls: where they are not in full slip, which friction rules; in the shape of u.
+        rolls: mask of the times at which motions are not in full slip, which friction rules; in the shape of u.
         x: distances travelled in the unit of the caller, in the shape of u; NaN where they are not known.
         ends: whether ``value`` is that of each motion as a whole, else at each time.
         """
@@ -126,7 +126,10 @@ class Steadiness(Assumption):
 
 
 def _describe_free(free: FreeRolling) -> str:
-    """Describe free rolling from one state: distance, speeds at which errors are reached, loss of a start from rest."""
+    """Return sentences on free rolling from one state: distance, speeds at which errors are reached, loss of a start.
+
+    free: the state.
+    """
     speed, time, length = (f" {unit}".rstrip() for unit in free.units)
     value, most, whole = float(free.unsteadiness), free.reach(STEADY_LIMIT), free.distance()
     text = f"unsteadiness {value:.2g} (up to {STEADY_LIMIT} is allowed): "
@@ -152,11 +155,11 @@ def _describe_free(free: FreeRolling) -> str:
 
 
 def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
-    """Describe the error of a motion, or of the worst of several.
+    """Return sentences on the error of a motion, or of the worst of several.
 
-    free: its fastest state.
-    most: its largest unsteadiness.
-    share: part of its distance with an error above 10 %, NaN where it is not known.
+    free: fastest state of the motion.
+    most: largest unsteadiness of the motion, dimensionless.
+    share: fraction of its distance with an error above 10 %, NaN where it is not known.
     """
     text = f"unsteadiness up to {most:.2g} (up to {STEADY_LIMIT} is allowed): "
     text += "the error of V is below 10 % "

@@ -33,8 +33,8 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     roller : a :class:`Scene`, or a :class:`Cylinder` with V in m/s and omega in rad/s.
     V : speed of the axis, any sign.
     omega : angular velocity; without it the creepage is not known.
-    density : of a Cylinder, and of the base where they are alike, kg/m^3; default: as the materials have it; without it
-        the speed of shear waves is not known.
+    density : density of a Cylinder, and of the base where they are alike, kg/m^3; default: as the materials have it;
+        without it the speed of shear waves is not known.
 
     Returns
     -------

@@ -92,7 +92,7 @@ def distributions(data: xr.Dataset) -> Figure:
 def _finite_quantiles(values: NDArray) -> NDArray:
     """Return quantiles over motions, (levels, times); NaN at times that no motion reached.
 
-    values: of a quantity, (motions, times), NaN where a motion ended before.
+    values: values of a quantity, (motions, times), NaN where a motion ended before.
     """
     quantiles = np.full((len(_LEVELS), values.shape[1]), np.nan)
     reached = np.isfinite(values).any(axis=0)
@@ -103,7 +103,8 @@ def _finite_quantiles(values: NDArray) -> NDArray:
 def _ensemble_histogram(axes: Any, values: NDArray) -> None:
     """Draw the histogram of the motions of an ensemble; of few or equal values a point for each.
 
-    axes: of matplotlib.  values: of a quantity, (motions,).
+    axes: axes of matplotlib.
+    values: values of a quantity, (motions,).
     """
     finite = values[np.isfinite(values)]
     axes.set_ylabel(f"motions, of {values.size}")
@@ -118,7 +119,9 @@ def _ensemble_histogram(axes: Any, values: NDArray) -> None:
 def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """Draw the histogram of a run at the last time.
 
-    axes: of matplotlib.  data: summaries of the run.  name: of the quantity.
+    axes: axes of matplotlib.
+    data: summaries of the run.
+    name: name of the quantity.
     """
     counts = data[f"{name}_histogram"].values
     counts = counts[:, -1] if counts.ndim == 2 else counts
@@ -133,9 +136,11 @@ def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
 
 
 def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
-    """Return (edges, counts) of bars of equal width, without the tails; one bar if all values are nearly equal.
+    """Combine the bins of a run to bars of equal width, without the tails; one bar if all values are nearly equal.
 
-    low, high: ends of the bins of a run.  counts: motions in each, of which a bar gets the fraction that it overlaps.
+    low, high: ends of the bins of a run.
+    counts: motions in each bin, of which a bar gets the fraction that it overlaps.
+    Returns (edges of the bars, counts of motions).
     """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
@@ -151,8 +156,9 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
 def sobol_bars(indices: xr.Dataset) -> Figure:
     """Draw first-order and total index of every input with its confidence interval, a panel for each quantity.
 
-    indices: of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file.  Quantities over time
-    are shown at the last time with indices.  Inputs have one order, the largest total index first.
+    Quantities over time are shown at the last time with indices.  Inputs have one order, the largest total index first.
+
+    indices: indices of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file.
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
     shown = [_last_indices(indices, name) for name in names]
@@ -177,9 +183,11 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 
 
 def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
-    """Return (title of a panel, index -> values over the inputs) at the last time with indices.
+    """Return the Sobol indices of a quantity at the last time that has any.
 
-    indices: as of :func:`sobol_bars`.  name: of the quantity.
+    indices: Sobol indices of a run, a dataset.
+    name: name of the quantity.
+    Returns (title of the panel, name of the index -> values over the inputs).
     """
     values = {key: indices[f"{name}_{key}"].values for index in _SOBOL for key in (index, f"{index}_conf")}
     if values["S1"].ndim == 1:

@@ -21,7 +21,8 @@ _POINTS = 400
 def master_curve(material: Any) -> Figure:
     """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right.
 
-    material: a :class:`Material`.  Raises ParameterError for a rigid body, which has no curves.
+    material: a :class:`Material`.
+    Raises ParameterError for a rigid body, which has no curves.
     """
     if material.is_rigid:
         raise ParameterError("material", "rigid", "one of a finite modulus")
@@ -46,31 +47,18 @@ def master_curve(material: Any) -> Figure:
     return figure
 
 
-def moduli_fit(fit: Any) -> Figure:
-    """Draw storage and loss modulus of ``fit``, a :class:`viscoroll.Fit`: data and curves of the series."""
-    symbol = "G" if fit.mode == "shear" else "E"
-    misfit = f"misfit {fit.misfit.storage:.1%} in {symbol}', {fit.misfit.loss:.1%} in {symbol}''"
-    columns = {f"{symbol}'": fit.storage, f"{symbol}''": fit.loss}
-    return _series_fit(fit, misfit, fit.omega, columns, fit.modulus, "angular frequency, rad/s")
+def series_fit(fit: Any) -> Figure:
+    """Draw measured moduli and the curves of the series that was fitted to them.
 
-
-def relaxation_fit(fit: Any) -> Figure:
-    """Draw the relaxation modulus of ``fit``, a :class:`viscoroll.RelaxationFit`: data and curve of the series."""
-    columns = {"G(t)" if fit.mode == "shear" else "E(t)": fit.relaxation}
-    return _series_fit(fit, f"misfit {fit.misfit:.1%}", fit.t, columns, lambda t: (fit.modulus(t),), "time, s")
-
-
-def _series_fit(fit: Any, misfit: str, x: Any, columns: dict[str, Any], moduli: Any, label: str) -> Figure:
-    """Draw data and the curves of a series.
-
-    fit: result of the fit.  misfit: words of the title.  x: frequencies or times.  columns: name of a modulus -> data
-    at x.  moduli: function of x that returns a tuple of curves, one for each column.  label: of the axis of x.
+    fit: a :class:`viscoroll.Fit` or a :class:`viscoroll.RelaxationFit`.
     """
+    x, *columns = fit.data
     fine = np.geomspace(x[0], x[-1], _POINTS)
-    figure, axes = new_figure(f"Prony series of {fit.prony.E.size} modes: {misfit}")
-    for (name, values), curve, line in zip(columns.items(), moduli(fine), LINES, strict=False):
-        axes.loglog(x, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=name)
-        axes.loglog(fine, curve, **line, label=f"{name} of the fit")
+    figure, axes = new_figure(f"Prony series of {fit.prony.E.size} modes: misfit {fit.misfit_text(1)}")
+    for symbol, values, curve, line in zip(fit.symbols, columns, fit._moduli(fine), LINES, strict=False):
+        axes.loglog(x, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=symbol)
+        axes.loglog(fine, curve, **line, label=f"{symbol} of the fit")
+    label = "time, s" if fit.data._fields[0] == "t" else "angular frequency, rad/s"
     axes.set(xlabel=label, ylabel="modulus, unit of the data")
     small_legend(axes, ncols=2)
     return figure

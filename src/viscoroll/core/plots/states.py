@@ -138,10 +138,14 @@ def motion(data: xr.Dataset) -> Figure:
 
 
 def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
-    """Return (times, values) of a quantity of a motion, with the corners and both sides of the jumps of its schedule.
+    """Return a quantity of a motion over time, to which the corners and both sides of the jumps of its schedule are
+    added.
 
-    data: the motion.  name: of the quantity.  Loads beside the schedule, as a feedback and that of the slope, have no
-    jumps.
+    Loads beside the schedule, as a feedback and that of the slope, have no jumps.
+
+    data: the motion.
+    name: name of the quantity.
+    Returns (times, values), (k,) each.
     """
     t, values = data["t"].values, data[name].values
     if f"drive_{name}_time" not in data:

@@ -33,9 +33,13 @@ THIN = {"color": "0.7", "linewidth": 0.6}
 def new_figure(
     title: str, rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 4.2), **options: Any
 ) -> tuple[Figure, Any]:
-    """Return (figure, its axes) without a change of matplotlib's global state.
+    """Make a figure without a change of matplotlib's global state.
 
-    title: line on top.  rows, columns: of axes.  size: width and height, inches.  options: of ``Figure.subplots``.
+    title: line on top.
+    rows, columns: numbers of rows and columns of axes.
+    size: width and height, inches.
+    options: keyword arguments of ``Figure.subplots``.
+    Returns (figure, its axes: one, or an array of them).
     """
     from matplotlib.figure import Figure
 
@@ -47,10 +51,14 @@ def new_figure(
 def new_panels(
     title: str, count: int, per_row: int, size: tuple[float, float], **options: bool
 ) -> tuple[Figure, list[Any]]:
-    """Return (figure, list of axes of one size).
+    """Make a figure with several axes of one size, row after row.
 
-    title: line on top.  count: number of axes.  per_row: largest number in a row.  size: of each, inches.  options: of
-    ``Figure.subplots``.
+    title: line on top.
+    count: number of axes.
+    per_row: largest number in a row.
+    size: size of each, inches.
+    options: keyword arguments of ``Figure.subplots``.
+    Returns (figure, list of its axes).
     """
     columns = min(per_row, count)
     rows = -(-count // columns)
@@ -62,9 +70,13 @@ def new_panels(
 
 
 def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, float] | None, **line: Any) -> list[Any]:
-    """Plot a curve, solid where |x| lies in a measured band and dashed outside; return its lines.
+    """Plot a curve, solid where |x| lies in a measured band and dashed outside.
 
-    axes: of matplotlib.  x, y: points of the curve.  band: lowest and highest measured |x|, None without.  line: style.
+    axes: axes of matplotlib.
+    x, y: points of the curve.
+    band: lowest and highest measured |x|; None: the curve is solid everywhere.
+    line: keyword arguments of ``Axes.plot``, the style of the line.
+    Returns the lines of matplotlib.
     """
     if band is None:
         return list(axes.plot(x, y, **line))
@@ -109,7 +121,10 @@ def small_legend(axes: Any, **options: Any) -> None:
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
     """Plot quantiles over time: pairs of levels as bands, the middle one as a line.
 
-    axes: of matplotlib.  t: times, (n,).  levels: probabilities, ascending, (k,).  values: quantiles, (k, n).
+    axes: axes of matplotlib.
+    t: times, (n,).
+    levels: probabilities, ascending, (k,).
+    values: quantiles, (k, n).
     """
     for n in range(levels.size // 2):
         text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
@@ -126,7 +141,9 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
 def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
     """Return the label of an axis: symbol or name of a quantity, and its unit.
 
-    name: of the quantity.  units: "1" of a dimensionless one.  symbol: LaTeX, where the table of symbols has none.
+    name: name of the quantity.
+    units: "1" of a dimensionless one.
+    symbol: LaTeX, where the table of symbols has none.
     """
     symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
     # A symbol such as p/E' stands for a ratio; in SI units the quantity is p.
@@ -149,8 +166,8 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
 
     Parameters
     ----------
-    figure : of matplotlib.
-    path : its suffix chooses the format.
+    figure : figure of matplotlib.
+    path : path of the file, whose suffix chooses the format.
 
     Raises
     ------

@@ -43,7 +43,7 @@ class Reading(NamedTuple):
     """One way to read a heading.
 
     name : without unit and logarithm.
-    unit : in the heading or in the row of units, "" without.
+    unit : unit in the heading or in the row of units, "" without.
     log : whether the column is of logarithms to base 10.
     """
 
@@ -56,7 +56,7 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     """Return all ways to read a heading, the likeliest first: as a name alone, then with a unit in brackets or at
     its end.
 
-    heading : as the file has it, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)".
+    heading : text of the heading, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)".
     row : the cell of a row of units for this column, "" without; a heading without a unit has this one.
     """
     log = False
@@ -78,7 +78,9 @@ def readings(heading: str, row: str = "") -> list[Reading]:
 def may_be_unit(text: str) -> bool:
     """Return whether a text may be a unit, for pint to decide: short, of symbols and their powers.
 
-    text : without brackets.  Sums and towers of powers, of which pint computes the value, are none.
+    Sums and towers of powers, of which pint computes the value, are none.
+
+    text : without brackets.
     """
     rest = _POWERS.sub("", re.sub(r"^\s*1\s*/", "", text))
     return (
@@ -89,7 +91,7 @@ def may_be_unit(text: str) -> bool:
 
 
 def conversion(unit: str, wanted: str) -> tuple[float, float]:
-    """Return (factor, offset) of a unit as files spell it: wanted = factor * number + offset.
+    """Return factor and offset of the conversion of a unit as files spell it: wanted = factor * number + offset.
 
     unit : "" and "-" of a ratio; "mpa", "U/min", "C", "Nm" are read as MPa, rpm, degC, N m where pint's own reading
     has another dimension.

@@ -45,7 +45,8 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     """Return the lines of a text file.
 
     path : path of the file.
-    encoding : as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and Latin-1 that fits.
+    encoding : name of the encoding, as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and
+    Latin-1 that fits.
     Raises FileError for workbooks and other binary files, ParameterError for an encoding that Python does not know.
     """
     try:

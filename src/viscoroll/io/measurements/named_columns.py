@@ -17,8 +17,10 @@ def named_table(
 ) -> Table:
     """Read a table whose headings are the line that has one of the given names, with a unit or without.
 
-    path, decimal, encoding : as of :func:`read_table`.
+    path : path of the file.
     names : names of columns.
+    decimal : decimal mark, "." or ","; None: the one that the file has.
+    encoding : name of the encoding; None: by the first bytes of the file.
     Returns the table; raises the errors of :func:`read_table`.
     """
     return read_table(
@@ -35,7 +37,7 @@ def _is_named(heading: str, name: str) -> bool:
 def find_column(table: Table, name: str) -> int | None:
     """Return the index of the column with a name, None where there is none.
 
-    table : with headings.
+    table : table with headings.
     name : a heading as the file has it, which goes first, or a heading without its unit.
 
     Raises
@@ -67,8 +69,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     name : name of the column, with its unit or without.
     wanted : unit of the result in pint's spelling, "1" of a ratio.
     unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the file, and
-    without one
-        the numbers are taken to be in ``wanted``.
+        without one the numbers are taken to be in ``wanted``.
 
     Returns
     -------

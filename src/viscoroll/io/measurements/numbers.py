@@ -59,6 +59,7 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 
     cells : cells of a table or a column.
     doubtful : marks of which the second rule is true: the comma where commas separate cells, both beside "567".
+    Returns ".", "," or "".
     """
     marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]
     marks = set("".join(marked)) & set(",.")
@@ -70,7 +71,7 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 def fault_of(cell: str, decimal: str) -> str:
     """Return why a cell cannot be read as a number, "" if it can.
 
-    cell : its text.
+    cell : text of the cell.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     """
     if _GAP.fullmatch(cell):

@@ -89,7 +89,7 @@ def read_table(
     path : a text file in UTF-8, UTF-16 or Latin-1.
     is_heading_line : a function that returns whether the cells of a line are headings.
     decimal : "." or ","; default: the mark that is there, both are refused.
-    encoding : as Python calls it; default: by the first bytes.
+    encoding : name of the encoding, as Python calls it; default: by the first bytes.
 
     Returns
     -------
@@ -126,7 +126,7 @@ class _Layout:
     """Where the tables of a file are.
 
     path : path of the file.
-    lines : its lines with their cells.
+    lines : lines of the file with their cells.
     separator : separator of the cells.
     is_heading_line : as of :func:`read_table`.
     """
@@ -156,7 +156,8 @@ class _Layout:
         return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
 
     def heads(self) -> list[int]:
-        """Return the index of the line of headings of each table; a file without gets a line of "column 0" and so on.
+        """Return the index of the line of headings of each table of the file; without headings columns are "column 0",
+        "column 1" ...
 
         Raises FileError for a line of headings that is cut by other separators, and for numbers above the headings.
         """
@@ -182,9 +183,10 @@ class _Layout:
         return [0]
 
     def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
-        """Read a table.
+        """Read one table of the file.
 
-        head, end : indices of its line of headings, and of that of the next table or the end of the file.
+        head, end : index of its line of headings, and of the first line behind it: the headings of the next table, or
+        the end of the file.
         Returns (headings, units, rows); raises FileError for a line among the rows that is none, and for rows of
         another number of cells.
         """
@@ -212,10 +214,11 @@ class _Layout:
         return next((cells for cells in cuts if len(cells) == self.width), cuts[0])
 
     def units(self, between: list[Line], width: int) -> list[str]:
-        """Return the row of units, of whose texts at least half are units; "" for each column without one.
+        """Find the row of units between headings and numbers: a line in which at least half of the texts are units.
 
         between : lines between headings and numbers.
         width : number of columns.
+        Returns the unit of each column, "" for a column without one.
         """
         found = [""] * width
         for line in between:

@@ -119,7 +119,8 @@ def _evaluate_missing(
 ) -> Iterator[int]:
     """Submit the missing blocks, and yield the number of motions of each one that is finished.
 
-    store: the store of the run.  shared: the store, or dask's reference to it, as tasks take it.
+    store: the store of the run.
+    shared: the store, or dask's reference to it, as tasks take it.
     pool, workers: executor, and its number of workers.
     advance: function of the progress bar; it is called with the motions of blocks that were on disk.
     """
@@ -147,8 +148,10 @@ def _evaluate_missing(
 def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Any]]:
     """Open the executor of the tasks; a context manager.
 
-    store, cluster, threads: as of :func:`run_ensemble`.
-    Gives (executor, number of workers, the store as tasks take it).  Raises ParameterError or FileError.
+    store: store of the run.
+    cluster: None (threads of this process), "local" or the address of a scheduler.
+    threads: number of threads or local processes; None: all cores available.
+    Yields (executor, number of workers, the store as tasks take it).  Raises ParameterError or FileError.
     """
     if cluster is None:
         interrupted = threading.Event()
@@ -187,9 +190,11 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
-    """Return a dask client; of "local" with workers of its own.
+    """Return a client of dask: of a running scheduler, or of workers that are started on this machine.
 
-    distributed: the module.  cluster: "local" or an address.  threads: number of local processes.
+    distributed: the module.
+    cluster: "local" or an address.
+    threads: number of local processes.
     """
     if cluster != "local":
         return distributed.Client(cluster, timeout=10)
@@ -205,8 +210,10 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
 def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
     """Draw the progress of a run; a context manager.
 
-    run: whose motions are counted.  progress: as of :func:`run_ensemble`.
-    Gives a function of a number of motions; those that were ``on_disk`` do not count in the rate.
+    run: run whose motions are counted.
+    progress: False, True (a bar) or "lines" (a line every half minute).
+    Yields a function (number of motions, on_disk=False) that advances it; motions that were on disk do not count in the
+    rate.
     """
     from tqdm import tqdm
 

@@ -62,13 +62,13 @@ class Estimate:
 def estimate(run: Run, threads: int | None = None) -> Estimate:
     """Roll some motions of the first block and scale their time, memory and size up to the run.
 
-    They are rolled twice and the second time counts: what a process does once, as to compile, to import and to
-    compute laws, would be scaled up with them.  The laws of covers are added once.
+    They are rolled twice, and the second time counts: the first one contains what a process does once, as to compile,
+    to import and to compute laws.  The laws of covers are added once.
 
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    threads : as of :func:`run_ensemble`.
+    threads : number of threads that the run will have; None: all cores available.
 
     Returns
     -------
@@ -102,8 +102,9 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 def _time_of_laws(run: Run) -> float:
     """Return the seconds that the laws of the covers of the first block take; 0.0 of half-spaces.
 
-    run: with covers of one thickness over l0, which have one law, or of many, which have some for each octave.
     One law is computed, and its time multiplied.
+
+    run: run of covers of one thickness over l0, which have one law, or of many, which have some for each octave.
     """
     from ...kernels.rows.thickness_axis import NODES
     from ...materials.law.cover_rows import cover_rows

@@ -27,7 +27,9 @@ _STARTS = 1000
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
     """Return the inputs of the motions of a block, by name, each (motions,), in the units of the run.
 
-    run, block: the run, and the number of the block.  most: number of motions at most; None: all of the block.
+    run: the run.
+    block: number of the block.
+    most: number of motions at most; None: all of the block.
     """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)
@@ -43,7 +45,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     run : a run of :func:`read_run`.
     values : every uncertain input by name, a number or (n,).
     count : number of motions, if all inputs are numbers.
-    threads : as of :func:`viscoroll.ensemble`.
+    threads : number of threads; None: all cores available.
 
     Returns
     -------
@@ -73,9 +75,11 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
 
 def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
-    """Return (inputs by name, motions) of a block.
+    """Draw the inputs of a block, and compute its motions.
 
-    run, block: the run, and the number of the block.
+    run: the run.
+    block: number of the block.
+    Returns (inputs by name, each (motions,), in the units of the run; motions).
     """
     start, stop = run.edges(block)
     values = block_inputs(run, block)
@@ -83,10 +87,12 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 
 
 def warn_of_materials(run: Run) -> None:
-    """Warn of the share of motions that start outside the measured bands of the materials, or as their medians do.
+    """Warn of motions of a run outside the measured bands of its materials, judged by their starts and by their median.
 
-    run: the run.  Where it is in SI units with a start speed, the starts are compared with the bands; in any case
-    the motion of the medians is rolled, which may warn too.
+    The starts of a run in SI units with a start speed are compared with the bands.  In any case the motion of the
+    median inputs is computed, which may warn too.
+
+    run: the run.
     """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)
@@ -101,7 +107,10 @@ def warn_of_materials(run: Run) -> None:
 def _fraction_outside(run: Run) -> float:
     """Return the fraction of motions whose transit frequency at the start is outside a measured band.
 
-    run: a run in SI units, whose first motions are examined.  A start at rest is inside: M is 0 there.
+    A start at rest is inside: M is 0 there.
+
+    run: a run in SI units, whose first motions are examined.
+    Returns the fraction, 0 to 1.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))
     roller: Any = roller_of(run.path, content)

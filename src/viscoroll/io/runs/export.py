@@ -63,7 +63,8 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 def _append_motions(store: Path, path: Path) -> None:
     """Copy the motions, chunk by chunk, into the group "motions" of a netCDF-4 file.
 
-    store: folder of the results.  path: the file, which is there already.
+    store: folder of the results.
+    path: the file, which is there already.
     """
     import h5netcdf
 
@@ -98,8 +99,11 @@ def _largest_size(array: Any) -> int:
 def _reserve(path: Path, size: int) -> None:
     """Lengthen a file, so that HDF5, which may crash on a full disk, does not meet one.
 
-    path: path of the file.  size: number of bytes to add.
-    HDF5 cuts off at its end what it did not use.  Raises OSError if the disk is full.
+    HDF5 cuts off at its end what it did not use.
+
+    path: path of the file.
+    size: number of bytes to add.
+    Raises OSError if the disk is full.
     """
     with path.open("r+b") as file:
         start = file.seek(0, os.SEEK_END)

@@ -37,7 +37,10 @@ def about(run: Run) -> dict[str, Any]:
 
 
 def _software() -> dict[str, str]:
-    """Return the versions of the packages that the bits of a result depend on, and a digest of the kernels."""
+    """Return the versions of the packages that the bits of a result depend on, and a digest of the kernels.
+
+    Returns package -> version, and "kernels" -> digest.
+    """
     import numba
     import scipy
 
@@ -50,8 +53,10 @@ def _software() -> dict[str, str]:
 def identity(run: Run) -> str:
     """Return the SHA-256 of all that the blocks of a run depend on, whatever their number, and of the software.
 
-    run: two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata
-    depend on the number of motions, or ``n`` changes their method or the size of their blocks.
+    Two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata depend
+    on the number of motions, or ``n`` changes their method or the size of their blocks.
+
+    run: the run.
     """
     n = run.settings.n if run.settings.design == "latin" else None
     text = json.dumps([run.digest, run.method, run.block, n, _software()])
@@ -61,7 +66,8 @@ def identity(run: Run) -> str:
 def refuse_another(root: Path, run: Run, record: Record) -> None:
     """Raise FileError if a store is neither of a run nor of the same run with fewer motions.
 
-    root: folder of the store.  run: the run.
+    root: folder of the store.
+    run: the run.
     record: a record of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
     """
     of_a_block = record.summary is not None
@@ -80,7 +86,8 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
 def _no_extension(before: Run, run: Run) -> str:
     """Return why a store cannot be extended, and what to change in the run file; "" if it can.
 
-    before: the run of the store.  run: the same with another ``n``.
+    before: the run of the store.
+    run: the run that differs from it in ``n``.
     """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:

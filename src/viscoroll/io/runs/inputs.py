@@ -54,8 +54,9 @@ class Distribution:
     def ppf(self, u: Floats) -> Floats:
         """Return the quantiles of the truncated distribution.
 
-        u: probabilities in (0, 1), of any shape.
         An upper tail is inverted from above, by the survival function, so that it keeps its digits.
+
+        u: probabilities in (0, 1), of any shape.
         """
         law = self.law
         if (self.low, self.high) == law.support():
@@ -125,7 +126,8 @@ class Inputs:
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
         """Return the smallest and the largest draw of an input, (2,).
 
-        name: name of the input.  low, high: shares of the distribution to take as its ends.
+        name: name of the input.
+        low, high: shares of the distribution to take as its ends.
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
@@ -152,20 +154,20 @@ class Inputs:
 
         values: name of an input -> number or (n,).
         """
-        return _filled(self.content, values)
+        return _fill_in(self.content, values)
 
 
-def _filled(part: Any, values: Mapping[str, Any]) -> Any:
+def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
     """Return a part of the content with values in place of its inputs; in a list "same" repeats the number before."""
     if isinstance(part, Input):
         return values[part.name]
     if isinstance(part, dict):
-        return {key: _filled(member, values) for key, member in part.items()}
+        return {key: _fill_in(member, values) for key, member in part.items()}
     if not isinstance(part, list):
         return part
     numbers: list[Any] = []
     for member in part:
-        numbers.append(numbers[-1] if numbers and member == SAME else _filled(member, values))
+        numbers.append(numbers[-1] if numbers and member == SAME else _fill_in(member, values))
     return numbers
 
 

@@ -94,8 +94,10 @@ def _digest(path: Path) -> str | None:
 def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
     """Write files below a folder, each whole or not at all, and return their digests by name.
 
+    A file that has this content already is left alone.
+
     root: the folder.
-    files: path below root -> content.  A file that has this content already is left alone.
+    files: path below root -> content.
     Returns path below root -> SHA-256.  Raises FileError.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}

@@ -62,7 +62,7 @@ class RunResults(Result):
         return self.path / MOTIONS
 
     def motions(self) -> xr.Dataset:
-        """Open every motion with its inputs, over (motion, t); values are read when they are needed.
+        """Open the dataset of every motion with its inputs, over (motion, t); values are read when they are needed.
 
         Raises
         ------

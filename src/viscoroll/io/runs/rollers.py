@@ -75,7 +75,7 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
     """Return the roller of the motions of a block: a scene, a cylinder, or a cylinder for each motion.
 
     path: path of the run file, for errors and the files that it names.
-    content: its sections, with numbers or arrays (n,) in place of the inputs.
+    content: sections of the file, with numbers or arrays (n,) in place of the inputs.
     Raises ParameterError; of a material FileError.
     """
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
@@ -94,7 +94,8 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return the loads of the section [drive] as keywords of :func:`viscoroll.ensemble`.
 
-    content: sections with numbers or arrays (n,).  Raises ParameterError.
+    content: sections with numbers or arrays (n,).
+    Raises ParameterError.
     """
     drive = content.get("drive", {})
     return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}
@@ -103,7 +104,8 @@ def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
 def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
     """Return a piecewise linear load; raise ParameterError that names it.
 
-    name: name of the load.  times, values: times and values of its corners, each a number or (n,).
+    name: name of the load.
+    times, values: times and values of its corners, each a number or (n,).
     """
     try:
         return Schedule(*(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values)))
@@ -112,9 +114,11 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
 
 
 def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Solid]:
-    """Return (the material of the first motion, the material of all motions, which differ if it is a Solid).
+    """Return the material of the first motion and that of all motions, which is a Solid if motions differ.
 
-    path: path of the run file.  name: "material" or "base".  section: its content, or the material if all is certain.
+    path: path of the run file.
+    name: "material" or "base".
+    section: content of that section, or the material if all is certain.
     """
     if isinstance(section, Material):
         return section, section
@@ -136,7 +140,7 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
     """Return the band of angular frequencies that each body was measured in, at the temperature of each motion.
 
     path : path of the run file.
-    content : its sections with the inputs of some motions.
+    content : sections of the file with the inputs of some motions.
     Returns the record of a measurement -> (lowest, highest frequency), rad/s, numbers or (n,); bodies without a record
     are left out.
     """
@@ -151,9 +155,12 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
 
 
 def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
-    """Return the factors of the relaxation times at the temperature of each motion, (n,), over those at the first.
+    """Return the factors of the relaxation times at the temperature of each motion, relative to those at the first.
 
-    path, name, section: as of :func:`_body`.  None if the temperature is certain.
+    path: path of the run file.
+    name: "material" or "base".
+    section: content of that section.
+    Returns the factors, dimensionless, (n,); None if the temperature is certain.
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None

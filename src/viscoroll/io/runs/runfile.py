@@ -214,7 +214,7 @@ class Run:
         return -(-self.settings.n // self.block)
 
     def edges(self, block: int) -> tuple[int, int]:
-        """Return the first motion of a block and the first of the next.
+        """Return the index of the first motion of a block, and of the first motion of the next block.
 
         Examples
         --------
@@ -284,7 +284,8 @@ def read_run(path: str | PathLike[str]) -> Run:
 def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
     """Raise a ParameterError within as FileError of the section [run]; a context manager.
 
-    path: path of the run file.  key: key that is at fault; default: the name of the parameter.
+    path: path of the run file.
+    key: key that is at fault; default: the name of the parameter.
     """
     try:
         yield
@@ -293,10 +294,11 @@ def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
 
 
 def _check_inputs(run: Run) -> None:
-    """Raise FileError for inputs that a motion refuses, before anything is drawn.
+    """Raise FileError for values of inputs that a motion refuses, before anything is drawn.
+
+    It checks the medians, the ends of each input with the others at their medians, and combinations of ends.
 
     run: the run.
-    Checked are the medians, the ends of each input beside the medians of the others, and combinations of ends.
     """
     inputs, medians = run.inputs, run.inputs.medians
     _check_motions(run, medians)
@@ -318,7 +320,9 @@ def _check_inputs(run: Run) -> None:
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
     """Raise FileError, with its line, for motions that would be refused.
 
-    run: the run.  values: input -> number or (n,).  advice: last words of the message.
+    run: the run.
+    values: input -> number or (n,).
+    advice: last words of the message.
     """
     try:
         _begin_motions(run, values)
@@ -330,7 +334,8 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
 def _begin_motions(run: Run, values: dict[str, Any]) -> None:
     """Raise ParameterError, of a material FileError, for motions that would be refused; nothing is rolled.
 
-    run: the run.  values: input -> number or (n,).
+    run: the run.
+    values: input -> number or (n,).
     """
     content, settings = run.inputs.filled(values), run.settings
     roller = roller_of(run.path, content)
@@ -346,8 +351,11 @@ def _begin_motions(run: Run, values: dict[str, Any]) -> None:
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
     """Return the ``digest`` of a :class:`Run`; comments and the order of keys do not change it.
 
-    settings: section [run].  times: output times.  content: sections as read.  materials: certain materials as TOML.
-    inputs: whose samples count.
+    settings: content of the section [run].
+    times: output times.
+    content: sections as read.
+    materials: materials without uncertain inputs, as TOML.
+    inputs: uncertain inputs, whose samples count.
     """
     kept = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _NOT_IN_DIGEST}
     sections = {name: section for name, section in content.items() if name != "run"}

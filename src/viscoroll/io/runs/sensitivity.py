@@ -91,7 +91,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 
     from .identity import about
 
-    names = _independent(run.inputs)
+    names = _independent_inputs(run.inputs)
     progress = check_bool("progress", progress)
     base = (
         1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
@@ -133,7 +133,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     )  # fmt: skip
 
 
-def _independent(inputs: Inputs) -> tuple[str, ...]:
+def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
     """Return the names of the uncertain inputs; raise ParameterError if there are none or they are not independent."""
     if not inputs.uncertain:
         raise ParameterError("run file", "no uncertain input", "one with a distribution")
@@ -151,7 +151,9 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
 def _points(count: int, base: int, seed: int) -> Floats:
     """Return points of the unit cube, (input, motion): A, B, and A with each row of B in turn.
 
-    count: number of inputs.  base: number of points of A and of B.  seed: seed of the sequence.
+    count: number of inputs.
+    base: number of points of A and of B.
+    seed: seed of the sequence.
     """
     A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
@@ -161,10 +163,13 @@ def _points(count: int, base: int, seed: int) -> Floats:
 def _outcomes(
     run: Run, cube: Floats, threads: int | None, progress: bool
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
-    """Roll all motions, block by block, and return (values of each quantity (t, motion), how each motion ended).
+    """Roll all motions at points of the unit cube, block by block.
 
-    run: states the quantities.  cube: points of the unit cube, (input, motion).
-    threads, progress: as of :func:`sobol_indices`.
+    run: run that states the quantities.
+    cube: points of the unit cube, (input, motion).
+    threads: number of threads; None: all cores available.
+    progress: whether a progress bar is drawn.
+    Returns (quantity -> values, (t, motion); status code of each motion, (motion,)).
     """
     motions = cube.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
@@ -188,10 +193,12 @@ def _outcomes(
 
 
 def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
-    """Return (indices and half-widths, in rows as ``_INDICES``, over inputs; "") or (NaN, why there are none).
+    """Estimate the Sobol indices of one quantity at one time, with their bootstrap intervals.
 
-    values: outcomes (A, B and mixed points, base point).  noise: part of a value that rtol leaves open.
+    values: outcomes (A, B and mixed points, base point).
+    noise: part of a value that rtol leaves open.
     seed: seed of the bootstrap.
+    Returns (indices and half-widths, in rows as ``_INDICES``, over inputs; "" or, with NaN, why there are no indices).
     """
     from scipy.special import ndtri
 

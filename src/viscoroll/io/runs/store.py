@@ -71,7 +71,8 @@ class Store:
     def _write_part(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
         """Write the files of a part, then its record; raise FileError if that fails.
 
-        name: "start", "end" or the number of a block.  files: path below the store -> content.
+        name: "start", "end" or the number of a block.
+        files: path below the store -> content.
         more: other fields of the :class:`Record`.
         """
         record = Record(identity(self.run), write_files(self.root, files), self._motions(name), **more)
@@ -173,9 +174,11 @@ class BlockContent(NamedTuple):
 
 
 def block_content(run: Run, block: int) -> BlockContent:
-    """Roll the motions of a block and return what the store holds of it.
+    """Roll the motions of a block, and make the files and the summary that the store keeps of it.
 
-    run, block: the run, and the number of the block.
+    run: the run.
+    block: number of the block.
+    Returns the :class:`BlockContent`.
     """
     values, motions = roll_block(run, block)
     files = _motion_files(run, columns_of(run, values, motions), block) if run.settings.keep == "all" else {}
@@ -185,7 +188,7 @@ def block_content(run: Run, block: int) -> BlockContent:
 def metadata(run: Run) -> dict[str, bytes]:
     """Return the metadata of the group of all motions, if they are kept: path below the store -> content.
 
-    run: whose motion of medians is rolled for names and types.
+    run: run whose motion of medians is rolled for names and types.
     """
     if run.settings.keep == "summaries":
         return {}
@@ -213,7 +216,9 @@ def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = Non
 def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
     """Return the columns that are kept of motions: inputs, fields and how they ended, by name.
 
-    run: states the fields.  values: inputs by name.  motions: with these inputs.
+    run: run that states the fields.
+    values: inputs by name.
+    motions: motions with these inputs.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
     columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
@@ -223,7 +228,8 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
 def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
     """Return the paths, below the store, that are missing or damaged of a part; its record, or files that it names.
 
-    root: folder of the store.  name: "start", "end" or the number of a block.
+    root: folder of the store.
+    name: "start", "end" or the number of a block.
     run, motions: identity and number of motions that the record must state.
     """
     path = _record_path(root, name)

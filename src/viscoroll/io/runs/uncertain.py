@@ -34,7 +34,8 @@ _KEYS_OF_INPUT = {"distribution", "file", "column"}
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
     """Return the inputs of a run file, without correlations; raise FileError.
 
-    path: path of the run file.  content: its sections as read.
+    path: path of the run file.
+    content: sections of the file, as read.
     """
     reader = _Reader(path, "cylinder" in content)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
@@ -59,7 +60,8 @@ class _Reader:
     def section(self, name: str, section: Any) -> Any:
         """Return a section with inputs in place of its uncertain numbers.
 
-        name: name of the section.  section: its content, or what stands in its place, which is refused elsewhere.
+        name: name of the section.
+        section: content of the section, or what stands in its place, which is refused elsewhere.
         """
         if not isinstance(section, dict):
             return section
@@ -67,9 +69,11 @@ class _Reader:
         return {key: self.part(value, name, key, (key,)) if key in keys else value for key, value in section.items()}
 
     def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
-        """Return a value, or the :class:`Input` in its place; of a list or table, all its members so.
+        """Return a value of the file, or an :class:`Input` if it is uncertain; of a list or table, each member in this
+        way.
 
-        value: what stands at a key.  section, key: where it stands; of a member of a table "section.key" and its key.
+        value: value at a key of the file.
+        section, key: section and key of the value; of a member of a table "section.key" and its key.
         words: keys from the section down to it, and positions in lists, of which its name is made.
         """
         if isinstance(value, list):
@@ -93,7 +97,8 @@ class _Reader:
     def fault(self, number: Input, problem: str) -> FileError:
         """Return the error of an uncertain number, with its line.
 
-        number: the uncertain number.  problem: words on what is wrong.
+        number: the uncertain number.
+        problem: words on what is wrong.
         """
         return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
 
@@ -101,7 +106,8 @@ class _Reader:
     def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
         """Return the distribution of an uncertain number, truncated if the file says so; raise FileError.
 
-        number: the uncertain number.  table: its table of TOML, with distribution, parameters and perhaps truncate.
+        number: the uncertain number.
+        table: its table of TOML, with distribution, parameters and perhaps truncate.
         """
         law = self.frozen_law(number, table)
         low, high = (float(end) for end in law.support())
@@ -118,7 +124,8 @@ class _Reader:
     def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
         """Return the frozen distribution of scipy.stats that a table names, with its parameters; raise FileError.
 
-        number: the uncertain number, for errors.  table: its table of TOML.
+        number: the uncertain number, for errors.
+        table: its table of TOML.
         """
         from scipy import stats
 
@@ -147,7 +154,8 @@ class _Reader:
         """Read the column of a CSV, netCDF or Parquet file that is the sample of an uncertain number; raise
         FileError.
 
-        number: the uncertain number.  table: its table of TOML, with file and column.
+        number: the uncertain number.
+        table: its table of TOML, with file and column.
         """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")
@@ -174,7 +182,9 @@ def _is_number(value: Any) -> bool:
 def read_column(path: Path, column: str, unit: str) -> Floats:
     """Return a column of finite numbers, (n,).
 
-    path: a .csv, .nc or .parquet file.  column: its name.  unit: to convert to, if a CSV states another.
+    path: a .csv, .nc or .parquet file.
+    column: name of the column.
+    unit: unit to convert to, if a CSV states another.
     Raises ValueError, OSError, KeyError or FileError.
     """
     if path.suffix == ".csv":
@@ -199,7 +209,8 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 def correlated(path: Path, inputs: Inputs) -> Inputs:
     """Return the inputs with the Gaussian copula of the section [correlation]; raise FileError.
 
-    path: path of the run file.  inputs: its inputs without correlations.
+    path: path of the run file.
+    inputs: inputs of the run without correlations.
     """
     section, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(section, dict):

@@ -23,7 +23,9 @@ _METADATA = (".zgroup", ".zarray", ".zattrs")
 def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None = None) -> dict[str, bytes]:
     """Return files of the group of all motions: path below the group -> content.
 
-    motions: dataset over (motion, t), of one block.  count: motions of the run.  block: motions of a full block.
+    motions: dataset over (motion, t), of one block.
+    count: motions of the run.
+    block: motions of a full block.
     number: number of the block whose chunks are returned; None: return the metadata and the arrays that all motions
     share.
     """

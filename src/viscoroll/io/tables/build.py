@@ -46,7 +46,7 @@ def build(
     method: Literal["table", "direct"] = "table",
     command: str | None = None,
 ) -> xr.Dataset:
-    """Table of the contact over (V, delta) or (V, delta, alpha), with the errors of interpolation in it.
+    """Compute a table of the contact over (V, delta) or (V, delta, alpha), and its errors of interpolation.
 
     Parameters
     ----------
@@ -56,8 +56,8 @@ def build(
     V : speeds of the axis, > 0, strictly increasing; for V < 0 see the signs of Eqs. (17), (18).
     delta : creepages, any sign, strictly increasing.
     alpha : strictly increasing, in place of that of a scene without a material.
-    method : as of :func:`contact`: "table", from the rows of the law, or "direct", by root solves of the printed
-        equations, of one relaxation time.  With "direct" the rows are evaluated too, and ``difference_from_rows`` of a
+    method : "table", from the rows of the law, or "direct", by root solves of the printed equations, of one relaxation
+        time.  With "direct" the rows are evaluated too, and ``difference_from_rows`` of a
         field is the largest difference: of lam, zeta and delta_star relative, of other fields divided by their largest
         value.
     command : recorded in ``history``; default: the command line of this process.
@@ -137,7 +137,9 @@ def _roller_of(what: Any) -> Scene | Cylinder:
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
     """Return all fields on the nodes of a grid.
 
-    roller: roller of the grid.  axes: V, delta and perhaps alpha -> nodes.  method: "table" or "direct".
+    roller: roller of the grid.
+    axes: V, delta and perhaps alpha -> nodes.
+    method: "table" or "direct".
 
     Returns field -> values over all axes, or over V and alpha for fields that do not depend on the creepage.
     """
@@ -153,8 +155,10 @@ def _evaluate(
 ) -> dict[str, Floats]:
     """Return fields of the contact by name.
 
-    roller: roller of the grid.  points: V, and perhaps delta (else 0) and alpha (else that of the roller), which
-    broadcast. names: names of the fields.  method: "table" or "direct".
+    roller: roller of the grid.
+    points: V, and perhaps delta (else 0) and alpha (else that of the roller), which broadcast.
+    names: names of the fields.
+    method: "table" or "direct".
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
     creep = points.get("delta", np.zeros(1))
@@ -164,7 +168,8 @@ def _evaluate(
 def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
     """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields.
 
-    table: the grid.  roller: roller of the grid, for the exact values at random points.
+    table: the grid.
+    roller: roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)
     for key, linear in (("spline_error", False), ("linear_error", True)):
@@ -181,8 +186,10 @@ def errors_at(
 ) -> dict[str, Floats]:
     """Return the absolute errors of interpolation in a grid, field -> errors.
 
-    table: the grid.  roller: roller of the grid.  points: axis -> coordinates, (n,).  linear: whether interpolation
-    is linear, else by splines.
+    table: the grid.
+    roller: roller of the grid.
+    points: axis -> coordinates, (n,).
+    linear: whether interpolation is linear, else by splines.
     """
     exact = _evaluate(roller, points, schema.VOLUME + schema.PLANE)
     found = Interpolant(table, linear)(**points)
@@ -190,9 +197,12 @@ def errors_at(
 
 
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
-    """Return random points in random cells of a grid, axis -> coordinates, (count,); of one node always that.
+    """Return random points in random cells of a grid; along an axis of one node they all have its coordinate.
 
-    table: the grid.  count: number of points.  seed: seed of the generator.
+    table: the grid.
+    count: number of points.
+    seed: seed of the generator.
+    Returns axis -> coordinates, (count,), in the units of the grid.
     """
     random = np.random.default_rng(seed)
     points = {}
@@ -209,8 +219,10 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
 def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the law.
 
-    table: the grid.  roller: roller of the grid.  Differences are relative for :data:`RELATIVE_FIELDS`, else divided
-    by the largest value of the field.
+    table: the grid.
+    roller: roller of the grid.
+    Returns field -> difference, dimensionless: relative for :data:`RELATIVE_FIELDS`, else divided by the largest value
+    of the field.
     """
     rows = _evaluate_nodes(roller, {name: table[name].values for name in schema.axes_of(table)}, "table")
     found = {}

@@ -84,8 +84,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     Parameters
     ----------
     table : dataset of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one
-    relaxation
-        time, or of :func:`viscoroll.io.tables.load`.
+        relaxation time, or of :func:`viscoroll.io.tables.load`.
     count : number of random points, >= 1.
     seed : seed of the random points, >= 0.
 
@@ -118,8 +117,11 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
 def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
     """Return two checks for each field of a grid: its nodes, and the splines between them.
 
-    table, count, seed: as of :func:`check_table`.  source: path of the grid.  Raises FileError for a grid that is not
-    of a scene with an alpha.
+    table: dataset of a grid.
+    count: number of random points.
+    seed: seed of these points.
+    source: path of the grid.
+    Raises FileError for a grid that is not of a scene with an alpha.
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:

@@ -196,7 +196,11 @@ def _initializer(values: Floats) -> str:
 
 
 def _write_json(dataset: xr.Dataset, path: Path) -> None:
-    """Write the ``dataset`` of a law to ``path``: its variables and its main attributes."""
+    """Write variables and main attributes of a law as JSON.
+
+    dataset: dataset of the law.
+    path: file to write.
+    """
     numbers = {str(name): variable.values.tolist() for name, variable in dataset.variables.items()}
     about = ("title", "viscoroll_table", "bodies", "material", "comment", "references", "source", "license", CHECKSUM)
     content = (

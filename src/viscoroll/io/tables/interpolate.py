@@ -48,7 +48,9 @@ class Interpolant:
     def __init__(self, table: xr.Dataset, linear: bool = False) -> None:
         """Check a table and choose its axes and bounds; splines are computed at the first use of a field.
 
-        table, linear : as of the class.  Raises FileError if it is not a table.
+        table : the grid, dataset of a file or of ``build``.
+        linear : whether interpolation is linear, else by cubic splines.
+        Raises FileError if it is not a table.
         """
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
@@ -60,7 +62,12 @@ class Interpolant:
         self._bounds = {"Q": (-limit, limit), "Q_over_mu": (-1.0, 1.0), "beta": (0.0, 1.0)}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
-        """Interpolated ``fields`` at ``points``, as of :func:`interpolate`."""
+        """Interpolate fields at points.
+
+        fields: names of fields of the table; None: all.
+        points: coordinates by the name of the axis, in the units of the table; they broadcast.
+        Returns the fields as :class:`Values`, each in the shape of the points.  Raises as :func:`interpolate`.
+        """
         known = schema.fields_of(self._table)
         names = check_names("fields", known if fields is None else fields, known, "a field of this table")
         coordinates, shape = self._map_points(points, names)
@@ -75,7 +82,7 @@ class Interpolant:
         return Values(results, title="Interpolated")
 
     def jitted(self, field: str) -> tuple[Any, Any]:
-        """A field for numba's jitted functions: a function ``at(spline, V, delta, alpha)`` and its spline.
+        """Return a field for numba's jitted functions: a function ``at(spline, V, delta, alpha)`` and its spline.
 
         Parameters
         ----------
@@ -86,7 +93,7 @@ class Interpolant:
         at : a jitted function of numbers; it returns ``value``, ``dV``, ``ddelta`` and ``dalpha``, clipped as values
             of this class are, with slopes 0 there, and NaN outside of the axes.  For an axis that the field does not
             depend on any number may be given.
-        spline : its first argument.
+        spline : first argument of ``at``.
 
         Raises
         ------
@@ -118,9 +125,11 @@ class Interpolant:
     def _map_points(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
     ) -> tuple[dict[str, Floats], tuple[int, ...]]:
-        """Return (axis -> coordinates of the splines, broadcast; their shape).
+        """Check the points of a call, and convert them to the coordinates of the splines.
 
-        points: axis -> what a caller gave.  names: fields to interpolate.
+        points: axis -> coordinates that the caller gave.
+        names: fields to interpolate.
+        Returns (axis -> coordinates in the shape of the points; that shape).
         """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):
@@ -146,7 +155,11 @@ class Interpolant:
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
-        """Return (axes of more than one node, spline over them; without axes the value) of the field ``name``."""
+        """Return the spline of a field, computed at its first use.
+
+        name: name of the field.
+        Returns (axes of more than one node, spline over them; without axes the value of the field).
+        """
         if name not in self._splines:
             field = self._table[name].squeeze()
             dims = tuple(map(str, field.dims))
@@ -156,7 +169,7 @@ class Interpolant:
 
 
 def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
-    """Fields of a grid between its nodes, without extrapolation.
+    """Interpolate fields of a grid between its nodes, without extrapolation.
 
     Parameters
     ----------

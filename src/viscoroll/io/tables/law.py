@@ -38,7 +38,7 @@ _SEED = 20250701
 
 
 def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | None = None) -> xr.Dataset:
-    r"""The contact law of one material or pair: polynomials, one for each octave of speed, for other programs.
+    r"""Return the contact law of one material or pair for other programs: polynomials, one for each octave of speed.
 
     Parameters
     ----------
@@ -98,6 +98,10 @@ def measured_errors(
     table : a law, or that of every alpha, of which random alphas are tested.
     count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave.
     seed : seed of the points.
+
+    Returns
+    ------- dict of str to float
+        Function -> largest relative error, dimensionless.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):
@@ -129,9 +133,12 @@ def measured_errors(
 def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Generator) -> dict[str, float]:
     """Return the largest errors of the law of a layer against its solve with more terms, at random speeds.
 
-    table: the law.  count: number of speeds, around the rates of the layer.  random: generator.
+    table: the law.
+    count: number of speeds, around the rates of the layer.
+    random: generator.
 
-    Errors of share and press follow from those of the other functions and the length of the contact, L.
+    Errors of share and press follow from those of the other functions and of L = 2 kappa delta_star/mu.
+    Returns function -> largest relative error, dimensionless.
     """
     cover: Any = table.material
     slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
@@ -154,7 +161,10 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
 def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
     """Return a function of a law from its coefficients, at arguments before its fast limit.
 
-    table: the law.  function: index in FUNCTIONS.  x: kappa |V| or v, (n,).
+    table: the law.
+    function: index in FUNCTIONS.
+    x: kappa |V| or v, (n,).
+    Returns values, (n,), dimensionless.
     """
     m, e = np.frexp(x)
     row = np.maximum(e - table.e0, 0)

@@ -25,7 +25,7 @@ _DENSITY_POINTS = 20_001
 
 
 def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear") -> Floats:
-    """Numbers in equal steps or equal ratios between two ends, which are exact.
+    """Return numbers in equal steps or equal ratios between two ends, which are exact.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
 
 
 def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: ArrayLike | None = None) -> Floats:
-    """Nodes of creepage for a grid, dense where full slip begins at some of its speeds: around +-delta_star(V, alpha).
+    """Return nodes of creepage for a grid, dense where full slip begins: around +-delta_star(V, alpha) of its speeds.
 
     Parameters
     ----------
@@ -102,8 +102,11 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     """Return the nodes of an axis as a new vector.
 
-    name: name of the axis.  nodes: what a caller gave.  bounds: as of :func:`.checks.check_array`.  Raises
-    ParameterError for nodes that are out of range or do not increase strictly.
+    name: name of the axis.
+    nodes: what a caller gave.
+    bounds: ``unit``, ``low``, ``above`` and ``high`` of the values.
+    Raises ParameterError for nodes that are out of range or do not increase strictly.
+    Returns the nodes, (n,), strictly increasing, in the unit of ``bounds``.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():

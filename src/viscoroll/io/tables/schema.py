@@ -60,7 +60,10 @@ def fields_of(table: xr.Dataset) -> tuple[str, ...]:
 def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
     """Return a variable with long_name, units, symbol, range, equation and reference.
 
-    name: name of the quantity.  dims: its axes.  values: array.  si: whether it is in SI units, else dimensionless.
+    name: name of the quantity.
+    dims: axes of the variable.
+    values: array of its values, over ``dims``.
+    si: whether it is in SI units, else dimensionless.
     """
     import xarray as xr
 
@@ -72,8 +75,9 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
 def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
     """Return the global attributes of a grid that is computed now.
 
-    title: title of the grid.  grid: its axes in words.  command: command that computed it; default: the command line
-    of this process.
+    title: title of the grid.
+    grid: axes of the grid in words.
+    command: command that computed it; default: the command line of this process.
     """
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {

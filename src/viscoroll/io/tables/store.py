@@ -105,7 +105,7 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
 
 
 def info(path: str | PathLike[str]) -> str:
-    """Summary of a law or a grid: its functions or fields, their stated errors, its origin.
+    """Return the summary of a law or a grid: its functions or fields, their stated errors, its origin.
 
     Parameters
     ----------

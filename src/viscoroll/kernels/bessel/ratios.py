@@ -68,7 +68,9 @@ def _r_power_series(terms: int) -> list[float]:
 def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     """Return the first coefficients a_n of the asymptotic series sum a_n x^-n, from the Riccati equations.
 
-    sign : -1 for r, +1 for k.  terms : number of coefficients.
+    sign : -1 for r, +1 for k.
+    terms : number of coefficients.
+    Returns [a_0, a_1, ...], ``terms`` Decimals.
     """
     a = [Decimal(1)]
     for n in range(1, terms):
@@ -82,7 +84,10 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
 def _tail(sign: int) -> np.ndarray:
     """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the argument.
 
-    sign : -1 for r, +1 for k.  The polynomial goes through the asymptotic series at Chebyshev nodes.
+    The polynomial goes through the asymptotic series at Chebyshev nodes.
+
+    sign : -1 for r, +1 for k.
+    Returns coefficients of ascending powers of 1/x or 1/z, (terms,), dimensionless.
     """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]
@@ -116,7 +121,11 @@ def _polynomial(row, t):
 
 @inline_kernel
 def ratio_r(x):
-    """Return r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy (2.4 ULP)."""
+    """Return the ratio r = I1/I0 of modified Bessel functions and 1 - r, both to full relative accuracy (2.4 ULP).
+
+    x : argument, float >= 0, dimensionless.
+    Returns (r, 1 - r), dimensionless; 1 - r is computed without cancellation.
+    """
     inverse_x = 1.0 / x
     # selections, not branches: those would be mispredicted on scattered arguments
     near = x < _NEAR
@@ -131,7 +140,11 @@ def ratio_r(x):
 
 @inline_kernel
 def ratio_k(z):
-    """Return k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy (2.4 ULP)."""
+    """Return the ratio k = K0/K1 of modified Bessel functions and 1 - k, both to full relative accuracy (2.4 ULP).
+
+    z : argument, float >= 0, dimensionless.
+    Returns (k, 1 - k), dimensionless; 1 - k is computed without cancellation.
+    """
     if z < K_LEAST:
         k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
         return k, 1.0 - k

@@ -50,7 +50,8 @@ def _load(context, builder, kind, at):
     """Return instructions that load the value of a type from an address, field by field.
 
     context, builder : numba's context of code generation, and builder of LLVM.
-    kind : numba's type of the value.  at : its address, a value of LLVM.
+    kind : numba's type of the value.
+    at : its address, a value of LLVM.
 
     LLVM removes the fields that are not used.
     """

@@ -78,8 +78,10 @@ class DiskCache:
     def exclusive(self, signature, codegen) -> Iterator[None]:
         """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE`.
 
-        signature : types of the arguments.  codegen : numba's code generator, which knows the processor.
         If the code is stored already, or if no lock can be made, nobody waits.
+
+        signature : types of the arguments.
+        codegen : numba's code generator, which knows the processor.
         """
         path = self._path(signature, codegen)
         if path.exists():
@@ -101,7 +103,8 @@ class DiskCache:
     def load_overload(self, signature, target) -> CompileResult | None:
         """Return the machine code for a signature, or None.
 
-        signature : types of the arguments.  target : numba's target context.
+        signature : types of the arguments.
+        target : numba's target context.
         """
         target.refresh()
         try:
@@ -118,7 +121,8 @@ class DiskCache:
     def save_overload(self, signature, compiled: CompileResult) -> None:
         """Store machine code, unless it contains addresses of this process; warn if that fails.
 
-        signature : types of the arguments.  compiled : numba's result.
+        signature : types of the arguments.
+        compiled : numba's result.
         """
         if compiled.library.has_dynamic_globals:
             return
@@ -134,7 +138,8 @@ class DiskCache:
     def _path(self, signature, codegen) -> Path:
         """Return the path of the machine code: the name of the function, and a hash of all that the code depends on.
 
-        signature : types of the arguments.  codegen : numba's code generator, which knows the processor.
+        signature : types of the arguments.
+        codegen : numba's code generator, which knows the processor.
         """
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"

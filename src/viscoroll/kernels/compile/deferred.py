@@ -16,23 +16,27 @@ from functools import lru_cache
 from typing import Any, Callable
 
 import numba
-from numba.core import types
+from numba.core import base, types
 from numba.core.compiler import Compiler
 
 from .notice import announce_compiling
 
 #: Whether kernels are compiled in this way; False after a failure.
 _deferring = True
-#: Passes of numba that search a kernel for what kernels do not have: closures, and overloads to be inlined.
-_NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift")
+#: Passes of numba that search a kernel for what kernels do not have: closures, overloads to be inlined, expressions of
+#: whole arrays.
+_NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift", "NopythonRewrites")
 
 
 @contextmanager
-def _memoized_types(typing):
-    """Keep, within a ``with`` block, the types of operations on numbers, which numba resolves again at each sum of
-    floats.
+def _memoized_types(typing, target):
+    """Memoize results that numba computes again for each statement, within a ``with`` block.
 
-    typing : numba's typing context.
+    These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
+    a module, and the signatures of numba's own functions that lower a statement.
+
+    typing, target : numba's typing context and target context, changed within the block.
+    Yields None.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -43,15 +47,21 @@ def _memoized_types(typing):
     def resolve_function_type(function, args, kws):
         if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
             return plain(function, args, kws)
+        if not all(isinstance(kind, types.Literal) for kind in args):  # numba resolves again for every literal integer
+            args = tuple(map(types.unliteral, args))
         if (function, args) not in resolved:
             resolved[function, args] = plain(function, args, kws)
         return resolved[function, args]
 
     typing.resolve_function_type = resolve_function_type
+    typing.resolve_getattr = lru_cache(maxsize=None)(typing.resolve_getattr)
+    target.get_abi_sizeof = lru_cache(maxsize=None)(target.get_abi_sizeof)
+    has_location, base._has_loc = base._has_loc, lru_cache(maxsize=None)(base._has_loc)
     try:
         yield
     finally:
-        del typing.resolve_function_type
+        del typing.resolve_function_type, typing.resolve_getattr, target.get_abi_sizeof
+        base._has_loc = has_location
 
 
 @contextmanager
@@ -80,13 +90,17 @@ class EntryPipeline:
 
     @_without_garbage_collection()
     def compile_extra(self, function: Callable):
-        """Compile ``function``, and return numba's result; in numba's own way if a private name of numba fails."""
+        """Compile a function by a part and a whole; by numba's own pipeline if a private name of numba has changed.
+
+        function : the Python function.
+        Returns numba's ``CompileResult``.
+        """
         announce_compiling()
         global _deferring
         if not _deferring:
             return Compiler(*self._context).compile_extra(function)
         try:
-            with _memoized_types(self._context[0]):
+            with _memoized_types(*self._context[:2]):
                 return _pipelines()[1](*self._context).compile_extra(function)
         except Exception as error:
             reason = error
@@ -112,6 +126,7 @@ def defer(whole, options: dict[str, Any]):
 
     whole : numba's dispatcher of the kernel, changed.
     options : options of ``numba.njit`` for the part.
+    Returns None; the dispatcher compiles in the new way from then on.
     """
     plain = type(whole)
 
@@ -135,7 +150,10 @@ def defer(whole, options: dict[str, Any]):
 
 @lru_cache(maxsize=1)
 def _pipelines():
-    """Return numba's compiler classes for parts and for wholes."""
+    """Make numba's compiler classes for the part of a kernel that others call and for the whole that Python calls.
+
+    Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``.
+    """
     from numba.core.codegen import JITCodeLibrary
 
     class Part(JITCodeLibrary):
@@ -156,6 +174,14 @@ def _pipelines():
         def set_env(self, name, environment):
             """Do nothing: there is no code yet."""
 
+        def add_llvm_module(self, module):
+            """Take a module over, which numba would link into an empty one; further ones are linked into it."""
+            if next(iter(self._final_module.functions), None) is None:
+                self._optimize_functions(module)
+                self._final_module = module
+            else:
+                super().add_llvm_module(module)
+
         def _optimize_functions(self, module):
             """Optimise nothing: LLVM works on the whole alone."""
             module.data_layout = self._codegen._data_layout
@@ -170,6 +196,9 @@ def _pipelines():
         """A library with the IR of all parts below, optimised and compiled together."""
 
         def finalize(self):
+            """Add the called libraries to the module of LLVM, optimize it once, and turn it into machine code; returns
+            None.
+            """
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
             _link(self, module)
@@ -199,7 +228,8 @@ def _pipelines():
 def _link(library, module):
     """Add to a module of LLVM the libraries that a library calls, directly or not, each once.
 
-    library : numba's library.  module : LLVM's module, changed.
+    library : numba's library.
+    module : LLVM's module, changed.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -215,7 +245,10 @@ def _link(library, module):
 
 
 def _pipeline(library_class: type):
-    """Return numba's default compiler, which lowers into libraries of ``library_class``."""
+    """Return numba's default compiler, which lowers into libraries of ``library_class``.
+
+    Returns the subclass of numba's ``CompilerBase``.
+    """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass
     from numba.core.typed_passes import NativeLowering
@@ -237,6 +270,10 @@ def _pipeline(library_class: type):
 
         def __eq__(self, other):
             return isinstance(other, ShortFlags) and self._values == other._values
+
+        def values(self):
+            """Return the flags that are set, for the events of numba, to which nobody listens."""
+            return self._values
 
     class Compiler(CompilerBase):
         def __init__(self, typing, target, library, args, returns, flags, types_):

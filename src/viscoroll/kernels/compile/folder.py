@@ -22,7 +22,10 @@ _SUPERUSERS = 0
 
 
 def cache_root() -> Path:
-    """Return the folder that holds every cache of the package."""
+    """Return the folder that holds every cache of the package.
+
+    Returns the path; the folder may not exist yet.
+    """
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
     if base := os.environ.get("XDG_CACHE_HOME"):
@@ -60,7 +63,9 @@ def read_private(path: Path) -> bytes:
 def write_private(path: Path, content: bytes) -> None:
     """Write a file of the cache, whole or not at all, which others may only read.
 
-    path : the file.  content : what is written.  Raises OSError.
+    path : the file.
+    content : what is written.
+    Raises OSError.
     """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")

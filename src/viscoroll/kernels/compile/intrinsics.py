@@ -99,10 +99,13 @@ def record_type(integers: str, floats: str = "") -> np.dtype:
 
 @cache
 def function_address(function, record: np.dtype, returned=types.void, *first) -> int:
-    """Address of the machine code of a kernel.
+    """Return the address of the machine code of a kernel, compiled for the given types.
 
-    function : the kernel.  record : dtype of the record to which its last argument points.
-    returned : numba's type of its value.  first : numba's types of the other arguments; default one integer.
+    function : the kernel, numba's dispatcher.
+    record : dtype of the record to which its last argument points.
+    returned : numba's type of its value.
+    first : numba's types of the other arguments; default one integer.
+    Returns the address as an int.
     """
     kinds = *(first or (types.int64,)), types.CPointer(numba.from_dtype(record))
     function.compile(returned(*kinds))

@@ -40,7 +40,7 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
 
 
 def _compile_exclusively(dispatcher) -> None:
-    """Make the compilation of a kernel wait while another process compiles it for the same signature.
+    """Replace the compilation of a kernel by one that waits while another process compiles it for the same signature.
 
     dispatcher : numba's dispatcher of the kernel, changed.
     """

@@ -9,7 +9,10 @@ announced = False
 
 
 def announce_compiling() -> None:
-    """Print, once a process, that kernels are being compiled; how many will follow is not known."""
+    """Print a line that kernels are being compiled, at most once in a process.
+
+    Their number is not known at that time, so that the line names none.  Returns None.
+    """
     global announced
     if announced or is_quiet():
         return

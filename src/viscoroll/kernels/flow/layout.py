@@ -2,6 +2,8 @@
 
 Times are tau = gamma t.  Motions are mirrored so that omega > V in full slip and V > 0 in partial slip.  All tables
 form one vector; pairs of functions are interleaved (:mod:`..rows.simd_polynomial`).
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from math import prod

@@ -3,6 +3,8 @@
 In full slip, mirrored so that omega > V, I = V - j omega - 2 mu T(V) is constant and determines the onset of partial
 slip.  Behind the onset the boundary layer is a table over (V at onset, E); then the motion follows the slow
 manifold, a function of the slow logarithm.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -100,7 +102,7 @@ def slide_distance(start, tau, flow):
     tau : time, > 0.
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
-    The difference of X, or the integral of V where that difference cancels.
+    Returns the distance, dimensionless: the difference of X, or the integral of V where that difference cancels.
     """
     T, X = start
     if tau > _SHORT * abs(T):
@@ -115,11 +117,12 @@ def slide_distance(start, tau, flow):
 def read_onset(I, level, flow):
     """Return the state at the onset of partial slip of a sliding motion, in the mirrored frame (omega > V).
 
-    I : V - j omega - 2 mu T, constant while sliding.
+    I : V - j omega - 2 mu T, constant while sliding, with T the time that the table gives for V.
     level : SPEEDS, PATH (and distance) or LOSS (and slip loss); X from PATH on.
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
-    Returns (V, T, X); V = 0 outside the tables.
+    Returns (V, T, X): speed at the onset, integrals of time and distance of full slip from rest to it; V = 0 where the
+    onset is outside the tables.
     """
     x = flow.kappa * abs(I) / (1.0 + flow.j)
     if not LOWEST <= x < HIGHEST:
@@ -172,8 +175,8 @@ def manifold_path(start, span, rate, table):
     """Return distance and angle along the slow manifold while the slow logarithm falls by ``span``.
 
     start : slow logarithm at the beginning.
-    span : its decrease.
-    rate : its decrease in unit time.
+    span : decrease of the slow logarithm.
+    rate : decrease of the slow logarithm in unit time gamma t.
     table : vector with all tables of the map.
 
     Returns (distance, angle): the difference of the remaining path, or the integral of V where that difference
@@ -322,6 +325,7 @@ def slow_log_at_rest(rest, flow):
 
     rest : threshold, > 0; beyond the tables their highest speed counts.
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    Returns the slow logarithm, the coordinate along the slow manifold, dimensionless.
     """
     rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
     for _ in range(4):

@@ -1,4 +1,7 @@
-"""Look up many motions of one scene in its flow map."""
+"""Look up many motions of one scene in its flow map.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+"""
 
 import numpy as np
 
@@ -118,7 +121,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
 
 @inline_kernel
 def _write_full_slip(at, tau_out, until, slide, level, flow, out):
-    """Write the outputs before the onset of partial slip, and return the next column.
+    """Write the outputs before the onset of partial slip.
 
     at : first column to write.
     tau_out : output times, gamma t, ascending.
@@ -127,6 +130,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
     out : outputs (ROWS, times).
+    Returns the index of the next column to write.
     """
     mu, per_j = flow.mu, 1.0 / flow.j
     frame, w, T0, X0 = slide
@@ -148,7 +152,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
 
 @inline_kernel
 def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
-    """Write the outputs in partial slip up to a time, and return the next column.
+    """Write the outputs in partial slip up to a time.
 
     at : first column to write.
     tau_out : output times, gamma t, ascending.
@@ -158,6 +162,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
     out : outputs (ROWS, times).
+    Returns the index of the next column to write.
     """
     frame = stick.frame
     total_loss = remaining_slip_loss(asymptote.slow_log, flow.table) + asymptote.loss if level >= LOSS else 0.0
@@ -196,7 +201,8 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
     out : outputs (ROWS, times).
 
-    Returns (status, time of rest or NaN), as gamma t.
+    Returns (status, time gamma t at which the motion comes to rest or NaN); status is an int, a code of
+    :mod:`..motion.records`.
     """
     layer_end = stick.tau + LAYER_END / asymptote.rate
     rest_time, end = np.inf, tau_out[tau_out.size - 1]
@@ -228,7 +234,8 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
     out : outputs (ROWS, times), written.
 
-    Returns (status, time of onset, time of rest), times as gamma t, NaN where there is none.
+    Returns (status, time of the onset of partial slip, time of coming to rest); status is COMPLETED or CAME_TO_REST of
+    :mod:`..motion.records`, or NOT_COVERED; times are gamma t, NaN where there is none.
     """
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
@@ -264,13 +271,12 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
 
 @kernel(allocates=True)
 def look_up_motions(flow, motions, result, start, stop):
-    """Look up the motions start..stop and write them into ``result``; a motion outside the map has the status
-    NOT_COVERED.
+    """Look up some motions in the flow map and write their outputs; motions outside the map get the status NOT_COVERED.
 
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
-    motions : record :class:`.records.Motions`.
-    result : arrays (:class:`viscoroll.motion.flow.FlowResult`).
-    start, stop : range of motions.
+    motions : :class:`.records.Motions`: starts, output times and requested quantities, of all motions.
+    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, written.
+    start, stop : int, index of the first motion and of the one behind the last.
     """
     gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j

@@ -1,5 +1,7 @@
 """Flow map, starts inside the stick zone: the search for the onset of partial slip that the start would have come
 from.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -31,7 +33,7 @@ def _initial_u(size, slow, turns):
     law.
 
     size : |delta|/delta_star of the start, negative beyond delta = 0.
-    slow : the same on the slow manifold at the speed of the start, with the same sign convention.
+    slow : |delta|/delta_star on the slow manifold at the speed of the start, with the same sign.
     turns : whether motions of this family pass delta = 0 (then the layer has a split there).
 
     Returns u, dimensionless.  Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction
@@ -64,9 +66,11 @@ def find_onset(V, delta, edge, flow):
     edge : delta_star at V.
     flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
 
-    Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the
-    slow manifold E is infinite and the speed is that of the state.  Newton's iteration in ln V at onset and in u,
-    applied to the logarithm of the distance from the manifold, which decreases nearly linearly in E.
+    Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the slow
+    manifold E is infinite and the speed is that of the state.
+
+    Method: Newton's iteration in ln V at onset and in u, applied to the logarithm of the distance from the manifold,
+    which decreases nearly linearly in E.
     """
     v = flow.kappa * V
     lowest, highest = 2.0**flow.first, 2.0 ** (flow.first + layout.OCTAVES)

@@ -1,4 +1,7 @@
-"""Records of the flow map's kernels."""
+"""Records of the flow map's kernels.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+"""
 
 from typing import Any, NamedTuple
 

@@ -1,4 +1,7 @@
-"""Contact states from which a flow map is made."""
+"""Contact states from which a flow map is made.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+"""
 
 import numpy as np
 

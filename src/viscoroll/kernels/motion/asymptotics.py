@@ -8,6 +8,22 @@ An equilibrium is stable where the Jacobian of (V', d') has a negative trace and
 within a small fraction of the tolerance of a stable equilibrium stays there as long as the drive is constant.  In
 full slip V has equilibria of its own, while omega is constant or linear in time.  Steps could not follow either for
 long: the rounding of P, times the length of a step, exceeds the tolerance.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- Rates: the right-hand side at a State and its derivatives (:mod:`rhs`).
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
+  (:mod:`rhs`).  p' is its slope in tau.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -61,12 +77,13 @@ def equilibrium_tolerance(rtol):
 
 @inline_kernel
 def may_be_at_equilibrium(noise, work):
-    """Return whether V at node 0 may be at its equilibrium, by the derivative of p' in V alone.
+    """Return whether V at node 0 may be near its equilibrium, a check that costs no evaluation of the law.
 
-    p is about dp/dV times V: so the distance is p' divided by dp'/dp.
+    V is estimated to be p'/(dp'/dp) away from the equilibrium; the relative distance is compared with twice the
+    tolerance.  Where this holds, :func:`find_equilibrium` decides.
 
     noise: float, rounding error of p', dimensionless.
-    work: Workspace, with node 0.
+    work: Workspace, with p, p' and dp'/dp at node 0.
     """
     nodes, tolerance = work.nodes, equilibrium_tolerance(work.options.rtol)
     return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[ROW_P_DIAGONAL] * abs(nodes[ROW_P])
@@ -74,16 +91,16 @@ def may_be_at_equilibrium(noise, work):
 
 @kernel
 def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
-    """Return the equilibrium of V in full slip, if V has reached it.
+    """Return the equilibrium of V in full slip and whether V has reached it, by one Newton step.
 
-    It counts only where omega does not approach V, nor 0 under a brake, and no feedback of omega acts.
+    V has no equilibrium here where omega approaches V, or 0 under a brake, or where a feedback of omega acts.
 
     state: State, the present one.
     rates: Rates, at that state.
     regime: Regime, of full slip.
     noise: float, rounding error of p', dimensionless.
     tolerance: float, relative distance of V at which it has reached its equilibrium.
-    Returns (whether it has, State after Newton's step to it); (False, state) where it does not count.
+    Returns (whether V has reached it, State after the Newton step); (False, state) where V has no equilibrium.
     """
     if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
         return False, state
@@ -95,17 +112,18 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
 
 @kernel
 def find_equilibrium(state, regime, noise, step_state, work):
-    """Return the stable equilibrium of the present drive, if a motion has reached it.
+    """Return the stable equilibrium under the present drive and whether the motion has reached it.
 
-    It has if Newton's step to it is below the tolerance, of V relative to itself and of d, or below rounding.
+    The motion has reached it if the Newton step to it is below the tolerance, of V relative to itself and of d, or
+    below rounding.
 
     state: State, the present one, with V > 0.
     regime: Regime, at that state.
-    noise: float, rounding error of p' where that is 0, dimensionless.
+    noise: float, rounding error of p' at the equilibrium, dimensionless.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
-    Returns (whether it has, State after that step); (False, state) where the equilibrium is not stable, or in partial
-    slip with a speed prescribed.
+    Returns (whether the motion has reached it, State after the Newton step); (False, state) where the equilibrium is
+    not stable, or in partial slip with a speed prescribed.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
@@ -142,7 +160,8 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; nodes and outputs are written.
-    Returns (whether it has, State, StepState): at the end of the segment, one step later, or unchanged.
+    Returns (whether it has reached it, State, StepState): both at the end of the segment with one trial step more, or
+    both unchanged.
     """
     steady, equilibrium = find_equilibrium(state, regime, noise, step_state, work)
     if not steady:
@@ -162,9 +181,10 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
 
 @inline_kernel
 def is_coasting(state, regime, step_state, work):
-    """Return whether V decays exponentially up to a fraction of the tolerance.
+    """Return whether V decays exponentially from here on, to a fraction of the tolerance.
 
-    It does in slow rolling where no force or torque acts, or only feedback that does not outweigh the resistance.
+    It does in slow rolling in partial slip where no force or torque acts, or only feedback below the rolling
+    resistance.
 
     state: State, the present one.
     regime: Regime, at that state.
@@ -200,13 +220,14 @@ def _energies_of_decay(rate, inertia, torque_difference, work):
 
 @kernel
 def coast_to_end(state, regime, step_state, work):
-    """Write the outputs of the exponential decay (1 + j + gamma N) V' = -rate V with delta/V constant.
+    """Write the remaining outputs by the closed form of slow rolling, (1 + j + gamma N) V' = -rate V with delta/V
+    constant.
 
     state: State, the present one, in partial slip.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; outputs are written.
-    Returns (status COMPLETED or CAME_TO_REST, StepState at the last output).
+    Returns (status, StepState at the last output); the status is COMPLETED, or CAME_TO_REST below the rest threshold.
     """
     scene, direction = work.scene, regime.direction
     half_space, cylinder, force, torque = low_speed_limits(work)

@@ -1,4 +1,13 @@
-"""Many motions, each with its own start and, where given, its own scene and drive: the entry from Python."""
+"""Many motions, each with its own start and, where given, its own scene and drive: the entry from Python.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+"""
 
 from __future__ import annotations
 
@@ -44,12 +53,13 @@ def _value_of_motion(array, i):
 
 @kernel
 def _drive_of_motion(drives, gamma, i, segments):
-    """Write the segments of one motion over tau = gamma t and return its Gains.
+    """Write the segments of one motion as functions of tau = gamma t.
 
     drives: Drives, over t.
     gamma: float, tau = gamma t, dimensionless.
     i: int, index of the motion.
     segments: (k, columns), written.
+    Returns the Gains of the motion.
     """
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
     for k in range(segments.shape[0]):
@@ -76,7 +86,8 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
     rows: (q,) int, requested output rows of :mod:`output`.
     out: (q, n, k), [quantity, motion, time], filled.
     info: (n, 5), [motion, INFO_COLUMNS], filled.
-    notes: (switches, step_ends), as in :class:`Workspace`, filled with those of the last motion.
+    notes: (switches, step_ends), arrays (m, 2) and (k,), filled with the regime changes and the ends of the steps of
+    the last motion.
     """
     motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
     (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes

@@ -2,6 +2,13 @@
 
 A row holds the values at the eight nodes of a step: eight numbers, two vectors of four.  A matrix is stored by its
 eight columns, one after the other.  Positions on a step are v = 1 + t in [0, 2].
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- v: position on a step, 0 at its left end and 2 at its right end.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -115,7 +122,8 @@ def _eliminate(i, matrix):
 
     Only whole vectors are stored: a vector load behind the store of a single number into it would wait for that store.
 
-    i: int, the step, row and column of its pivot; 1 ... N, as row and column of node 0 are left out.
+    i: int, 1 ... N, number of the step and index of the row and column of its pivot; row and column of node 0 are left
+    out.
     matrix: pointer to ROW_LENGTH^2 numbers, column by column.
     """
     column = ROW_LENGTH * i
@@ -208,10 +216,11 @@ def evaluate_integral(v, first, nodes, row):
 
 @kernel
 def row_range(row, nodes):
-    """Return (smallest, largest) of the values of a row at all nodes.
+    """Return the smallest and the largest of the values of a row at all nodes.
 
     row: int, index in ``nodes`` of the row.
     nodes: Workspace.nodes.
+    Returns (smallest, largest), in the unit of the row.
     """
     smallest = largest = nodes[row]
     for i in range(1, N + 1):

@@ -10,6 +10,16 @@ V -> 0, where L = H = 1:
 The left side less the right side decreases with d where mu <= 2 kappa: for |d| < 1 there is one root, or slip is full
 from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on, where omega' = 0, and under a force close
 to the limit of friction the departure is not unique.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Load: force, torque, largest torque of the brake and prescribed slopes at one time, in the direction of the Regime.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -78,12 +88,12 @@ def _d_at_zero_omega(scene):
 
 @kernel
 def _spin_against_brake(load, scene):
-    """Return how omega starts under a brake as V grows from 0 in partial slip.
+    """Return the sign with which omega grows from 0 under a brake, or that the brake holds it, as V grows from 0.
 
     load: Load, at V = 0, with a brake.
     scene: Scene, parameters of Eq. (22).
-    Returns (sign of omega, whether the brake holds omega at 0 instead): so it does where mu > 2 kappa and the traction
-    at omega = 0 leaves less torque than the brake can take.
+    Returns (sign of omega, whether the brake holds omega at 0 instead).  The brake holds it where mu > 2 kappa and the
+    torque that the traction at omega = 0 leaves is below that of the brake.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
@@ -190,10 +200,11 @@ def holding_margin(load, mu):
 
 @kernel
 def _holding_margin_at(tau, segment, work):
-    """Return the holding margin at a time, dimensionless.
+    """Return the holding margin of :func:`holding_margin` at a time: a force or torque, dimensionless, below 0 where
+    the drive moves the cylinder.
 
     tau: float, the time.
-    segment: int, index of the segment that contains it.
+    segment: int, index of the segment of the drive that contains the time.
     work: Workspace, of the motion.
     """
     return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene.mu)
@@ -201,7 +212,7 @@ def _holding_margin_at(tau, segment, work):
 
 @kernel
 def find_departure_time(tau, segment, work):
-    """Return the first time at which the drive moves a cylinder at rest; the end of the segment if it does not.
+    """Return the first tau at which the drive moves a cylinder at rest; the end of the segment if it does not.
 
     A sign change of the holding margin is searched in _SCAN_INTERVALS intervals, then bisected to rounding.
 
@@ -230,14 +241,14 @@ def find_departure_time(tau, segment, work):
 
 @kernel
 def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
-    """Return how the cylinder departs in full slip, with the sign of slip that persists.
+    """Decide whether the cylinder departs in full slip, in a direction of slip that its accelerations keep up.
 
     tau: float, time at which the drive is evaluated.
-    segment: int, index of its segment.
+    segment: int, index of the segment of the drive that contains the time.
     braked: bool, whether a brake acts on the segment.
     stick_zone_slip: float, |omega - V|/(L V) that full slip must exceed in the limit V -> 0, dimensionless.
     work: Workspace, of the motion.
-    Returns (SLIDES_OFF or STAYS_AT_REST, Regime, 0); 0 stands for omega.
+    Returns (SLIDES_OFF or STAYS_AT_REST, Regime, omega = 0.0), in the form of :func:`depart_from_rest`.
     """
     scene = work.scene
     L, free_creep = rest_limits(scene)
@@ -259,12 +270,13 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
 
 @kernel
 def depart_from_rest(tau, segment, work):
-    """Decide how a cylinder goes on from V = omega = 0.
+    """Decide whether and how a cylinder departs from V = omega = 0.
 
     tau: float, the time.
-    segment: int, index of the segment of the drive.
+    segment: int, index of the segment of the drive that contains the time.
     work: Workspace, of the motion.
-    Returns (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; Regime; d of rolling off, or 0).
+    Returns (kind, Regime, d): STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; the Regime of the departure; d =
+    delta/delta_star at the departure in partial slip, else 0.
     """
     scene = work.scene
     tau_drive = tau

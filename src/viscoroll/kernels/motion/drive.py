@@ -2,6 +2,19 @@
 
 A segment is a row of numbers (COL_* of :mod:`records`): its start, the scale of its time and the coefficients of five
 polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the segment.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
+- Load: force, torque, largest torque of the brake and prescribed slopes at one time, in the direction of the Regime.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -46,7 +59,7 @@ def evaluate_polynomial(row, function, x):
     """Return one function of a segment at a position, dimensionless.
 
     row: (columns,), the segment.
-    function: int, DRIVE_*.
+    function: int, DRIVE_FORCE ... DRIVE_SPEED.
     x: float, position in [-1, 1] on the segment.
     """
     n_terms = n_coefficients(row)
@@ -58,10 +71,11 @@ def evaluate_polynomial(row, function, x):
 
 @inline_kernel
 def _sum_of_moduli(row, first, last):
-    """Return the sum of the moduli of the coefficients of some functions of a segment, which bounds their sum.
+    """Return the sum of the moduli of the coefficients of some functions of a segment, an upper bound of each;
+    dimensionless.
 
     row: (columns,), the segment.
-    first, last: int, the first of the functions DRIVE_* and the one behind the last.
+    first, last: int, index DRIVE_* of the first function and of the one behind the last.
     """
     n_terms, total = n_coefficients(row), 0.0
     for n in range(COL_COEFFICIENTS + first * n_terms, COL_COEFFICIENTS + last * n_terms):
@@ -71,7 +85,7 @@ def _sum_of_moduli(row, first, last):
 
 @kernel
 def evaluate_drive(tau, segment, drive):
-    """Return the drive at one time, not oriented by the regime, dimensionless.
+    """Return the drive at one time, in fixed directions, not in those of the regime, dimensionless.
 
     tau: float, the time.
     segment: int, index of the segment that contains tau.
@@ -97,8 +111,8 @@ def prescribed_speed(tau, segment, drive):
     tau: float, the time.
     segment: int, index of the segment that contains tau.
     drive: Drive, with a prescribed speed.
-    Returns V or omega, dimensionless, not oriented by the regime; 0 where it is rounding relative to the coefficients
-    of its segment.
+    Returns V or omega, dimensionless, in a fixed direction, not in that of the regime; 0 where it is rounding relative
+    to the coefficients of its segment.
     """
     row = drive.segments[segment]
     speed = evaluate_polynomial(row, DRIVE_SPEED, (tau - row[COL_START]) * row[COL_SCALE] - 1.0)
@@ -108,7 +122,7 @@ def prescribed_speed(tau, segment, drive):
 
 @inline_kernel
 def load_from_values(values, regime, work):
-    """Return the Load for given values of the drive, oriented by the regime, without feedback.
+    """Return the Load for given values of the drive, in the direction of the regime; feedback is not added yet.
 
     values: (force, torque, slope of the prescribed speed, torque of the brake), as :func:`evaluate_drive` returns them.
     regime: Regime, whose direction orients them and which may hold omega at 0.
@@ -131,7 +145,7 @@ def load_from_values(values, regime, work):
 
 @kernel
 def evaluate_load(tau, segment, regime, work):
-    """Return the Load at one time, oriented by the regime, without feedback.
+    """Return the Load at one time, in the direction of the regime; feedback is not added yet.
 
     tau: float, the time.
     segment: int, index of the segment that contains tau.
@@ -143,7 +157,7 @@ def evaluate_load(tau, segment, regime, work):
 
 @kernel
 def current_load(regime, step_state, work):
-    """Return the Load at the time reached, oriented by the regime, without feedback.
+    """Return the Load at the time reached, in the direction of the regime; feedback is not added yet.
 
     regime: Regime, the present one.
     step_state: StepState, with that time and its segment.
@@ -173,7 +187,8 @@ def store_drive(step, work):
 
 @inline_kernel
 def load_at_node(i, regime, work):
-    """Return the Load at a node of the step whose drive is stored, oriented by the regime, without feedback.
+    """Return the Load at a node of a step whose drive is stored, in the direction of the regime; feedback is not added
+    yet.
 
     i: int, the node.
     regime: Regime, that of the step.

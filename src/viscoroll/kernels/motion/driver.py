@@ -1,6 +1,18 @@
 """Integration of a motion, free or driven, from regime to regime and from segment to segment of the drive.
 
 A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or held by its brake.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -62,7 +74,7 @@ def _advance_at_rest(step_state, work):
 
     step_state: StepState, at the time reached.
     work: Workspace, of the motion; outputs are written.
-    Returns (STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; State; Regime; StepState) then.
+    Returns (kind, State, Regime, StepState) at that time; kind is STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS.
     """
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
     if kind == ROLLS_OFF or kind == SLIDES_OFF:
@@ -91,9 +103,9 @@ def _is_below_rest_speed(moving, state, regime, step_state, work):
 
 @kernel
 def added_mass_exhausted(event, state, regime, work):
-    """Return whether the added mass has left its range in partial slip, or ends it by an event.
+    """Return whether the added mass in partial slip is so large that the equations are no longer regular.
 
-    event: int, the last event, or NO_EVENT.
+    event: int, the last event, or NO_EVENT; an event STICK_EDGE may be due to the added mass.
     state: State, the present one.
     regime: Regime, at that state.
     work: Workspace, of the motion.
@@ -190,7 +202,7 @@ def _advance_segment(moving, state, regime, step_state, work):
 
 @kernel
 def _come_to_rest(code, state, regime, step_state, work):
-    """Write the outputs of a motion that comes below the rest threshold now; return the StepState at its end.
+    """Write the outputs of a motion whose speeds fall below the rest threshold now, up to its last output time.
 
     The kinetic energy that is left is added to the loss in rolling.
 
@@ -198,6 +210,7 @@ def _come_to_rest(code, state, regime, step_state, work):
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; outputs are written.
+    Returns the StepState at the last output time.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
     if code >= 0 and code != AT_REST:
@@ -209,13 +222,14 @@ def _come_to_rest(code, state, regime, step_state, work):
 
 @kernel
 def _record_regime(code, new_code, stick_formed, step_state, work):
-    """Record a regime that differs from the one before, and when stick first forms; return the new code.
+    """Record a change of the regime, and the time at which the stick zone first forms.
 
     code: int, regime in the outputs before; -1 before the first one, which is no change.
     new_code: int, regime in the outputs from now on.
     stick_formed: bool, whether the stick zone has just formed.
     step_state: StepState, with the time of the change.
     work: Workspace, of the motion.
+    Returns ``new_code``.
     """
     if new_code != code:
         if code >= 0:
@@ -284,8 +298,8 @@ def integrate_motion(V0, omega0, record):
 
     V0, omega0: float, initial speeds, dimensionless.
     record: Workspace, by value; outputs are written.
-    Returns (status, trial steps, regime changes, time t of the onset of stick, t of coming to rest); the times are NaN
-    without them.
+    Returns (status code, number of trial steps, number of regime changes, t of the onset of stick, t of coming to
+    rest); the times are dimensionless, NaN where the event does not occur.
     """
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)

@@ -2,6 +2,17 @@
 
 The error of the dense output is estimated by the defect at the left end, the difference between the right-hand side and
 the extrapolated slope of the interpolant, and by the last coefficient of the interpolant.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
+  (:mod:`rhs`).  p' is its slope in tau.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -92,13 +103,15 @@ def _rounding_scale_of_V(step, work):
 
 @inline_kernel
 def error_scales(step, regime, work):
-    """Return (scale of V, scale of the second unknown) by which errors of a step are divided, dimensionless.
+    """Return the scales by which errors of V and of the second unknown on a step are divided.
 
-    Speeds are measured by the largest one of the step, V in full slip by itself; d by its weight.
+    An error of a speed is divided by the largest speed of the step, that of V in full slip by the largest V; an error
+    of d is multiplied by its weight.
 
     step: Step, the trial step.
     regime: Regime, that of the step.
     work: Workspace, with the unknowns at its nodes.
+    Returns (scale of V, scale of the second unknown), dimensionless.
     """
     nodes, largest_speed, largest_V, V_change = work.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):
@@ -126,7 +139,7 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     It is the slope there less that extrapolated from the nodes, times the length of the step.
 
     row: int, index in ``nodes`` of the values at all nodes.
-    slope_row: int, index of the row that receives the slopes of the interpolant in t.
+    slope_row: int, index of the row in which the slopes of the interpolant in t on [-1, 1] are written.
     initial_slope: float, slope in t at the left end by the right-hand side, in the unit of the row.
     nodes: Workspace.nodes.
     Returns the modulus of the defect, in the unit of the row.
@@ -140,7 +153,7 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
 
 @inline_kernel
 def _variation_of_p_rate(half, nodes):
-    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step.
+    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step; dimensionless.
 
     half: float, half the length of the step in tau.
     nodes: Workspace.nodes.

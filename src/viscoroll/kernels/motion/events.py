@@ -1,4 +1,16 @@
-"""Events: their functions, whose zeros end a regime, and their location on the dense output of a step."""
+"""Events: their functions, whose zeros end a regime, and their location on the dense output of a step.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- v: position on a step, 0 at its left end and 2 at its right end.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+"""
 
 from __future__ import annotations
 
@@ -131,7 +143,7 @@ def locate_zero(event, node, nodes):
     event: int, STICK_EDGE ... BRAKE_RELEASE.
     node: int, first node at which the function is negative; 0: the zero is sought beyond the right end of the step.
     nodes: Workspace.nodes, with the event functions; ROW_DENSE_EVENT is written.
-    Returns v in [0, 3], at least NOT_FOUND if beyond the step no zero is found.
+    Returns v in [0, 3]; at least NOT_FOUND if no zero lies within half a step beyond the right end.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
@@ -140,14 +152,15 @@ def locate_zero(event, node, nodes):
 
 @kernel
 def _find_interpolant_zero(start, low, high, nodes):
-    """Return the v at which the stored interpolant of an event function falls through 0, by false position.
+    """Return the position v at which the stored interpolant of an event function falls through 0, by false position.
 
     The weights of Anderson and Bjorck (BIT 13, 1973) move both ends of the bracket: that needs a sixth of the
-    evaluations of a bisection.  Without a zero in between the end is returned that a bisection would converge to.
+    evaluations of a bisection.  Without a zero in the bracket the result is the end to which a bisection would
+    converge.
 
-    start: float, value of the function at v = 0, in its unit.
+    start: float, value of the event function at v = 0, which the interpolant leaves out.
     low, high: float, ends of the bracket in v, positive and negative values of the function there.
-    nodes: Workspace.nodes, with the interpolant.
+    nodes: Workspace.nodes, with the interpolant at ROW_DENSE_EVENT.
     """
     f_low = start + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT)
     f_high = start + evaluate_dense_output(high, nodes, ROW_DENSE_EVENT)

@@ -1,6 +1,16 @@
 """The contact law at a state of a motion: rolling moments, creepage, slip, added mass.
 
 Everything is read off rows of the law (:mod:`..rows.evaluate`) at u = kappa |V|; nothing here depends on the drive.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -15,7 +25,7 @@ from ..rows.evaluate import body_moments, free_creep_and_slopes, length_and_mome
 
 @inline_kernel
 def evaluate_moments(u, scene):
-    """Evaluate the critical creepage, Eq. (9), and the rolling moments, Eq. (18), of the law at one speed.
+    """Evaluate what the law gives at one speed: critical creepage, Eq. (9), and rolling moments, Eq. (18).
 
     u: float, kappa |V|, dimensionless.
     scene: Scene, parameters of Eq. (22).
@@ -97,23 +107,25 @@ def excess_slip(slip, V, scene):
 
 @inline_kernel
 def added_inertia(V, scene):
-    """Return (n = gamma N, its derivative in V, its integral over V from 0) of the added mass N V', dimensionless.
+    """Return the factor n = gamma N of the added mass N V', with its derivative and its integral.
 
     The equations are in docs/theory_materials.md, Slowly changing speed; all are 0 for a law without added mass.
 
     V: float, speed of the axis, dimensionless.
     scene: Scene, parameters of Eq. (22).
+    Returns (n, its derivative in V, its integral over V from 0), dimensionless.
     """
     return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
 
 
 @inline_kernel
 def omega_and_delta(state, regime, scene):
-    """Return (omega, creepage delta of Eq. (5)) of a state, dimensionless; delta is infinite at V = 0 in full slip.
+    """Return angular velocity and creepage, Eq. (5), of a state.
 
     state: State, the unknowns.
     regime: Regime, which tells what the second unknown is.
     scene: Scene, parameters of Eq. (22).
+    Returns (omega, delta), dimensionless; delta is infinite at V = 0 in full slip.
     """
     if not regime.full_slip:
         delta = creepage(state.V, state.omega_or_d, scene)
@@ -137,7 +149,7 @@ def added_mass_margin(n, j):
 
 @inline_kernel
 def stick_edge_function(V, omega_or_d, regime, scene):
-    """Return the event function of the edge of the stick zone: positive within the regime, 0 at its end.
+    """Return the event function of the edge of the stick zone, dimensionless: positive within the regime, 0 at its end.
 
     In full slip it is |omega - V| less its limit delta_star |V|, Eq. (9); in partial slip 1 - |d|, times the margin of
     the added mass.

@@ -2,6 +2,20 @@
 
 Row of outputs: V 0, omega 1, x 2, angle 3, delta 4, regime 5, force 6, torque 7, work of force 8 and of torque 9,
 losses in the brake 10, in slip 11, in rolling 12.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- v: position on a step, 0 at its left end and 2 at its right end.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -43,9 +57,10 @@ _OUT_QUADRATURES = np.array([OUT_X, OUT_X + 1, OUT_WORK + 3, OUT_WORK + 4, OUT_W
 
 @kernel
 def requested_groups(rows):
-    """Return (whether a quadrature is among the requested outputs, whether force or torque is).
+    """Return which groups of outputs are requested, as each costs time.
 
-    rows: (k,) int, the requested output rows of the module.
+    rows: (k,) int, the requested output rows, numbered as in the module.
+    Returns (whether a quadrature is requested, whether force or torque is).
     """
     quadratures = forces = False
     for row in rows:
@@ -59,9 +74,9 @@ def write_column(column, speeds, code, forces, work):
     """Write speeds, regime and forces to one output column.
 
     column: int, index of the output time.
-    speeds: (V, omega, delta), dimensionless, not oriented.
+    speeds: (V, omega, delta), dimensionless, in fixed directions, not in those of the regime.
     code: int, regime in the outputs.
-    forces: (force, torque), dimensionless, not oriented.
+    forces: (force, torque), dimensionless, in fixed directions too.
     work: Workspace, whose outputs are written.
     """
     out, (V, omega, delta), (force, torque) = work.outputs, speeds, forces
@@ -106,13 +121,14 @@ def record_switch(code, step_state, work):
 
 @kernel
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
-    """Write the outputs of a cylinder at rest up to a time; return the StepState then, one step later.
+    """Write the outputs of a cylinder at rest up to a time.
 
     end: float, that time in tau.
     inclusive: bool, whether an output at ``end`` itself is written too.
     code: int, regime in the outputs.
     step_state: StepState, at the present time.
     work: Workspace, of the motion; outputs are written.
+    Returns the StepState at ``end``, with one trial step more.
     """
     column, tau = step_state.next_output, work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
@@ -125,13 +141,13 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
 
 @kernel
 def _write_state(column, state, segment, regime, work):
-    """Write one output column but for the quadratures.
+    """Write speeds, regime and, if requested, forces at one output time; the quadratures are written elsewhere.
 
     column: int, index of the output time.
     state: State, at that time.
-    segment: int, index of the segment of the drive.
+    segment: int, index of the segment of the drive at that time.
     regime: Regime, at that time.
-    work: Workspace, of the motion; outputs are written.
+    work: Workspace, of the motion; column ``column`` of its outputs is written.
     """
     direction, force, torque = regime.direction, 0.0, 0.0
     omega, delta = omega_and_delta(state, regime, work.scene)
@@ -145,12 +161,13 @@ def _write_state(column, state, segment, regime, work):
 
 @kernel
 def write_due_outputs(state, regime, step_state, work):
-    """Write the outputs due at the time reached, to the tolerance; return the StepState behind them.
+    """Write the outputs at times up to the time reached, times (1 + rtol), by the state reached.
 
-    state: State, at that time.
+    state: State, at the time reached.
     regime: Regime, at that state.
     step_state: StepState, with that time and the next output.
     work: Workspace, of the motion; outputs are written.
+    Returns the StepState behind these outputs, with the length of the next step not chosen.
     """
     column = step_state.next_output
     while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (1.0 + work.options.rtol):
@@ -164,7 +181,7 @@ def write_due_outputs(state, regime, step_state, work):
 def _quadrature_at(n, v, step, nodes):
     """Return the increase of a quadrature from the left end of a step to a position, dimensionless.
 
-    n: int, the quadrature.
+    n: int, index of the quadrature, as of :func:`write_quadrature`.
     v: float, position in [0, 2].
     step: Step, the accepted one.
     nodes: Workspace.nodes, with the integrands and their dense output.
@@ -201,7 +218,7 @@ def _evaluate_integrands(regime, work):
 
 @kernel
 def _integral_over_step(row, step, nodes):
-    """Return the integral over tau of a row along a whole step, by Radau quadrature.
+    """Return the integral over tau of a row along a whole step, by Radau quadrature; dimensionless.
 
     row: int, index in ``nodes`` of the values.
     step: Step, the accepted one.
@@ -217,7 +234,8 @@ def _integral_over_step(row, step, nodes):
 def accept_step(end, v, step, regime, step_state, work):
     """Accept a step up to a position on it: write the outputs before its end and add up the quadratures.
 
-    An output at the end itself is written with the next step, as the drive may jump there, but for the last one.
+    An output at the end itself is written with the next step, as the drive may jump there; the last output of the
+    motion is written now.
 
     end: float, tau at that position.
     v: float, the position in [0, 2]; 2: the whole step.

@@ -1,4 +1,19 @@
-"""Predictor: the values of the unknowns at the nodes from which Newton's iteration of a step starts."""
+"""Predictor: the values of the unknowns at the nodes from which Newton's iteration of a step starts.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- v: position on a step, 0 at its left end and 2 at its right end.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
+  (:mod:`rhs`).  p' is its slope in tau.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+"""
 
 from __future__ import annotations
 

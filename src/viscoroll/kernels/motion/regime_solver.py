@@ -1,4 +1,21 @@
-"""Integration within one regime, step after step, to an event or to the end of a segment of the drive."""
+"""Integration within one regime, step after step, to an event or to the end of a segment of the drive.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- v: position on a step, 0 at its left end and 2 at its right end.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
+  (:mod:`rhs`).  p' is its slope in tau.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+"""
 
 from __future__ import annotations
 
@@ -70,13 +87,13 @@ BEFORE_SEGMENT_END = 1.0 - 1e-13
 
 @inline_kernel
 def _start_step(state, regime, step_state, work):
-    """Store the right-hand side at node 0 of the next step.
+    """Store the state and the right-hand side at node 0 of the next step, and choose the branch of the law at d = 0.
 
     state: State, at the time reached.
     regime: Regime, at that state.
     step_state: StepState, with that time and its segment.
     work: Workspace; node 0 is written.
-    Returns the Regime; at d = 0 that of the branch of the law to which d moves.
+    Returns the Regime; at d = 0 in partial slip its sigma is the sign of d', toward which d moves.
     """
     nodes = work.nodes
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
@@ -95,14 +112,14 @@ def _start_step(state, regime, step_state, work):
 def _end_at_V_zero(step, remaining, state, regime, work):
     """Shorten a trial step to the time at which V is expected to be 0, if that lies on it.
 
-    A prescribed V that comes to 0 at the end of the segment does not count.
+    A prescribed V that comes to 0 at the end of the segment needs no shorter step.
 
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
     state: State, at the left end.
     regime: Regime, at that state.
     work: Workspace, with node 0.
-    Returns (Step, whether it ends at that time).
+    Returns (Step, whether it ends at the time of V = 0).
     """
     time = time_to_V_zero(step, state, regime, work)
     if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
@@ -133,8 +150,8 @@ def _find_crossed_event(step, remaining, regime, work):
 def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 
-    A step with too large an error, on which the regime ends, contains a kink of the law: a step that ends at it may be
-    accurate.
+    A step with too large an error, on which the regime ends, contains a kink of the law; the shorter step that ends at
+    the kink may be accurate.
 
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.

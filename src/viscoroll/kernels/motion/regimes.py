@@ -1,4 +1,18 @@
-"""Regimes: the regime of a start, and the one that follows an event or begins with a segment of the drive."""
+"""Regimes: the regime of a start, and the one that follows an event or begins with a segment of the drive.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+"""
 
 from __future__ import annotations
 
@@ -77,7 +91,7 @@ def brake_holds_omega(state, regime, step_state, work):
 
 @kernel
 def release_brake(state, regime, step_state, work):
-    """Return the Regime after a brake has let go, or after omega has changed its sign under it.
+    """Return the Regime after a brake has released the cylinder, or after omega has changed its sign under it.
 
     state: State, with omega = 0.
     regime: Regime, the one before.
@@ -91,7 +105,7 @@ def release_brake(state, regime, step_state, work):
 
 @kernel
 def comes_to_rest(state, regime, step_state, work):
-    """Return whether full slip ends at rest: V = 0 at the stick edge, where omega is 0 too.
+    """Return whether full slip ends at rest: V is 0 where the stick zone would form, so that omega is 0 too.
 
     state: State, at the event.
     regime: Regime, of full slip.
@@ -117,7 +131,8 @@ def reverse_direction(regime):
 
 @kernel
 def impose_prescribed_speed(state, regime, step_state, work):
-    """Set the prescribed speed to its given value, where a segment begins or the stick zone forms.
+    """Return state and regime with the prescribed speed at its given value, where a segment begins or the stick zone
+    forms.
 
     The error of the integration so far is small relative to the speeds so far, but may be large relative to the speed
     prescribed from here on.  In partial slip V follows a prescribed omega at fixed d, except where friction is so
@@ -147,7 +162,7 @@ def impose_prescribed_speed(state, regime, step_state, work):
 
 @kernel
 def apply_event(event, state, regime, step_state, work):
-    """Return the motion behind an event.
+    """Return state and regime behind an event, in the unknowns of the new regime.
 
     event: int, STICK_EDGE ... BRAKE_RELEASE.
     state: State, at the event.
@@ -185,12 +200,14 @@ def apply_event(event, state, regime, step_state, work):
 
 @kernel
 def enter_segment(state, regime, step_state, work):
-    """Return (State, Regime) at the start of a segment of the drive: a brake takes hold or lets go, V may reverse.
+    """Return state and regime at the start of a segment of the drive, where a brake may take hold or let go and V may
+    reverse.
 
     state: State, at the end of the segment before, or the start of the motion.
     regime: Regime, at that state.
     step_state: StepState, with the index of the new segment.
     work: Workspace, of the motion.
+    Returns (State, Regime).
     """
     if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
@@ -207,7 +224,9 @@ def enter_segment(state, regime, step_state, work):
 
 @kernel
 def initial_regime(V, omega, step_state, work):
-    """Return the regime of a start with V or omega not 0, without its brake: Condition (9) tells stick from slip.
+    """Return state and regime at the start of a motion from V or omega other than 0; a brake is considered later.
+
+    The regime is full slip where |omega - V| is at least delta_star |V|, Eq. (9).
 
     V, omega: float, initial speeds, dimensionless.
     step_state: StepState, at the start.

@@ -21,6 +21,21 @@ and the integral of n over V is added to p, so that p' stays the same.
 p = inverse_inertia V + inverse_mass omega, proportional to V + j omega, is collocated in place of V: p' does not depend
 on Q, and on d only by feedback.  dp/dd = inverse_mass V k L is small: Newton's matrix splits into one of p and one of d
 (:mod:`step`).  Where friction is so strong that dp/dV may vanish, p is V.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- Load: force, torque, largest torque of the brake and prescribed slopes at one time, in the direction of the Regime.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
+  (:mod:`rhs`).  p' is its slope in tau.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -82,7 +97,7 @@ class Rates(NamedTuple):
 
 @inline_kernel
 def applied_forces(V, omega, load, regime):
-    """Return the applied force and torques, feedback included, oriented by the regime, dimensionless.
+    """Return the applied force and torques, feedback included, in the direction of the regime, dimensionless.
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
     load: Load, the drive.
@@ -104,7 +119,7 @@ def required_forces(V, omega, rates, load, regime, j):
     load: Load, the drive.
     regime: Regime, at that state.
     j: float, moment of inertia, dimensionless.
-    Returns (force, torque of the motor, torque of the brake), oriented by the regime, dimensionless.
+    Returns (force, torque of the motor, torque of the brake), in the direction of the regime, dimensionless.
     """
     force, torque, _ = applied_forces(V, omega, load, regime)
     brake = -load.brake * regime.spin_sign
@@ -132,7 +147,7 @@ def has_strong_friction(load, regime, scene):
 
 @inline_kernel
 def partial_slip_rates(V, d, load, regime, scene):
-    """Evaluate the right-hand side in partial slip, with all derivatives: Rates, by the equations of the module.
+    """Evaluate the right-hand side in partial slip, with all derivatives, by the equations of the module.
 
     Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L, dVdelta_star = d(V
     delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives of x in V and d.
@@ -142,6 +157,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     load: Load, the drive.
     regime: Regime, of partial slip.
     scene: Scene, parameters of Eq. (22), by value.
+    Returns Rates, dimensionless.
     """
     law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
     u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
@@ -202,12 +218,13 @@ def partial_slip_rates(V, d, load, regime, scene):
 
 @inline_kernel
 def full_slip_rates(V, omega, load, regime, scene):
-    """Evaluate the right-hand side in full slip, with all derivatives: Rates with Q = +-mu, Eqs. (17), (22).
+    """Evaluate the right-hand side in full slip, where Q = +-mu, with all derivatives, Eqs. (17), (22).
 
     V, omega: float, the speeds in the direction of the regime, dimensionless.
     load: Load, the drive.
     regime: Regime, of full slip.
     scene: Scene, parameters of Eq. (22), by value.
+    Returns Rates, dimensionless.
     """
     u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
@@ -224,13 +241,14 @@ def full_slip_rates(V, omega, load, regime, scene):
 
 @inline_kernel
 def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
-    """Evaluate the right-hand side of the regime, inlined where Newton's iteration needs it: Rates.
+    """Evaluate the right-hand side of the regime; inlined in Newton's iteration.
 
     V: float, speed of the axis, dimensionless.
     omega_or_d: float, second unknown, dimensionless.
-    load: Load, the drive.
-    regime: Regime, the present one.
+    load: Load, the drive at the time.
+    regime: Regime, full or partial slip.
     scene: Scene, parameters of Eq. (22), by value.
+    Returns Rates, dimensionless.
     """
     if regime.full_slip:
         return full_slip_rates(V, omega_or_d, load, regime, scene)
@@ -239,19 +257,22 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
 
 @kernel
 def evaluate_rhs(state, load, regime, scene):
-    """Evaluate the right-hand side of the regime outside the innermost loop, compiled once and called: Rates.
+    """Evaluate the right-hand side of the regime, as a function that is compiled once and called.
+
+    Newton's iteration takes :func:`evaluate_rhs_inline` instead.
 
     state: State, the unknowns.
-    load: Load, the drive.
-    regime: Regime, the present one.
+    load: Load, the drive at the time.
+    regime: Regime, full or partial slip.
     scene: Scene, parameters of Eq. (22).
+    Returns Rates, dimensionless.
     """
     return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
 
 
 @kernel
 def current_rates(state, regime, step_state, work):
-    """Return the Rates at a state and the time reached.
+    """Return the right-hand side, Rates, at a state and the time reached.
 
     state: State, the unknowns.
     regime: Regime, the present one.
@@ -263,11 +284,12 @@ def current_rates(state, regime, step_state, work):
 
 @kernel
 def rhs_and_forces_at_node(i, regime, work):
-    """Return (Rates, (force, torque of the motor, torque of the brake)) at a node, dimensionless.
+    """Evaluate the right-hand side and the forces that act at a node of a step.
 
     i: int, the node.
     regime: Regime, that of the step.
     work: Workspace, with unknowns and drive at the nodes.
+    Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless.
     """
     state, load = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i]), load_at_node(i, regime, work)
     rates = evaluate_rhs(state, load, regime, work.scene)

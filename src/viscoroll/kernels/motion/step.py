@@ -11,6 +11,18 @@ Where friction is strong p is V too, but d enters its rate by F = h dV'/dd, as o
 matrix,
 
     [D - h diag(dV'/dV) + diag(F) S^-1 diag(c)] dV = h V' - D V + F S^-1 (h b - V (D d))
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- Rates: the right-hand side at a State and its derivatives (:mod:`rhs`).
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
+  (:mod:`rhs`).  p' is its slope in tau.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
 
 from __future__ import annotations
@@ -91,7 +103,7 @@ def store_rhs(i, rates, nodes):
 def _evaluate_residuals(refactor, step, regime, work):
     """Evaluate the right-hand side and the residuals of both collocation equations at nodes 1 ... N.
 
-    refactor: bool, whether to store also what the Newton matrices consist of.
+    refactor: bool, whether the derivatives that the Newton matrices consist of are stored too.
     step: Step, the trial step.
     regime: Regime, that of the step.
     work: Workspace, with the unknowns and the drive at the nodes; rows of residuals are written.
@@ -131,10 +143,10 @@ def _add_feedback_to_matrix(work):
 
 @inline_kernel
 def _newton_iteration(refactor, coupled, step, regime, work):
-    """Do one Newton iteration at nodes 1 ... N.
+    """Do one Newton iteration of both collocation equations at nodes 1 ... N, and update the unknowns.
 
     refactor: bool, whether to evaluate and invert the Newton matrices again.
-    coupled: bool, whether p' depends on the second unknown.
+    coupled: bool, whether p' depends on the second unknown, so that the system of p contains feedback.
     step: Step, the trial step.
     regime: Regime, that of the step.
     work: Workspace, with the unknowns and the drive at the nodes; the unknowns are changed.

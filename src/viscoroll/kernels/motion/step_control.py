@@ -1,4 +1,21 @@
-"""Step lengths: the first step of a regime, the next step after an accepted or rejected one."""
+"""Step lengths: the first step of a regime, the next step after an accepted or rejected one.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- tau: time gamma t.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
+  whether the brake holds omega at 0.
+- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
+  the next step.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
+  (:mod:`rhs`).  p' is its slope in tau.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
+  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+"""
 
 from __future__ import annotations
 
@@ -67,7 +84,8 @@ _LATER_REJECTION = 0.4
 def moderate_speed(scene):
     """Return the V that divides slow from fast rolling, dimensionless.
 
-    It is 1/kappa divided by the longest time of the material, or half of that, read off the first row of the law.
+    It is between 0.5 and 1 times 1/kappa divided by the longest time of the material, by the octave of the first row of
+    the law.
 
     scene: Scene, parameters of Eq. (22).
     """
@@ -99,7 +117,8 @@ def _time_to_reach_V(V_change, step_state, regime, work):
 def first_step_length(stick_formed, step_state, regime, work):
     """Return the length in tau of the first step of a regime; inf if nothing limits it.
 
-    stick_formed: bool, whether the stick zone has just formed, where d' changes on the scale of the slip that is left.
+    stick_formed: bool, whether the stick zone has just formed: then d' changes within a small part of the remaining
+    slip.
     step_state: StepState, at the start of the regime.
     regime: Regime, the new one.
     work: Workspace, with node 0.

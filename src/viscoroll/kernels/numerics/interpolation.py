@@ -30,7 +30,11 @@ _Floats = NDArray[np.float64]
 
 
 def in_40_digits(function: Callable) -> Callable:
-    """Make ``function`` compute with Decimals of 40 digits, whatever the decimal context of its caller."""
+    """Decorate a function so that it computes with Decimals of 40 digits, whatever the decimal context of its caller.
+
+    function : any function.
+    Returns the decorated function, of the same arguments and values.
+    """
 
     @wraps(function)
     def precise(*arguments):
@@ -57,7 +61,7 @@ class Interpolation:
     def __init__(self, nodes: Sequence[Decimal]) -> None:
         """Compute the coefficients of Lagrange's polynomials of the nodes, with 40 digits.
 
-        nodes : distinct numbers, Decimals.
+        nodes : distinct numbers, Decimals; kept as ``exact`` and, rounded, as ``nodes``.
         """
         self.exact = tuple(nodes)
         self.nodes = to_doubles(nodes)
@@ -119,7 +123,8 @@ def chebyshev(n: int) -> list[Decimal]:
 def to_chebyshev(n: int) -> _Floats:
     """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1).
 
-    n : number of nodes.  Returns doubles, (n, n), [term, node].
+    n : number of nodes.
+    Returns doubles, (n, n), [term, node].
     """
     x = np.array(chebyshev(n))
     terms = [1 + 0 * x, x]
@@ -130,7 +135,12 @@ def to_chebyshev(n: int) -> _Floats:
 
 
 def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
-    """Return the matrix [m, k] of the coefficients of t^k in T_m(scale t - shift), m < n, computed in doubles."""
+    """Return the powers of t in shifted Chebyshev polynomials T_m(scale t - shift), m < n, computed in doubles.
+
+    n : number of polynomials.
+    shift, scale : shift and scale of the argument, dimensionless.
+    Returns (n, n), [m, k]: the coefficient of t^k in T_m(scale t - shift).
+    """
     matrix = np.zeros((n, n))
     matrix[0, 0], matrix[1, :2] = 1.0, [-shift, scale]
     for m in range(2, n):
@@ -147,7 +157,8 @@ def to_doubles(values) -> _Floats:
 def _unit_series(degree: int, *last: int) -> list[Decimal]:
     """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with ``degree`` zeros.
 
-    degree : how many polynomials are left out.  last : coefficients of the next ones.
+    degree : how many polynomials are left out.
+    last : coefficients of the next ones.
     """
     return [Decimal(c) for c in (*[0] * degree, *last)]
 
@@ -157,6 +168,7 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
 
     polynomial : coefficients of the powers of x, the constant first, Decimals.
     half_turns : for each zero an angle whose cosine is near it, divided by pi.
+    Returns the zeros as Decimals, in ascending order.
     """
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)

@@ -46,26 +46,31 @@ def shuffle(builder, a, b, order):
     return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
 
 
-def broadcast_value(builder, x):
-    """Return instructions that make a vector of four times the number ``x``."""
-    one = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), x, _INT(0))
-    return shuffle(builder, one, one, [0] * LANES)
+def broadcast_value(builder, x, vector=VECTOR):
+    """Return instructions that make a vector, of LLVM's type ``vector``, whose numbers are all ``x``."""
+    empty = ir.Constant(vector, ir.Undefined)
+    one = builder.insert_element(empty, x, _INT(0))
+    return builder.shuffle_vector(one, empty, ir.Constant(ir.VectorType(_INT, vector.count), None))
 
 
 def fma_vectors(builder, *vectors):
     """Return the instruction a b + c of three vectors."""
-    return call_llvm(builder, "llvm.fma.v4f64", vectors)
+    return call_llvm(builder, f"llvm.fma.v{vectors[0].type.count}f64", vectors)
 
 
-def vector_pointers(context, builder, kind, array, start, count):
+def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
     """Return pointers to ``count`` vectors that follow each other in an array.
 
     context, builder : numba's context of code generation, and builder of LLVM.
     kind : numba's type of ``array``, an array or a pointer to doubles.
     start : index of the first number of the first vector.
+    array : the array or pointer, a value of LLVM.
+    count : number of vectors.
+    vector : LLVM's type of the vectors.
+    Returns a list of ``count`` pointers to vectors, values of LLVM.
     """
     data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
-    first = builder.bitcast(builder.gep(data, [start]), VECTOR.as_pointer())
+    first = builder.bitcast(builder.gep(data, [start]), vector.as_pointer())
     return [builder.gep(first, [_INT(n)]) for n in range(count)]
 
 
@@ -79,9 +84,11 @@ def load_vectors(context, builder, signature, arguments, count):
 
 
 def _define_operator(function, name):
-    """Define an operator of Python for two vectors, and for a number and a vector.
+    """Register with numba an operator of Python for two vectors, and for a number and a vector.
 
-    function : of the module ``operator``.  name : of the method of LLVM's builder.
+    function : the operator, a function of the module ``operator``.
+    name : method of LLVM's builder that makes its instruction.
+    Returns None.
     """
 
     def give_type(context):

@@ -9,6 +9,8 @@ The printed forms lose digits in corners where the explicit ones do not.  Differ
 :mod:`..rows`, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
 [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu,
 M 2e-13/kappa; the docstrings say where relative digits go.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -32,7 +34,7 @@ _EPS = 2.0**-52
 
 @kernel
 def _residual(equation, x, data):
-    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it.
+    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it; its root is sought.
 
     equation : _EQ_6 or _EQ_10; numba cannot cache a caller that passes a function.
     x : lam in Eq. (6), beta in Eq. (10).
@@ -53,10 +55,12 @@ def _residual(equation, x, data):
 
 @kernel
 def brent(equation, data, low, high, floor):
-    """Return (root, status) of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
+    """Find the root x of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
 
-    equation, data : arguments of :func:`_residual`.  low, high : ends of the bracket.
+    equation, data : arguments of :func:`_residual`.
+    low, high : ends of the bracket.
     floor : absolute tolerance; the root is found to floor + 4e-16 |x|.
+    Returns (root, status OK or NOT_CONVERGED).
 
     At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].
     The residual falls from >= 0 at low to <= 0 at high.  An end where rounding spoils that
@@ -117,7 +121,11 @@ def brent(equation, data, low, high, floor):
 
 @kernel
 def direct_contact_length(kappa_V, alpha):
-    """Return (lam, zeta, epsilon, status) by Eqs. (6)-(8) at kappa V = ``kappa_V`` > 0 and ``alpha`` >= 1.
+    """Solve Eq. (6) for the length of the contact, with Eqs. (7) and (8) for its transit time and its shift.
+
+    kappa_V : slenderness times speed, > 0, dimensionless.
+    alpha : T_epsilon/T_sigma, >= 1.
+    Returns (lam, zeta, epsilon, status OK or NOT_CONVERGED), the first three dimensionless.
 
     At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is
     -2 c r/zeta <= 0: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative
@@ -138,10 +146,14 @@ def direct_delta_star(kappa, mu, lam, epsilon):
 
 @kernel
 def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
-    """Return (beta, status) by Eq. (10) for 0 <= delta_abs < delta_star.
+    """Solve Eq. (10) for beta, the length of the stick zone divided by that of the contact, 0 <= delta_abs <
+    delta_star.
 
     delta_abs : |delta|.
-    kappa, mu, lam, epsilon, zeta, alpha : as in the paper, dimensionless.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
+    lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
+    alpha : T_epsilon/T_sigma.
+    Returns (beta, status OK or NOT_CONVERGED).
 
     At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is
     -2 delta kappa/(mu lam) (1 + p) <= 0 by Eq. (8).
@@ -153,11 +165,12 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 
 @kernel
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
-    """Return |Q| by Eq. (15).
+    """Return the traction |Q| by Eq. (15), divided by the load.
 
     beta : length of the stick zone divided by that of the contact.
     delta_abs : |delta|.
-    kappa, mu, lam, epsilon, zeta : as in the paper, dimensionless.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
+    lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at
     s = 1e-6 (1e-8 for kappa V = 1e3, where K1/K0 magnifies the rounding of the bracket).
@@ -172,7 +185,11 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
 
 @kernel
 def direct_moment(kappa, lam, epsilon, zeta, alpha):
-    """Return M > 0 by Eq. (16); kappa, lam, epsilon, zeta, alpha as in the paper, dimensionless.
+    """Return the rolling moment M > 0 by Eq. (16), divided by load times radius.
+
+    kappa : slenderness R/l0.
+    lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
+    alpha : T_epsilon/T_sigma.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by
     9e-14 relative at kappa V = 1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and

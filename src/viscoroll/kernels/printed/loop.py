@@ -1,4 +1,7 @@
-"""The contact law as printed, over arrays of states; rows and signs as in :mod:`..rows.contact_states`."""
+"""The contact law as printed, over arrays of states; rows and signs as in :mod:`..rows.contact_states`.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+"""
 
 import numpy as np
 
@@ -11,11 +14,11 @@ from .law import OK, direct_contact_length, direct_delta_star, direct_moment, di
 def direct_state(alpha, n, request):
     """Evaluate what is requested of one state; V = 0 is the limit of Sect. 3.4.
 
-    alpha : of the material.
-    n : number of the state.
+    alpha : T_epsilon/T_sigma of the material.
+    n : index of the state.
     request : :class:`Request` of states and quantities, with the output array, written.
 
-    Returns OK or NOT_CONVERGED.
+    Returns the status: OK or NOT_CONVERGED.
     """
     to = request.to
     state = read_state(request.states, n)
@@ -57,10 +60,11 @@ def direct_state(alpha, n, request):
 def direct_loop(alpha, request, count):
     """Evaluate what is requested of ``count`` states.
 
-    alpha : of length 1 or one for each state.
+    alpha : T_epsilon/T_sigma, (1,), or (count,) with one for each state.
     request : :class:`Request` of states and quantities, with the output array, written.
+    count : int, number of states.
 
-    Returns OK, or NOT_CONVERGED if one state was not solved.
+    Returns the status: OK, or NOT_CONVERGED if one state was not solved.
     """
     worst = OK
     for n in range(count):

@@ -1,4 +1,7 @@
-"""N of M = M(V) + N V', and the added mass gamma N of a law that has it; 0 of a law of steady rolling."""
+"""N of M = M(V) + N V', and the added mass gamma N of a law that has it; 0 of a law of steady rolling.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+"""
 
 import numpy as np
 
@@ -21,7 +24,7 @@ def _evaluate_N(u, law):
     law : :class:`Law` of the material, with polynomials of N.
 
     Returns (row, N, integral, slope): number of the row, or the number of rows where u lies behind the last one; N;
-    its integral with respect to u from t = 0 of that row; its slope with respect to u.
+    its integral with respect to u from the place where the argument t of that row is 0; its slope with respect to u.
     """
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
@@ -35,13 +38,15 @@ def _evaluate_N(u, law):
 
 @kernel
 def _evaluate_added_mass(law, V, kappa, gamma):
-    """Return (gamma N, its slope with respect to V, its integral with respect to V) of a law that has N.
+    """Return the factor gamma N of the added mass, with its slope and its integral, for a law that has N.
+
+    The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
 
     law : :class:`Law` of the material, with polynomials of N.
     V : speed of the axis.
     kappa : slenderness R/l0.
-    gamma : mass parameter, dimensionless.  The integral begins at V = 0 or, where V = 0 is out of reach, at
-    infinity.
+    gamma : mass parameter, Eq. (4), dimensionless.
+    Returns (gamma N, its slope with respect to V, its integral with respect to V), dimensionless.
     """
     count = law.marks[ROW_COUNT]
     row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
@@ -55,13 +60,16 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 
 @inline_kernel
 def added_mass(law, V, kappa, gamma):
-    """Return (gamma N, its slope with respect to V, its integral with respect to V), zeros of a law of steady
-    rolling.
+    """Return the factor gamma N of the added mass, with its slope and its integral.
+
+    The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
 
     law : :class:`Law` of the material: polynomials of each octave.
     V : speed.
     kappa : slenderness R/l0.
-    gamma : mass parameter, dimensionless.
+    gamma : mass parameter, Eq. (4), dimensionless.
+    Returns (gamma N, its slope with respect to V, its integral with respect to V), dimensionless; zeros for a law of
+    steady rolling.
     """
     return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
 

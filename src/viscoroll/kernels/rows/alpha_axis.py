@@ -1,20 +1,33 @@
 """Rows for one alpha after another, by the axis of alpha: polynomials in ln alpha, without root finding.
 
-For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 + c_1 s + c_2 s^2 + c_3 s^3) for
-g = 0, 1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V
-and epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
+For alpha in [2^N, 2^(N+1)) every coefficient of a row is a sum of T_4g(s) (c_0 + c_1 s + c_2 s^2 + c_3 s^3) for g = 0,
+1, 2, 3, with Chebyshev polynomials of s = 2 log2(alpha/2^N) - 1, with T_epsilon as unit of time, and with M/V and
+epsilon divided by c = (alpha - 1)/alpha.  Their limits as alpha -> 1 then need no special case.  Powers of s alone
 would lose digits near alpha = 2^N, and a T_j for every coefficient would take a third more loads.  The higher a power
-of t, the fewer groups change a digit.  So a block of twelve coefficients has one or two groups in most rows, and only
-the first block has four.
+of t, the fewer groups change a digit.  So of the blocks of eight coefficients only the first ones have all four groups
+in most rows.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import math
 
 import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, types
 
-from ..compile.intrinsics import bits_to_float, float_to_bits, floats_at, fma, integers_at, record_at, record_type
-from ..compile.jit import inline_kernel, kernel
-from ..numerics.simd4 import LANES, broadcast, fma4, make_load, pack, store
+from ..compile.intrinsics import (
+    bits_to_float,
+    float_to_bits,
+    floats_at,
+    fma,
+    integers_at,
+    make_intrinsic,
+    record_at,
+    record_type,
+)  # fmt: skip
+from ..compile.jit import kernel
+from ..numerics.simd4 import broadcast_value, fma_vectors, vector_pointers
 from .contact_states import element
 from .record import (
     ALPHA,
@@ -32,14 +45,15 @@ from .record import (
 
 #: Largest number of Chebyshev polynomials of s: the 17th changes no digit of a double.
 ALPHA_TERMS = 16
-#: Vectors of a block: with more of them fewer terms in s are negligible, with less the ends of loops count.
-_BLOCK_VECTORS = 3
-#: Numbers of a block, half of a part.
-BLOCK_SIZE = _BLOCK_VECTORS * LANES
+#: Numbers of a block, a vector: with more of them fewer terms in s are negligible, with less the ends of sums count.
+#: Processors without vectors of eight numbers take two of four.
+BLOCK_SIZE = 8
+#: Blocks of a part, the coefficients of one polynomial.
+PART_BLOCKS = PART_SIZE // BLOCK_SIZE
 #: Terms of a group, a cubic polynomial in s.
 GROUP = 4
 #: Groups of the blocks of (L, M/V), (lam, epsilon), H/F^2 and eta/F in most rows; bodies are alike and not on the axis.
-SHORT = (4, 2, 2, 1), (4, 2, 2, 1), (4, 2), (4, 2)
+SHORT = (4, 4, 3, 2, 2, 1), (4, 4, 3, 2, 2, 1), (4, 3, 2), (4, 3, 2)
 #: Functions of a row, or pairs of them, on the axis.
 ALPHA_FUNCTIONS = len(SHORT)
 #: Groups of a block in the other rows.
@@ -64,8 +78,51 @@ _BIAS = 1023
 _MANTISSA = (1 << 52) - 1
 #: C divided by W of the fast limit, where the one creep time is the unit.
 _FAST_RATIO = math.log(2.0) - float(np.euler_gamma)
-#: (array, start) -> the numbers of a block.
-_load_block = make_load(_BLOCK_VECTORS)
+#: LLVM's type of a block.
+_BLOCK = ir.VectorType(ir.DoubleType(), BLOCK_SIZE)
+
+
+def _make_sum(lengths):
+    """Return a kernel that writes one part of a row, or two: in each block the sum of cubic polynomials times T_4g(s).
+
+    lengths : number of groups of each block; loops of a length that varies cost more than they save.
+
+    The kernel takes (axis, first, s, c, rows, to).  axis, first : vector of coefficients, and where those of the part
+    begin; of each block the group of the highest degree first.  s : s, T_4(s), T_8(s) and T_12(s).  c : factor of the
+    second function of a pair; 1 of a single function.  rows, to : vector that is written, and where.
+    """
+
+    def lower(context, builder, signature, arguments):
+        axis, first, numbers, c, rows, to = arguments
+        one, zero = (ir.Constant(_BLOCK, [x] * BLOCK_SIZE) for x in (1.0, 0.0))
+        power, *chebyshev = (broadcast_value(builder, x, _BLOCK) for x in cgutils.unpack_tuple(builder, numbers))
+        square = builder.fmul(power, power)
+        factor = one
+        for n in (2, 3, 6, 7):
+            factor = builder.insert_element(factor, c, ir.IntType(32)(n))
+        count = GROUP * sum(lengths)
+        pointers = vector_pointers(context, builder, signature.args[0], axis, first, count, _BLOCK)
+        # one load after the other: what is loaded before the store of another block has to be kept in registers
+        terms = (builder.load(pointer, align=8) for pointer in pointers)
+        targets = vector_pointers(context, builder, signature.args[4], rows, to, len(lengths), _BLOCK)
+        for length, target in zip(lengths, targets):
+            total = zero
+            for T in reversed([one, *chebyshev][:length]):
+                low, linear, high, cubic = (next(terms) for _ in range(GROUP))
+                low = fma_vectors(builder, linear, power, low)
+                high = fma_vectors(builder, cubic, power, high)
+                total = fma_vectors(builder, fma_vectors(builder, high, square, low), T, total)
+            builder.store(builder.fmul(total, factor), target, align=8)
+        return context.get_dummy_value()
+
+    numbers = types.UniTuple(types.float64, FULL)
+    return make_intrinsic(lower, types.void, None, types.int64, numbers, types.float64, None, types.int64)
+
+
+_sum_short_pair = _make_sum(SHORT[0])
+_sum_full_pair = _make_sum([FULL] * 2 * PART_BLOCKS)
+_sum_short = _make_sum(SHORT[2])
+_sum_full = _make_sum([FULL] * PART_BLOCKS)
 
 
 @kernel(allocates=True)
@@ -73,7 +130,8 @@ def select_alpha(n, source):
     """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
     parts.
 
-    n : number of the state.  source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+    n : index of the state.
+    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
     selected already.
@@ -107,7 +165,7 @@ def select_alpha(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
 
-    number : number of the part, its index in the marks.
+    number : index of the part in the marks.
     source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
 
     The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.
@@ -123,10 +181,10 @@ def make_part(number, source):
     pair = part < H_OVER_F2 // PART_SIZE
     function = row * ALPHA_FUNCTIONS + (part >> 1 if pair else part - ALPHA_FUNCTIONS)
     begins = integers_at(marks[_AXIS + 1], function + 2)
-    first = begins[function]
-    groups = begins[function + 1] - first
     size = BLOCK_SIZE * GROUP
-    axis = floats_at(marks[_AXIS] + 8 * size * first, size * groups)
+    first = size * begins[function]
+    stop = size * begins[function + 1]
+    axis = floats_at(marks[_AXIS], stop)
     # read once: stores to rows could change them for all that the compiler knows
     s = rows[_S], rows[_S + 1], rows[_S + 2], rows[_S + 3]
     if c == 0.0:
@@ -134,45 +192,12 @@ def make_part(number, source):
             rows[k] = 0.0
         rows[start] = 1.0
     elif pair:
-        factor = pack(1.0, 1.0, c, c)
-        if groups < 4 * FULL:
-            _sum_block(axis, 0, 4, s, factor, rows, start)
-            _sum_block(axis, 4 * size, 2, s, factor, rows, start + BLOCK_SIZE)
-            _sum_block(axis, 6 * size, 2, s, factor, rows, start + 2 * BLOCK_SIZE)
-            _sum_block(axis, 8 * size, 1, s, factor, rows, start + 3 * BLOCK_SIZE)
+        if stop - first < 2 * PART_SIZE * ALPHA_TERMS:
+            _sum_short_pair(axis, first, s, c, rows, start)
         else:
-            for n in range(4):
-                _sum_block(axis, n * FULL * size, FULL, s, factor, rows, start + n * BLOCK_SIZE)
+            _sum_full_pair(axis, first, s, c, rows, start)
+    elif stop - first < PART_SIZE * ALPHA_TERMS:
+        _sum_short(axis, first, s, 1.0, rows, start)
     else:
-        factor = broadcast(1.0)
-        _sum_block(axis, 0, 4, s, factor, rows, start)
-        if groups < 2 * FULL:
-            _sum_block(axis, 4 * size, 2, s, factor, rows, start + BLOCK_SIZE)
-        else:
-            _sum_block(axis, 4 * size, FULL, s, factor, rows, start + BLOCK_SIZE)
+        _sum_full(axis, first, s, 1.0, rows, start)
     marks[number] = marks[VERSION]
-
-
-@inline_kernel
-def _sum_block(axis, first, groups, s, factor, rows, to):
-    """Write twelve coefficients of a row: the sum of groups, cubic polynomials in s times T_4g(s).
-
-    axis : coefficients of the terms in s for the octave of alpha, a vector.
-    first : position in ``axis`` where those of the block begin, the group of the highest degree first.
-    groups : number of groups, a literal number: loops of a length that varies cost more than they save.
-    s : s, T_4(s), T_8(s) and T_12(s); s = 2 log2(alpha/2^N) - 1.
-    factor : vector by which every vector of results is multiplied.
-    rows : written.
-    to : position in ``rows`` of the first coefficient that is written.
-    """
-    power = broadcast(s[0])
-    square = power * power
-    zero = broadcast(0.0)
-    total = zero, zero, zero
-    for group in range(groups):
-        at = first + BLOCK_SIZE * GROUP * group
-        low = fma4(_load_block(axis, at + BLOCK_SIZE), power, _load_block(axis, at))
-        high = fma4(_load_block(axis, at + 3 * BLOCK_SIZE), power, _load_block(axis, at + 2 * BLOCK_SIZE))
-        cubic = fma4(high, square, low)
-        total = fma4(cubic, broadcast(s[groups - 1 - group] if group < groups - 1 else 1.0), total)
-    store(rows, to, fma4(total, factor, zero))

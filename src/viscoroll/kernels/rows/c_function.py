@@ -56,7 +56,7 @@ def _cover_law(V, omega, out, scenes):
 
 @kernel(inline=True, allocates=True)
 def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
-    """Evaluate the law at one state, write the results, and return the status.
+    """Evaluate the law at one state and write the results in the units of the caller.
 
     caller_V, caller_omega : speed and angular velocity in the units of the caller.
     pointer : address of the results, written.
@@ -105,6 +105,7 @@ def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[
     unlike : whether the two bodies differ.
     kappa, mu : slenderness R/l0 and coefficient of friction.
     scale : for V, omega, Q and M the unit of this dimensionless quantity in the units of the caller.
+    Returns an array of two records.
     """
     cover_rows = law.cover_rows
     function, address = (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)

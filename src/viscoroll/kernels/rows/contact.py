@@ -4,6 +4,8 @@ With D = 2 kappa |delta|/mu and w = L - D, |Q|/mu = 1 - w^2 (H/F^2)(2 u/w), wher
 at small creepage.  There their difference is exact with the mean slope S of H/F^2 between v1 = 2 u/L and v2 = 2 u/w:
 
     |Q|/mu = D [(2 L - D) (H/F^2)(v2) - v2 L S]
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -56,8 +58,11 @@ def traction_over_mu(u, L, D, law):
 def _cancels(traction, D, L):
     """Return whether 1 - w^2 H/F^2 has lost digits, so that the mean slope must be used.
 
-    traction : |Q|/mu as that difference.  D : 2 kappa |delta|/mu.  L : 2 kappa delta_star/mu.
     Beyond D = L/2 the two arguments v1 and v2 may be more than one row apart, and the difference stays.
+
+    traction : |Q|/mu as that difference.
+    D : 2 kappa |delta|/mu.
+    L : 2 kappa delta_star/mu.
     """
     return traction < 0.1 and D < 0.5 * L
 
@@ -97,12 +102,13 @@ def stick_fraction(u, lam, L, D, law):
 
 @inline_kernel
 def traction_slopes(u, L, dL, D, law):
-    """Return the slopes of |Q|/mu in partial slip, over u at fixed delta, and over D; (0, 0) in full slip.
+    """Return the slopes of |Q|/mu in partial slip with respect to u at fixed delta, and to D.
 
     u : kappa |V|, dimensionless speed.
     L, dL : 2 kappa delta_star/mu and its slope with respect to u.
     D : 2 kappa |delta|/mu; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns (slope in u, slope in D), dimensionless; (0, 0) in full slip.
     """
     w = L - D
     if not w > 0.0:
@@ -127,7 +133,7 @@ def traction_slopes(u, L, dL, D, law):
 
 @inline_kernel
 def _split_creep(L, free_creep, state, law):
-    """Return the sign of Q, the creepage that causes Q, and D, the same in units of mu/(2 kappa).
+    """Split the creepage into that of free rolling and the rest, which causes the traction Q.
 
     L : 2 kappa delta_star/mu.
     free_creep : 2 kappa delta_0, from the creepage of free rolling.
@@ -145,11 +151,11 @@ def _split_creep(L, free_creep, state, law):
 
 @inline_kernel
 def signed_traction(u, L, free_creep, state, law):
-    """Return Q, with the sign of the creepage that makes it.
+    """Return the traction Q, Eq. (15), divided by the load, with the sign of delta - delta_0.
 
     u : kappa |V|.
     L : 2 kappa delta_star/mu.
-    free_creep : 2 kappa delta_0.
+    free_creep : 2 kappa delta_0, from the creepage of free rolling.
     state : :class:`State`: V, kappa, mu, and delta or omega.
     law : :class:`Law` of the material: polynomials of each octave.
     """
@@ -159,13 +165,14 @@ def signed_traction(u, L, free_creep, state, law):
 
 @inline_kernel
 def Q_slopes(u, L, dL, free_creep, state, law):
-    """Return (dQ/dV, dQ/ddelta, dQ/domega); the first at fixed delta or omega, whichever ``state`` has.
+    """Return the slopes of the traction Q.
 
     u : kappa |V|.
     L, dL : 2 kappa delta_star/mu and its slope with respect to u.
-    free_creep : 2 kappa delta_0.
+    free_creep : 2 kappa delta_0, from the creepage of free rolling.
     state : :class:`State`: V, kappa, mu, and delta or omega.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns (dQ/dV, dQ/ddelta, dQ/domega), dimensionless; the first at fixed delta or omega, whichever ``state`` has.
     """
     _, delta, D = _split_creep(L, free_creep, state, law)
     if D == np.inf:
@@ -182,13 +189,11 @@ def Q_slopes(u, L, dL, free_creep, state, law):
 
 @inline_kernel
 def _next_state(k, request):
-    """Return (state, n, u) of the state that is number ``k`` in the order of evaluation.
+    """Return the state at a place in the order of evaluation, with its index and its dimensionless speed.
 
-    k : number in that order.
+    k : int, place in that order.
     request : :class:`Request` of states and quantities, with the output array.
-    state : the :class:`State`.
-    n : its number, hence its column of the output.
-    u : kappa |V|.
+    Returns (state, n, u): the :class:`State`; its index, hence its column of the output; kappa |V|, dimensionless.
     """
     n = request.order[np.uint64(k)] if request.order.size > 0 else k
     state = read_state(request.states, n)
@@ -274,14 +279,13 @@ def _write_functions_of_creep(k, column, buffer, law, request):
 
 @kernel
 def contact_loop(law, request, buffer, count):
-    """Evaluate the law at ``count`` states.
+    """Evaluate the law at ``count`` states and write what is requested.
 
     law : :class:`Law` of the material: polynomials of each octave.
     request : :class:`Request` of states and quantities, with the output array, written.
-    buffer : (4, states), scratch for the numbers of as many states as are evaluated together, which lets the
-    processor
-        work on several at once; (4, 1) where each state has a law of its own, of which one is selected at a time.
-    count : number of states.
+    buffer : (4, states), scratch.  Some states are evaluated together, so that the processor works on several at once.
+        (4, 1) where each state has a law of its own, of which one is selected at a time.
+    count : int, number of states.
     """
     for begin in range(0, count, buffer.shape[1]):
         end = min(begin + buffer.shape[1], count)

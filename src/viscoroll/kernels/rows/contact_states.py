@@ -65,9 +65,9 @@ def read_state(states, n):
 def write_field(row, value, n, request):
     """Write a quantity of a state, if it is requested.
 
-    row : row of the output, a field of :class:`Fields`.
-    value : the quantity.
-    n : number of the state.
+    row : index of the row of the output, a field of the :class:`Fields` of ``request``; below 0 if it is not requested.
+    value : the quantity, dimensionless.
+    n : index of the state.
     request : :class:`Request` of states and quantities, with the output array.
     """
     if row >= 0:
@@ -76,9 +76,11 @@ def write_field(row, value, n, request):
 
 @inline_kernel
 def slip_and_creepage(state):
-    """Return (slip, delta) of ``state``, a :class:`State`.
+    """Return slip and creepage of a state, whichever of creepage and omega it has.
 
-    slip : a number with the sign of omega - V.  delta : the creepage (omega - V)/V; V = 0 counts as V -> 0+.
+    state : :class:`State`: V, kappa, mu, and delta or omega.
+    Returns (slip, delta): a number with the sign of omega - V; the creepage (omega - V)/V, where V = 0 counts as V ->
+    0+.
     """
     V = state.V
     creep = state.creep

@@ -4,6 +4,8 @@
 nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law
 2 kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`): as one polynomial, and twice as a pair, which has the
 second derivative.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from typing import NamedTuple
@@ -50,10 +52,11 @@ def is_cover(cover_rows):
 
 @inline_kernel
 def fast_moment(shift, u, cover_rows):
-    """Return M/V, divided by its scale, behind the last row (fast limit).
+    """Return M/V, divided by its scale, behind the last row of the law, where the fast limit holds.
 
-    shift : M/V of a half-space, which is the result if ``cover_rows`` is None.  u : kappa |V|.
-    cover_rows : as of :class:`Law`.
+    shift : M/V of a half-space, dimensionless, which is the result if ``cover_rows`` is None.
+    u : kappa |V|, dimensionless.
+    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
     """
     if cover_rows is None:
         return shift
@@ -62,10 +65,12 @@ def fast_moment(shift, u, cover_rows):
 
 @inline_kernel
 def fast_lengths(lam, shift, u, cover_rows):
-    """Return (lam, epsilon) behind the last row (fast limit).
+    """Return length and shift of the contact behind the last row of the law, where the fast limit holds.
 
-    lam, shift : lam and epsilon of a half-space, which are the result if ``cover_rows`` is None.  u : kappa |V|.
-    cover_rows : as of :class:`Law`.
+    lam, shift : length divided by l0 and shift epsilon of a half-space, which are the result if ``cover_rows`` is None.
+    u : kappa |V|, dimensionless.
+    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
+    Returns (lam, epsilon), dimensionless.
     """
     if cover_rows is None:
         return lam, shift
@@ -74,10 +79,11 @@ def fast_lengths(lam, shift, u, cover_rows):
 
 @inline_kernel
 def fast_eta_over_F(eta_over_F, v, cover_rows):
-    """Return eta/F behind the last row (fast limit).
+    """Return eta/F behind the last row of the law, where the fast limit holds; dimensionless.
 
-    eta_over_F : eta/F of a half-space, which is the result if ``cover_rows`` is None.  v : 1/F(eta).
-    cover_rows : as of :class:`Law`.
+    eta_over_F : eta/F of a half-space, which is the result if ``cover_rows`` is None.
+    v : 1/F(eta), dimensionless.
+    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
     """
     if cover_rows is None:
         return eta_over_F
@@ -86,9 +92,12 @@ def fast_eta_over_F(eta_over_F, v, cover_rows):
 
 @inline_kernel
 def free_creep_at(position, u, cover_rows):
-    """Return (value, first, second derivative over u) of 2 kappa delta_0; zeros of half-spaces.
+    """Return 2 kappa delta_0, from the creepage delta_0 of free rolling, with its derivatives in u.
 
-    position : of u in the rows of the law.  u : kappa |V|.  cover_rows : as of :class:`Law`.
+    position : :class:`.evaluate.RowPosition` of u in the rows of the law.
+    u : kappa |V|, dimensionless.
+    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
+    Returns (value, first derivative, second derivative), dimensionless; zeros for half-spaces.
     """
     if cover_rows is None:
         return 0.0, 0.0, 0.0
@@ -102,9 +111,11 @@ def free_creep_at(position, u, cover_rows):
 
 @inline_kernel
 def free_creep_value(position, u, cover_rows):
-    """Return 2 kappa delta_0 alone, with delta_0 the creepage of free rolling; 0 of half-spaces.
+    """Return 2 kappa delta_0 without derivatives, with delta_0 the creepage of free rolling; 0 for half-spaces.
 
-    position : of u in the rows of the law.  u : kappa |V|.  cover_rows : as of :class:`Law`, None of half-spaces.
+    position : :class:`.evaluate.RowPosition` of u in the rows of the law.
+    u : kappa |V|, dimensionless.
+    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
     """
     if cover_rows is None:
         return 0.0
@@ -115,10 +126,14 @@ def free_creep_value(position, u, cover_rows):
 
 @inline_kernel
 def sliding_creep(slip, delta, free_creep, state, cover_rows):
-    """Return (a number with the sign of the traction, the creepage that makes it): delta less that of free rolling.
+    """Return the part of slip and creepage that causes the traction: delta less that of free rolling.
 
-    slip : a number with the sign of omega - V.  delta : creepage.  free_creep : 2 kappa delta_0.
-    state : a :class:`State`.  cover_rows : as of :class:`Law`.
+    slip : a number with the sign of omega - V.
+    delta : creepage.
+    free_creep : 2 kappa delta_0, from the creepage of free rolling.
+    state : :class:`.contact_states.State`: V, kappa, mu, and delta or omega.
+    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
+    Returns (a number with the sign of the traction, creepage delta - delta_0); the arguments for half-spaces.
     """
     if cover_rows is None:
         return slip, delta
@@ -128,10 +143,12 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
 
 @inline_kernel
 def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
-    """Return dQ/dV at fixed creepage.
+    """Return dQ/dV at fixed creepage delta, dimensionless.
 
-    dQ_dV : slope at fixed creepage less that of free rolling.  dQ_ddelta : slope over the creepage.
-    free_slope : slope of 2 kappa delta_0 over u.  cover_rows : as of :class:`Law`; None leaves dQ_dV as it is.
+    dQ_dV : slope at fixed delta - delta_0, the creepage less that of free rolling.
+    dQ_ddelta : slope with respect to the creepage.
+    free_slope : slope of 2 kappa delta_0 with respect to u = kappa |V|.
+    cover_rows : numbers that only a cover has, a vector as in the module; None, for half-spaces, leaves dQ_dV as it is.
     """
     if cover_rows is None:
         return dQ_dV
@@ -140,10 +157,15 @@ def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
 
 @inline_kernel
 def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
-    """Return :class:`FreeCreep` at u; of half-spaces -0.0, which a compiler leaves out of sums.
+    """Return what the creepage of free rolling adds to the kinematics of partial slip at one speed.
 
-    position : of u in the rows of the law.  u : kappa |V|.  kappa : slenderness R/l0.  k : mu/(2 kappa).
-    uL_slope : d(u L)/du.  cover_rows : as of :class:`Law`.
+    position : :class:`.evaluate.RowPosition` of u in the rows of the law.
+    u : kappa |V|, dimensionless.
+    kappa : slenderness R/l0.
+    k : mu/(2 kappa), dimensionless.
+    uL_slope : d(u L)/du, where L = 2 kappa delta_star/mu.
+    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
+    Returns :class:`FreeCreep`; its parts are -0.0 for half-spaces, which a compiler leaves out of sums.
     """
     if cover_rows is None:
         return FreeCreep(-0.0, -0.0, -0.0)

@@ -15,6 +15,8 @@ writes its head; nothing else is touched.  A part of a row bears the version tha
 another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion pays only for
 the parts that it reads.  A part depends on its material alone, not on what was read before.  Select the material before
 the first ``locate_row``: positions of another material mean nothing.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from typing import NamedTuple
@@ -83,7 +85,8 @@ class LengthAndMoment(NamedTuple):
 def locate_octave(x, e0):
     """Return the position of x in rows that span one octave each.
 
-    x : argument, >= 0.  e0 : binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
+    x : argument, >= 0.
+    e0 : binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
 
     Returns (row, t, dt/dx): number of the row; argument of its polynomials, in [0, 1] in row 0, else in [-1, 1];
     slope of that argument.
@@ -133,7 +136,7 @@ def _fast_terms(u, body, law):
 
 @inline_kernel
 def length_and_moment(position, u, law):
-    """Return :class:`LengthAndMoment`: 2 kappa delta_star/mu, M/V and their slopes at u.
+    """Return L = 2 kappa delta_star/mu, M/V and their slopes at u, as :class:`LengthAndMoment`.
 
     position : :class:`RowPosition` of u: row and argument t in it.
     u : kappa |V|.
@@ -158,9 +161,9 @@ def length_and_moment(position, u, law):
 def moment_factor(position, u, scale, state):
     """Return the factor that turns m, which is M/V divided by ``scale``, into M: V, or V z in the fast limit.
 
-    position : of u.
+    position : :class:`RowPosition` of u: row and argument t in it.
     u : kappa |V|.
-    scale : that of :class:`LengthAndMoment`.
+    scale : ``scale`` of the :class:`LengthAndMoment` at u.
     state : :class:`State`: V, kappa, mu, and delta or omega.
     """
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
@@ -168,11 +171,12 @@ def moment_factor(position, u, scale, state):
 
 @inline_kernel
 def lam_and_epsilon(position, u, law):
-    """Return (lam, epsilon): length of the contact divided by l0, and its shift in half lengths.
+    """Return length and shift of the contact at u, Eqs. (6) and (8).
 
     position : :class:`RowPosition` of u: row and argument t in it.
     u : kappa |V|.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns (lam, epsilon): length divided by l0; shift in half contact lengths.
     """
     if in_fast_limit(position):
         _, shift, _ = _fast_terms(u, FAST_TOTAL, law)
@@ -188,7 +192,7 @@ def body_moments(position, u, law):
     u : kappa |V|.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    The first two are divided by the scale of :class:`LengthAndMoment`.
+    The first two are divided by ``scale`` of the :class:`LengthAndMoment` at u; all are dimensionless.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -208,10 +212,11 @@ def free_creep_and_slopes(u, law):
 
 @inline_kernel
 def limits_at_rest(kappa, law):
-    """Return (L, delta_0) in the limit V -> 0: (1, -0.0) of half-spaces.
+    """Return L = 2 kappa delta_star/mu and the creepage of free rolling in the limit V -> 0.
 
     kappa : slenderness R/l0.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns (L, delta_0), dimensionless; (1, -0.0) for half-spaces.
     """
     if law.cover_rows is None:
         return 1.0, -0.0
@@ -234,7 +239,7 @@ def _half_space_eta_over_F(y, law):
 
 @inline_kernel
 def eta_over_F(position, v, law):
-    """Return eta/F, which times F gives the half length of the stick zone.
+    """Return eta/F, dimensionless; eta = beta zeta is half the transit time of the stick zone, Eq. (10).
 
     position : :class:`RowPosition` of v: row and argument t in it.
     v : 1/F(eta).
@@ -247,13 +252,14 @@ def eta_over_F(position, v, law):
 
 @inline_kernel
 def H_over_F2(position, v, law):
-    """Return H/F^2 and its slope with respect to v.
+    """Return the function H/F^2 of the module :mod:`.rows`, which gives the traction, and its slope with respect to v.
 
     position : :class:`RowPosition` of v: row and argument t in it.
     v : 1/F(eta), dimensionless.
     law : :class:`Law` of the material: polynomials of each octave.
 
     |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta|)/mu.
+    Returns (value, slope), dimensionless.
     """
     if in_fast_limit(position):
         alpha = law.rows[ALPHA]
@@ -303,6 +309,7 @@ def _fast_secants(v, x, law):
     v : 1/F(eta).
     x : >= 0, dimensionless.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), dimensionless.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]

@@ -119,7 +119,8 @@ class _LawModel(models.PrimitiveModel):
 def _unbox(kind, law, c):
     """Return the address of the user data of a law that Python passes to jitted code.
 
-    kind, c : numba's type of the law and its context of unboxing.  law : the Python object.
+    kind, c : numba's type of the law and its context of unboxing.
+    law : the Python object.
     """
     address = c.pyapi.object_getattr_string(law, "address")
     value = c.pyapi.long_as_ulonglong(address)

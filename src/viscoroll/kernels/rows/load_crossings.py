@@ -2,6 +2,8 @@
 
 kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one equation between two nodes between
 which its left side is monotone.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from typing import Any, NamedTuple

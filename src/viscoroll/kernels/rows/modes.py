@@ -9,6 +9,8 @@ y = sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
 
 _s is the slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h and y gain
 T_mean times themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -34,9 +36,11 @@ _FAST = 1e-9
 
 @kernel
 def _evaluate_asymptotic(terms, x):
-    """Return (value, first derivative, second derivative) of sum a_n x^-n.
+    """Evaluate the asymptotic series sum a_n x^-n with its derivatives.
 
-    terms : coefficients a_n, of which a_0 = 1.  x : argument, large.
+    terms : coefficients a_n, of which a_0 = 1.
+    x : argument, large.
+    Returns (value, first derivative, second derivative).
     """
     w = 1.0 / x
     value = slope = second_derivative = 0.0
@@ -51,7 +55,9 @@ def _evaluate_asymptotic(terms, x):
 def _jet(rate, z, function):
     """Return the jet of a function of x = (rate - s) z at s = 0.
 
-    rate : a_i or b_j.  z : zeta.  function : (value, first derivative, second derivative) over x.
+    rate : a_i or b_j.
+    z : zeta.
+    function : (value, first derivative, second derivative) over x.
     """
     value, slope, second_derivative = function
     return pack(value, rate * slope, -z * slope, -slope - rate * z * second_derivative)
@@ -59,11 +65,12 @@ def _jet(rate, z, function):
 
 @kernel
 def _write_ratio_jets(z, series, work):
-    """Write the jets of 1/r, k and i2 of every mode.
+    """Write the jets of 1/r, k and i2 of every mode: each value with its derivatives d/dz, d/ds, d2/dz ds
+    (:mod:`.series`).
 
-    z : zeta.
+    z : zeta, half transit time of the contact, > 0, dimensionless.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace`, written.
+    work : :class:`Workspace` of the series, written.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -132,7 +139,7 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 def set_alpha_of_state(n, alpha, series):
     """Write the alpha of state ``n`` into a series of one mode.
 
-    n : number of the state.
+    n : index of the state.
     alpha : alphas, of length 1 or with one for each state; empty: the series is complete and nothing is written.
     series : :class:`Series`, written.
     """

@@ -3,6 +3,8 @@
 All of it works on one vector ``scratch``: the arguments of :data:`POINT_COUNT` points; for each of up to two functions
 their values, and behind them the leading divided differences; values at the nodes; Chebyshev coefficients.  In front of
 arguments and values four numbers are kept free, so that vectors may reach below the first point.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import numpy as np
@@ -71,7 +73,8 @@ def divided_differences(count, scratch):
 def evaluate_at_nodes(nodes, which, scratch):
     """Evaluate Newton's polynomial of one function at the 24 nodes of a row, and write the values into ``scratch``.
 
-    nodes : arguments of the nodes, (24,).  which : 0 or 1, the function.
+    nodes : arguments of the nodes, (24,).
+    which : int, 0 or 1, index of the function.
     scratch : vector of this module with the divided differences of that function; its values at NODE_VALUES are
     written.
     """
@@ -89,8 +92,11 @@ def evaluate_at_nodes(nodes, which, scratch):
 def sum_of_rows(matrix, first, terms, factors, to, numbers):
     """Write the sum of rows of 24 numbers, each times a factor.
 
-    matrix : vector in which the rows follow each other from ``first`` on.  terms : how many there are.
-    factors, to : where in ``numbers`` the factors begin, and the sum.
+    matrix : vector in which the rows follow each other.
+    first : index in ``matrix`` at which the first row begins.
+    terms : number of rows.
+    factors, to : indices in ``numbers`` at which the factors begin, and the sum.
+    numbers : vector with the factors; the sum, 24 numbers, is written.
     """
     zero = broadcast(0.0)
     total = zero, zero, zero, zero, zero, zero

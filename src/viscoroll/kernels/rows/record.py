@@ -7,6 +7,8 @@ offsets in a row.  Two functions whose powers are interleaved (:mod:`simd_polyno
 ``marks`` holds one head, as long as a row has parts, and then for every part of every row the version of the material
 that it was made for.  The rows of one material are complete.  Of many materials a part is made when it is first read;
 who reads it need not know which (:mod:`evaluate`).
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from typing import Any, NamedTuple
@@ -107,8 +109,10 @@ def ensure_part(part, row, law):
 def select_index(n, addresses, state_count, marks):
     """Mark the material of state ``n`` as selected.
 
-    n : number of the state.  addresses : address of the index of the material of each state.
-    state_count : length of that array; 1 if all states have one material.  marks : those of the law, written.
+    n : index of the state.
+    addresses : address of an array with the index of the material of each state.
+    state_count : length of that array; 1 if all states have one material.
+    marks : ``marks`` of the :class:`Law`, written.
 
     Returns the index of the material, or -1 if it was selected already.
     """

@@ -17,6 +17,8 @@ makes the parts of two bodies that deform unlike each other: the contact sees th
 Every number is a vector of four (:mod:`..numerics.simd4`).  The four are values at four places z, or, where ``jets`` is
 True, a **jet** at one place: value, d/dz, d/ds, d2/dz ds.  The parameter s is subtracted from all rates a_i and b_j
 while E_i a_i, J_j b_j and Q stay what they are (:mod:`modes`).
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from typing import Any, NamedTuple
@@ -114,7 +116,7 @@ def evaluate_ratios(places, series, work):
 
     places : vector of four z > 0.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace`, written.
+    work : :class:`Workspace` of the series, written.
     """
     z = unpack(places)
     for at in range(LANES * series.a.size):
@@ -144,7 +146,8 @@ def reciprocal(jets, p):
     """Return 1/p of a vector of four values, or of a jet.
 
     jets : whether the four are a jet (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
-    p : the vector, other than 0.
+    p : vector of four numbers, the first or all other than 0.
+    Returns a vector of four of the same kind.
     """
     inverse = 1.0 / p
     if not jets:
@@ -189,7 +192,8 @@ def _substitute(matrix, right, count):
     """Solve a linear system with a factorized matrix, in place of its right side.
 
     matrix : factors by :func:`_factorize`, (count, count) vectors of four, flat.
-    right : right side, ``count`` vectors of four, flat; overwritten by the solution.  count : number of unknowns.
+    right : right side, ``count`` vectors of four, flat; overwritten by the solution.
+    count : number of unknowns.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
@@ -209,7 +213,7 @@ def solve_modes(jets, series, work):
 
     jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace` with the ratios 1/r and k, written.
+    work : :class:`Workspace` of the series with the ratios 1/r and k, written.
 
     The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor:
     the second pass leaves one with both, and the third none.
@@ -252,15 +256,14 @@ def solve_modes(jets, series, work):
 
 @kernel
 def _split_moment(jets, lam2, series, work):
-    """Return the parts of m by the creep modes of the half-space and of the cylinder; without slopes with respect to
-    s.
+    """Return the parts of m = M/V that half-space and cylinder take, by their creep modes; a jet has no slopes in s.
 
     jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
-    lam2 : lam^2.
+    lam2 : lam^2, square of the contact length divided by l0, vector of four.
     series : :class:`Series`: rates and strengths of the modes, with weights of the half-space.
-    work : its :class:`Workspace` with X in place of y.
+    work : :class:`Workspace` of the series with X in place of y.
 
-    Returns (half-space, cylinder).
+    Returns (part of the half-space, part of the cylinder), vectors of four.
     """
     count = series.a.size
     half_space = cylinder = broadcast(0.0)
@@ -288,10 +291,10 @@ def evaluate_functions(jets, z, series, work):
     jets : whether vectors are jets.
     z : vector of four z, or the jet of one.
     series : :class:`Series`: rates and strengths of the modes.
-    work : its :class:`Workspace` with the ratios at z, written.
+    work : :class:`Workspace` of the series with the ratios at z, written.
 
-    Returns (g, h, sum X_i i2_i).  The moments of the two bodies are scaled so that their sum is m: they differ from
-    it by roundings of alpha times the size of one.
+    Returns (g, h, sum X_i i2_i), vectors of four.  The moments of the two bodies are scaled so that their sum is m:
+    they differ from it by roundings of alpha times the size of one.
     """
     solve_modes(jets, series, work)
     unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)

@@ -32,9 +32,15 @@ def _make_sums(count: int, orders: int):
     orders : number of values that the kernel returns: the polynomial, its first derivative, and so on.
 
     The kernel takes (table, start, x): vector of coefficients, position of the first, argument.
+    Returns the kernel; its value is a tuple of ``orders`` vectors.
     """
 
     def lower(context, builder, signature, arguments):
+        """Return the instructions of the kernel by Horner's scheme, as numba calls for them.
+
+        context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
+        Returns a value of LLVM: the tuple of the kernel.
+        """
         terms = load_vectors(context, builder, signature, arguments, count)
         sums = []
         for _ in range(orders):
@@ -81,9 +87,12 @@ _one_secants = make_intrinsic(_lower_secants, types.UniTuple(FOUR, 4), None, typ
 
 @inline_kernel
 def evaluate_pair(table, start, t):
-    """Return (a, b, a', b', a'', b'') at t of a pair of functions; the compiler leaves out what is not read.
+    """Return two functions that are stored as a pair, with their first and second derivatives in t.
 
-    table : vector of coefficients.  start : where those of the pair begin.  t : argument, dimensionless.
+    table : vector of coefficients.
+    start : index in ``table`` at which those of the pair begin.
+    t : argument, dimensionless.
+    Returns (a, b, a', b', a'', b''); the compiler leaves out what a caller does not read.
     """
     twice = 2.0 * t
     square = t * t
@@ -103,7 +112,8 @@ def evaluate_pair(table, start, t):
 def _join(sums, t, square):
     """Return the value at t from the four polynomials of the coefficients modulo four.
 
-    sums : their values at t^4, one vector.  square : t^2.
+    sums : their values at t^4, one vector.
+    square : t^2.
     """
     a, b, c, d = unpack(sums)
     return fma(square, fma(t, d, c), fma(t, b, a))
@@ -111,9 +121,12 @@ def _join(sums, t, square):
 
 @inline_kernel
 def evaluate_single(table, start, t):
-    """Return (value, slope) at t of one function.
+    """Return one function of the table and its slope in t.
 
-    table : vector of coefficients.  start : where those of the function begin.  t : argument, dimensionless.
+    table : vector of coefficients.
+    start : index in ``table`` at which those of the function begin.
+    t : argument, dimensionless.
+    Returns (value, slope).
     """
     square = t * t
     value, first_derivative = _one_sums(table, start, square * square)
@@ -124,9 +137,12 @@ def evaluate_single(table, start, t):
 
 @inline_kernel
 def _join_secant(sums, secants, t, s):
-    """Return p(t) and (p(t) - p(s))/(t - s) from the four polynomials of the coefficients modulo four.
+    """Return p(t) and its secant (p(t) - p(s))/(t - s) from the four polynomials in t^4 of which p consists.
 
-    sums : their values at t^4, one vector.  secants : theirs between t^4 and s^4.  t, s : the arguments.
+    sums : vector of the values of the four polynomials at t^4.
+    secants : vector of their secants between t^4 and s^4.
+    t, s : arguments, dimensionless.
+    Returns (p(t), secant).
     """
     square = t * t
     s_square = s * s
@@ -140,7 +156,9 @@ def _join_secant(sums, secants, t, s):
 def evaluate_secants(table, start, t, s):
     """Return p(t) and (p(t) - p(s))/(t - s) of one function p, and the same of its slope p', without cancellation.
 
-    table : vector of coefficients.  start : where those of the function begin.  t, s : arguments, dimensionless.
+    table : vector of coefficients.
+    start : where those of the function begin.
+    t, s : arguments, dimensionless.
 
     Returns (p(t), secant of p, p'(t), secant of p').
     """

@@ -16,6 +16,8 @@ part of [0, phi] with a D <= 38 counts; one Gauss-Legendre rule on it serves eve
 digits S is within 3e-15 of its peak and 2e-14 of itself for a from 1e-8 to 1e8, alpha from 1.01
 to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum over
 the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from typing import Any, NamedTuple
@@ -70,7 +72,7 @@ class Points(NamedTuple):
 def _memory_integral(u, w, a, r_complement):
     """Return the memory integral of one relaxation mode at a point of the contact.
 
-    u, w : distances from the front and the rear edge in half contacts, u + w = 2.
+    u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
     a : alpha z, half transit time times the rate of the mode.
     r_complement : 1 - r(a), r the ratio I1/I0.
 
@@ -110,10 +112,10 @@ def new_memory_weights(series) -> MemoryWeights:
 def unit_shape(u, w, z, series, weights):
     """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point; 0 outside the contact.
 
-    u, w : distances from the front and the rear edge in half contacts, u + w = 2.
+    u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
     z : half transit time of the contact, or of the stick zone, dimensionless; inf is the elastic limit V = 0.
     series : :class:`Series`: rates and strengths of the modes.
-    weights : its :class:`MemoryWeights`, computed again if they belong to another z.
+    weights : :class:`MemoryWeights`, the strengths of the modes at z; computed again here if they belong to another z.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
@@ -143,7 +145,7 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
     alpha : alphas of a series of one mode, of length 1 or one for each point; empty: the series is complete.
     whole, stick : :class:`MemoryWeights` for the contact and for the stick zone, scratch.
     points : :class:`Points`: position, kappa, mu and the contact state of each point.
-    p, tau : p/E' and |tau|/E' at every point, written.
+    p, tau : (n,), pressure p/E' and shear stress |tau|/E' at every point, written.
     """
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:

@@ -2,6 +2,8 @@
 
 Every number of a law is a polynomial of log2(h/l0) within an octave of the thickness h.  It is the sum of the numbers
 of the laws at the nodes, each times a weight that depends on the thickness alone.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 from ..compile.intrinsics import floats_at, integers_at, record_at, record_type
@@ -32,10 +34,14 @@ _LAWS = MAKER_MARKS
 
 @inline_kernel
 def _interpolate(source, marks, first, to, out, count):
-    """Write ``count`` interpolated numbers.
+    """Write numbers of the law of the selected cover, interpolated between the laws at the nodes of its thickness.
 
-    source : SOURCE record.  marks : those of the law.  first : number of the first one in the laws at the nodes.
-    to : where they are written in ``out``.
+    source : SOURCE record, with the weights of the nodes for each cover.
+    marks : ``marks`` of the law, with the selected cover and the address of the laws at the nodes of its octave.
+    first : index of the first number in the laws at the nodes.
+    to : index in ``out`` of the first number that is written.
+    out : vector, written.
+    count : number of numbers.
     """
     law_size = (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
     weights = floats_at(source.weights + 8 * NODES * marks[SELECTED], NODES)
@@ -50,8 +56,9 @@ def _interpolate(source, marks, first, to, out, count):
 
 @kernel(allocates=True)
 def select_cover(n, source):
-    """Select the cover of state ``n``: write the heads, and all that a cover has beside its rows.
+    """Select the cover of a state: write the heads of the law, and the numbers that only a cover has.
 
+    n : index of the state.
     source : pointer to a SOURCE record.
     """
     source = record_at(source)
@@ -71,7 +78,8 @@ def select_cover(n, source):
 def make_part(number, source):
     """Make a part of a row of the selected cover.
 
-    number : of the part, its place among the marks.  source : pointer to a SOURCE record.
+    number : index of the part in the marks.
+    source : pointer to a SOURCE record.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)

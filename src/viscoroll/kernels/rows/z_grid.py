@@ -5,6 +5,8 @@ point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomi
 points around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that octave.  The polynomial of
 the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is
 needed.  A row depends on its material alone, not on the rows that were made before.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
 import math
@@ -170,7 +172,7 @@ def work_size(nodes: int) -> int:
 def select_series(n, source):
     """Make the material of a state the selected one: write its data into the heads of rows and marks.
 
-    n : number of the state.
+    n : index of the state.
     source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).
@@ -193,7 +195,7 @@ def select_series(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected material, and write it into the rows of the law.
 
-    number : number of the part, its index in the marks.
+    number : index of the part in the marks.
     source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.
     """
     source = record_at(source)
@@ -221,7 +223,7 @@ def _make_functions(part, row, grid):
     of t.
 
     part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.
-    row : number of the row.
+    row : index of the row, from 0.
     grid : :class:`Grid` of function values over ln z of the selected material, whose ``rows`` are written.
     """
     over_v = part >= H_OVER_F2
@@ -264,6 +266,7 @@ def _slow_limit(function, grid):
 
     function : column of the function in the grid, _L to _ETA_OVER_F.
     grid : :class:`Grid` of function values over ln z of the selected material.
+    Returns the value, dimensionless.
     """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
@@ -281,7 +284,7 @@ def _slow_limit(function, grid):
 def _z_of_node(node, grid):
     """Return z of a node: a power of 2^(1/10), or a point of the slow row.
 
-    node : its number.
+    node : index of the node.
     grid : :class:`Grid` of function values over ln z of the selected material.
     """
     slow = node - (grid.node_count - POINT_COUNT)
@@ -348,10 +351,10 @@ def _ensure_nodes(first, stop, grid):
 
 @inline_kernel
 def _ln_from_end(node, row, over_v, grid):
-    """Return ln u, or ln v, at a node of the grid minus ln of the end of an octave of u or v.
+    """Return ln(u/end) or ln(v/end) at a node of the grid, with the right end of an octave of u or v.
 
-    node : number of the node.
-    row : number of the row that spans the octave.
+    node : index of the node.
+    row : index of the row that spans the octave.
     over_v : True for v, False for u.
     grid : :class:`Grid` of function values over ln z of the selected material, in which the node is made if it is
     missing.
@@ -367,12 +370,13 @@ def _ln_from_end(node, row, over_v, grid):
 def _collect_points(row, first, count, over_v, grid):
     """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
 
-    row : number of the row that spans the octave.
+    Arguments are ln u or ln v, counted from the end of the octave.
+
+    row : index of the row that spans the octave.
     first : index of the first function at a node.
     count : number of functions, 1 or 2.
     over_v : True if they are functions of v, False for u.
-    grid : :class:`Grid` of function values over ln z of the selected material.  Arguments are ln u or ln v, counted
-    from the end of the octave.
+    grid : :class:`Grid` of function values over ln z of the selected material.
     """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest

@@ -25,8 +25,7 @@ GRID = record_type(
 
 @kernel(allocates=True)
 def _grid_law(V, omega, pointer, grids):
-    """Evaluate the splines of a grid at one state, write the results, and return the status; the C function of the
-    grid.
+    """Evaluate the splines of a grid at one state and write the results; it is the C function of the grid.
 
     V, omega : speed and angular velocity in the units of the grid.
     pointer : address of the results, written.
@@ -70,7 +69,8 @@ def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Ji
     """Return the law of a grid as a function for jitted code.
 
     splines : vectors of the splines of Q, M_half_space and M_cylinder, which the law keeps alive.
-    numbers : slips, slowest, low, high, R of :data:`GRID`.
+    numbers : fields slips, slowest, low, high, R of :data:`GRID`, in the units of the grid.
+    Returns the :class:`Jitted` law, called with (V, omega).
     """
     grids = np.zeros(2, GRID)
     grids["slopes"] = 0, 1

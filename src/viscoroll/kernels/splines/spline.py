@@ -106,7 +106,7 @@ def _basis(spline, position, n):
 
     spline : vector of the spline: bounds, axes and coefficients.
     position : the :class:`AxisPosition`.
-    n : number of the basis spline in the interval, 0 to its degree.
+    n : index of the basis spline in the interval, 0 to its degree.
 
     Returns (value, slope, offset): the offset is added to the position of a coefficient in the vector.
     """

@@ -72,6 +72,9 @@ def law_axis(low: float, high: float) -> LawAxis:
     ----------
     low, high : alpha, 1 <= low < high <= 1e12.
 
+    Returns
+    ------- LawAxis
+
     Raises
     ------
     ParameterError

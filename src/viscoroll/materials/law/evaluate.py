@@ -20,7 +20,7 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
     """Raise ParameterError for times that rows cannot hold.
 
     slowest: slowest rate of creep, in units of 1/T_ref.
-    fastest: fastest rate of relaxation, likewise.
+    fastest: fastest rate of relaxation, in units of 1/T_ref.
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
         allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} of their unit"
@@ -76,6 +76,7 @@ def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
 
     material: a series, two bodies, or alphas, one or one for each z.
     z: half contact length divided by V T_ref, zeta of the paper, > 0, shape (n,).
+    Returns :class:`ModesValues`, arrays of the functions of the law over z.
     """
     from ...kernels.rows.modes import modes_loop
     from ...kernels.rows.series import FUNCTIONS, new_workspace

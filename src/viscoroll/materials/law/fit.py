@@ -41,7 +41,7 @@ class _FunctionsOfW:
         """Return lam, epsilon, and M/V of half-space and cylinder at u, and their derivatives with respect to ln u.
 
         u: kappa |V|, shape (n,).
-        Returns two arrays (4, n).
+        Returns (values of the four functions, their derivatives), (4, n) each, dimensionless.
         """
         (shift, rise, *parts), (d_shift, d_rise, *d_parts) = self._solve(u, 1, lambda whole: 2.0 * np.sqrt(whole))
         lam = 1.0 / np.sqrt(1.0 + 2.0 * rise)
@@ -51,7 +51,7 @@ class _FunctionsOfW:
         """Return eta/F and H/F^2 at v, and their derivatives with respect to ln v.
 
         v: 1/F(eta), shape (n,).
-        Returns two arrays (2, n).
+        Returns (values of both functions, their derivatives), (2, n) each, dimensionless.
         """
         (shift, rise, *_), (d_shift, d_rise, *_) = self._solve(v, 0, lambda whole: whole)
         share = 1.0 / (1.0 + shift)
@@ -101,11 +101,12 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
 
 
 def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
-    """Return a table with N.
+    """Return a table with the coefficients of N, which the rows of steady rolling do not have.
 
     material: an alpha, a series, or two bodies.
     table: rows of its steady rolling, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
+    Returns the table (rows, 24 powers, 7 functions).
     """
     rows, whole = Rows(e0, len(table)), table.copy()
     (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())

@@ -42,7 +42,7 @@ class LawGrid:
     slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond
     them.
     R : radius in m; 1 for a dimensionless grid.
-    title : of the file.
+    title : title of the file.
     """
 
     splines: dict[str, Floats]
@@ -58,8 +58,8 @@ class LawGrid:
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
         """Raise OutOfTableError for a state outside the axes.
 
-        V: speed, of the unit of the grid.
-        omega: angular velocity, likewise.
+        V: speeds in the unit of the grid, any shape.
+        omega: angular velocities in the unit of the grid; broadcasts with V.
         """
         if np.abs(V) > self.V[1]:
             raise OutOfTableError("V", float(V), -self.V[1], self.V[1])
@@ -88,7 +88,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     Parameters
     ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
-    M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
+        M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
     attributes: mu, and where V has a unit R in m and the load in N/m.
     alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.
 
@@ -125,7 +125,7 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
     """Return a grid at one alpha; raises ParameterError.
 
     table: grid, with or without an axis alpha.
-    path: of the file, for errors.
+    path: path of the file, for errors.
     alpha: wanted value, or None.
     """
     if "alpha" not in table.dims:

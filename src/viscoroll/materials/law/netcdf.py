@@ -40,7 +40,7 @@ _COVER_NUMBERS = ("e0", "alpha", "T_ref")
 
 
 def law_table_of(material: Any, base: Any = None) -> LawTable:
-    """Return the law of a material as users give it; raises ParameterError.
+    """Return the :class:`LawTable` of any kind of material that a user may give; raises ParameterError.
 
     material: Prony, Bodies, alpha, Material, Pair, or a LawTable, which is returned.
     base: Material of the half-space, only beside a Material; default: that of the cylinder.
@@ -60,7 +60,11 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
 
 
 def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
-    """Return the content of the file of a ``law``; ``errors``: largest relative error of each function."""
+    """Return the content of the file of a law.
+
+    law: the law of one material, or of all alpha.
+    errors: function -> largest relative error, dimensionless.
+    """
     if isinstance(law, LawAxis):
         return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
     if law.cover is None:
@@ -138,8 +142,8 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
 def parse_law(content: Content, path: Any) -> LawTable:
     """Return the law of one material; raises FileError for a file that does not state its material.
 
-    content: of the file, verified.
-    path: of the file, for errors.
+    content: content of the file, verified.
+    path: path of the file, for errors.
     """
     numbers, attributes = content
     kind = attributes[KIND]
@@ -162,8 +166,8 @@ def parse_law(content: Content, path: Any) -> LawTable:
 def parse_axis(content: Content, path: Any) -> LawAxis:
     """Return the law of all alpha; raises FileError for an incomplete file.
 
-    content: of the file, verified.
-    path: of the file, for errors.
+    content: content of the file, verified.
+    path: path of the file, for errors.
     """
     with _refuse_incomplete(path):
         coefficients, numbers = _coefficients(content), content.numbers
@@ -211,7 +215,7 @@ def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
     """Parse text of :func:`bodies_as_toml`.
 
     text: TOML.
-    path: of the file, for errors.
+    path: path of the file, for errors.
     Returns (Cover, Bodies, Prony or alpha; the bodies in SI units, or None).
     """
     content = tomllib.loads(text)

@@ -78,7 +78,7 @@ def constant_rows(*values: float) -> Floats:
 def to_axis(table: Floats, c: Floats) -> Floats:
     """Convert tables of a standard linear solid to functions that have finite limits for alpha -> 1.
 
-    table: (..., rows, 24 powers, 7 functions).
+    table: coefficients of the functions, (..., rows, 24 powers, 7 functions).
     c: (alpha - 1)/alpha, in a shape that broadcasts.
     Returns (..., rows, 24 powers, 6 functions), as :data:`AXIS_FUNCTIONS`.
     """
@@ -91,7 +91,7 @@ def to_axis(table: Floats, c: Floats) -> Floats:
 def from_axis(columns: Floats, c: float) -> Floats:
     """Convert functions over alpha to a table; the reverse of :func:`to_axis`.
 
-    columns: (rows, 24 powers, 6 functions); changed in place.
+    columns: coefficients of the functions over alpha, (rows, 24 powers, 6 functions); changed in place.
     c: (alpha - 1)/alpha.
     Returns the table (rows, 24 powers, 7 functions); each body has half of M.
     """
@@ -110,23 +110,35 @@ def interleave_pairs(a: Floats, b: Floats) -> Floats:
     return both.reshape(len(a), -1)
 
 
+def align_vector(numbers: Floats) -> Floats:
+    """Return a copy of a vector ``numbers`` that begins at a line of the cache, 64 bytes.
+
+    Elsewhere every vector of eight numbers that a kernel loads, and up to half of those of four, would span two lines.
+    """
+    room = np.empty(numbers.size + 8)
+    first = -room.ctypes.data // 8 % 8
+    room[first : first + numbers.size] = numbers
+    return room[first : first + numbers.size]
+
+
 def allocate_rows(count: int) -> tuple[Floats, Integers]:
     """Return numbers and marks of a record of ``count`` rows, with those in front, zeroed; no material is selected."""
     from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE, SELECTED
 
     marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
     marks[SELECTED] = -1
-    return np.zeros((count + 1) * ROW_SIZE), marks
+    return align_vector(np.zeros((count + 1) * ROW_SIZE)), marks
 
 
 def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:
     """Return the record of a law that kernels read, with all rows in place.
 
-    table: (rows, 24 powers, 7 functions).
+    table: coefficients of the functions, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     alpha: instantaneous divided by long-time stiffness.
     fast_limit: W and C of the fast limit, of both bodies, half-space and cylinder, shape (3, 2).
     cover: rows of a cover of finite thickness; None for half-spaces.
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.rows.record import E0, ROW_COUNT, ROW_SIZE, Law
 
@@ -145,7 +157,7 @@ def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floa
 
     L^2 press(2 u/L) = 1 is made to hold to rounding, as Q would lose digits by an error in it.
 
-    table: (rows, 24 powers, 7 functions).
+    table: coefficients of the functions, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     alpha: value of press for v -> infinity.
     fast: W and C of the fast limit of both bodies together.
@@ -175,7 +187,7 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
     v: 1/F(eta), shape (n,).
     alpha: value for v -> infinity.
     fast: W and C of the fast limit.
-    Returns two arrays (n,).
+    Returns (values, derivatives), (n,) each, dimensionless.
     """
     last = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
     (value,), (slope,) = rows.read(press[None], last)
@@ -188,7 +200,7 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
 def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     """Return the rows of N of a record, with those of its integral over u.
 
-    table: (rows, 24 powers, 7 functions) with N.
+    table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     alpha: instantaneous divided by long-time modulus.
     Returns one array: rows of N and of its integral from the point t = 0 of each row; then the integral from infinity
@@ -232,7 +244,7 @@ def _pack_cover(cover: CoverRows) -> Floats:
 class AxisRows(NamedTuple):
     """The rows of an octave of alpha as groups of terms in s (:mod:`...kernels.rows.alpha_axis`).
 
-    numbers : blocks of twelve numbers; of each block its groups of terms in s, the group of the highest degrees first.
+    numbers : blocks of eight numbers; of each block its groups of terms in s, the group of the highest degrees first.
     starts : index of the first group of each function or pair of functions, (rows * functions + 1,).
     rows : number of rows.
     """
@@ -247,6 +259,7 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
 
     records: records of the laws of standard linear solids at the nodes of an octave, with equal numbers of rows.
     c: (alpha - 1)/alpha of each, by which M/V and epsilon are divided.
+    Returns :class:`AxisRows`.
     """
     from ...kernels.rows.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
     from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
@@ -274,7 +287,8 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
             lengths = (FULL,) * len(short) if needs_all else short
             numbers += [block[FULL - length :].ravel() for block, length in zip(blocks, lengths)]
             counts.append(sum(lengths))
-    return AxisRows(lock_array(np.concatenate(numbers)), lock_array(np.append(0, np.cumsum(counts))), rows)
+    starts = np.append(0, np.cumsum(counts))
+    return AxisRows(lock_array(align_vector(np.concatenate(numbers))), lock_array(starts), rows)
 
 
 def _grouped_terms(terms: Floats, size: int) -> Floats:

@@ -33,6 +33,7 @@ def record_of_alphas(alpha: Floats) -> Any:
     The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
 
     alpha: one value for each element, or one for all, >= 1.
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.rows import alpha_axis
     from ...kernels.rows.record import E0
@@ -58,7 +59,7 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
 
     They then read rows that are close in memory: states in random order take half as long again.
 
-    alpha, kappa, V: of the states, dimensionless, shape (n,), or one for all.
+    alpha, kappa, V: parameters and speed of the states, dimensionless, shape (n,), or one for all.
     Returns indices (n,); none for a single state.
     """
     octaves = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
@@ -72,6 +73,7 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
 
     materials: many series, pairs or covers.
     which: index of the material of each element, shape (n,).
+    Returns :class:`...kernels.rows.record.Law`.
     """
     used, index = np.unique(which, return_inverse=True)
     index = np.ascontiguousarray(index, dtype=np.int64)
@@ -113,9 +115,10 @@ def _lazy_record(
     kernels: module with the kernel ``make_part`` and the type SOURCE of the data that both kernels read.
     select: kernel that makes the law of one element the current one.
     rows, marks: numbers and marks of the record, which the kernels write.
-    cover_rows: likewise the numbers that covers have in addition; None for half-spaces.
+    cover_rows: the numbers that covers have in addition; None for half-spaces.
     kept: arrays behind addresses in fields, which live as long as the record.
     fields: the other fields of SOURCE, numbers or arrays, of which the address is passed.
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.compile.intrinsics import function_address
     from ...kernels.rows.record import Law
@@ -135,9 +138,10 @@ def _lazy_record(
 def _record_of_covers(thickness: Floats, covers: Cover, index: Integers) -> Any:
     """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
 
-    thickness: of each cover, divided by l0, shape (covers,).
+    thickness: thickness of each cover, divided by l0, shape (covers,).
     covers: covers of which all but the thickness is taken.
     index: index of the cover of each element, shape (n,).
+    Returns :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.numerics.interpolation import to_chebyshev
     from ...kernels.rows import thickness_axis

@@ -92,7 +92,7 @@ class Rows:
     def fit(self, values: Floats, terms: int = TERMS, rounding: float = _ROUNDING) -> Floats:
         """Fit polynomials to values at the nodes.
 
-        values: [..., row, node].
+        values: values of the functions at the nodes, [..., row, node].
         terms: number of Chebyshev coefficients to keep.
         rounding: fraction of the largest coefficient of the first row below which the following ones are dropped.
         Returns coefficients, [..., row, power].
@@ -109,7 +109,7 @@ class Rows:
     def fit_slopes(self, values: Floats, slopes: Floats) -> Floats:
         """Fit polynomials to slopes at the nodes, and to the values in the mean.
 
-        values: [..., row, node].
+        values: values of the functions at the nodes, [..., row, node].
         slopes: derivatives of the values with respect to ln x, [..., row, node].
         Returns coefficients, [..., row, power].
         """
@@ -130,7 +130,7 @@ def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
     """Return the rows that a law needs; beyond the last one its fast limit is accurate to rounding.
 
     slowest: slowest rate of creep, in units of 1/T_ref; a number or an array.
-    fastest: fastest rate of relaxation, likewise.
+    fastest: fastest rate of relaxation, in units of 1/T_ref.
     Returns (e0, number of rows), of the shape of the arguments.
     """
     from ...kernels.rows.z_grid import FAST_LIMIT_OCTAVES

@@ -15,7 +15,7 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 
     Parameters
     ----------
-    values : (nodes of the first axis, nodes of the second, ...).
+    values : values at the nodes, (nodes of the first axis, nodes of the second, ...).
     axes : coordinates of the nodes, increasing, one array for each axis; none for a single value.
     degree : 1 or 3.
 
@@ -36,10 +36,12 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     """Return an axis of a spline in the form that ``kernels.splines.spline`` reads.
 
-    knots: of a not-a-knot spline.
+    knots: knots of a not-a-knot spline.
     degree: 0 to 3.
     log: whether the spline runs in the logarithm of the coordinate.
     stride: number of coefficients that one step along the axis is.
+    Returns the vector: number of intervals, degree + 1, log and stride; the ends of the intervals; the Taylor
+    coefficients of the basis splines in each interval.
     """
     from scipy.interpolate import BSpline
 

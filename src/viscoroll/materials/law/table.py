@@ -70,7 +70,7 @@ class LawTable:
 
     @cached_property
     def coefficients(self) -> Floats:
-        """Coefficients (rows, 24 powers, 7 functions), functions in the order of :data:`.pack.FUNCTIONS`.
+        """Return the coefficients (rows, 24 powers, 7 functions), functions in the order of :data:`.pack.FUNCTIONS`.
 
         For a cover N is not known: its column is NaN.
         """
@@ -128,11 +128,12 @@ def _made(material: float | Prony | Bodies) -> LawTable:
 def make_table(
     material: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None
 ) -> LawTable:
-    """Make a new table.
+    """Make the table of the law of a material; rows that are not given are computed.
 
-    material: alpha, series, bodies or a cover.
+    material: alpha, a series, two bodies or a cover.
     coefficients: rows of the law (rows, 24 powers, 7 functions); None: they are computed.
     cover: rows of the law of a cover; None: they are computed if ``material`` is one.
+    Returns the :class:`LawTable`, whose arrays are read-only.
     """
     total, unlike = total_series(material), isinstance(material, Bodies)
     modes, alpha = total.modes, total.alpha
