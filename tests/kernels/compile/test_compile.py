@@ -394,6 +394,7 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 
 # --- what is said ---
 
+
 @pytest.fixture
 def untold(monkeypatch):
     monkeypatch.setattr(notice, "announced", False)
