@@ -3,7 +3,6 @@
 import csv
 import gzip
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -48,12 +47,6 @@ def table(name) -> xr.Dataset:
 @pytest.fixture(scope="module")
 def alphas() -> xr.Dataset:
     return built("alphas")
-
-
-@pytest.fixture
-def saved(alphas, tmp_path) -> Path:
-    vr.tables.save(alphas, tmp_path / "grid.nc")
-    return tmp_path / "grid.nc"
 
 
 def exact(name: str, points: dict[str, NDArray], fields: tuple[str, ...]) -> dict[str, NDArray]:

@@ -136,17 +136,9 @@ def test_scene_files_and_material_files(saved, tmp_path):
     path.write_text(f'[material]\nfile = "rubber.nc"\n{cylinder}')
     assert read_roller(path).material == RUBBER
     assert read_law_source(path) == law_table_of(RUBBER).pair
-    vr.tables.save(vr.tables.law(RUBBER, STEEL), tmp_path / "rubber.nc")
-    refused(partial(read_roller, path), "line 2", "law of a pair: give one material", error=vr.FileError)
-    vr.tables.save(vr.tables.law(11.0), tmp_path / "rubber.nc")
-    refused(partial(read_roller, path), "line 2", "without units", error=vr.FileError)
 
 
-# --- files that are refused ---
-
-
-def error_of(path: Path) -> str:
-    return refused(partial(vr.load_law, path), str(path), error=vr.FileError)
+# --- other writers; what is refused of their files: refusals.txt ---
 
 
 def test_rewritten_by_another_program(copy, saved):
