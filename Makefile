@@ -6,6 +6,8 @@ CONFIG ?= pipeline/config.toml
 STAGES := $(RUN) -m pipeline --config $(CONFIG)
 # Python compiles the modules that it imports; pip would compile all.
 INSTALL := $(BIN)/pip install --no-compile --quiet --disable-pip-version-check -c constraints.txt
+# Stages and tests start many processes: without bytecode each of them compiles anew what it imports.
+export PYTHONDONTWRITEBYTECODE :=
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup demo tables validate corners figures runtime ensemble benchmark bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check

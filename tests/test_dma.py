@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from places import DATA, ROOT
 
@@ -76,9 +76,16 @@ def test_a_window_of_two_decades(seed):
 
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(3, 40), st.floats(0.0, 0.3), st.floats(0.5, 9.0))
+@example(6140328, 6, 0.3, 1.0)
 def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, decades):
+    """Or, where noise hides the plateau, the data are refused as those of a fluid."""
     omega, storage, loss = curve(np.logspace(-2, -2 + decades, points), noise=noise, seed=seed)
-    fit = vr.fit_prony(omega, np.abs(storage), np.abs(loss))
+    try:
+        fit = vr.fit_prony(omega, np.abs(storage), np.abs(loss))
+    except vr.ParameterError as refusal:
+        if "as a fluid" in str(refusal):
+            return
+        raise
     assert (fit.prony.E > 0.0).all()
     assert FLOOR * fit.storage.min() * 0.999 <= fit.E
     assert np.isfinite(fit.misfit).all()
@@ -115,18 +122,6 @@ def test_shift_factors_are_found(points, noise, allowed):
     assert again.prony == fit.prony
 
 
-def test_reference_between_curves_and_shifts_that_are_given():
-    curves = isotherms(21, 0.0)
-    fit = vr.fit_prony(*curves, temperature=TEMPERATURES)
-    assert fit.shifts.reference == 0.0
-    assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
-    for shift in (wlf, wlf(TEMPERATURES), vr.WLF(C1=8.86, C2=101.6, T0=0.0)):
-        given = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0, shift=shift)
-        assert close(given.shifts.a_T, wlf(TEMPERATURES), rel=tol.DMA_REPEATED)
-        assert np.isnan(given.shifts.mismatch).all()
-        assert close(given.alpha, ALPHA, rel=tol.DMA_ALPHA)
-
-
 @pytest.mark.parametrize("reference", [0.0, 20.0, -30.0])
 def test_times_are_those_at_the_reference(reference):
     """By a function whose constants are of another temperature, by factors in either order: all modes times a_T."""
@@ -153,6 +148,8 @@ def test_the_reference_that_a_shift_means():
     """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the middle curve."""
     curves = isotherms(21, 0.0)
     for shift, reference in (
+        (None, 0.0),
+        (wlf, 0.0),
         (vr.WLF(C1=8.86, C2=101.6, T0=0.0), 0.0),
         (vr.Arrhenius(energy=8e4, T0=-10.0), -10.0),
         (wlf(TEMPERATURES) / wlf(20.0), 20.0),
@@ -161,7 +158,9 @@ def test_the_reference_that_a_shift_means():
     ):
         fit = vr.fit_prony(*curves, temperature=TEMPERATURES, shift=shift)
         assert fit.shifts.reference == reference
+        assert np.isnan(fit.shifts.mismatch).all() == (shift is not None)
         assert close(np.interp(reference, TEMPERATURES, fit.shifts.a_T), 1.0, rel=tol.DMA_SHIFTED_TIMES)
+    assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
 
 
 def test_temperatures_as_they_were_measured():

@@ -134,7 +134,7 @@ def own_error(error: vr.ViscorollError) -> None:
 
 
 @pytest.mark.filterwarnings("ignore")  # of numpy on odd objects
-@long_or_short(200)
+@long_or_short(100)
 @given(st.lists(argument, min_size=6, max_size=6), st.lists(number, min_size=2, max_size=2))
 def test_anything(a, bounds):
     few = min(a[0], 99) if isinstance(a[0], int) else a[0]

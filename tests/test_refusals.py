@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import warnings
+from functools import cache
 from pathlib import Path
 
 import experiments
@@ -24,9 +25,11 @@ from viscoroll.core import errors
 from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.runs import read_run
+from viscoroll.io.runs.sensitivity import sobol_indices
 from viscoroll.io.sampling import sample
 from viscoroll.materials.law.netcdf import law_table_of
 from viscoroll.materials.law.table import law_table
+from viscoroll.materials.material_netcdf import material_as_dataset
 from viscoroll.materials.material_toml import read_materials
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text()
@@ -57,6 +60,14 @@ NAMES = vars(experiments) | {
     "THIN": vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5),
     "RUBBER_COVER": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), thickness=0.02),
     "PAIR": lambda material, base: vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base).validity(1.0),
+    "material_as_dataset": material_as_dataset, "sobol_indices": sobol_indices,
+    "OTHER_GRID": xr.Dataset(
+        {"Q": (("V", "delta"), np.ones((3, 3)), {"units": "kN/m"}), "M": ("V", np.ones(3), {"units": "N mm/m"})},
+        {"V": ("V", np.arange(1.0, 4.0), {"units": "mm/s"}), "delta": ("delta", [-0.01, 0.0, 0.01], {"units": "1"})},
+        {"R": 0.1, "load": 1e3},
+    ),
+    "grid": cache(lambda: vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2], delta=[0.0, 0.1], alpha=[1.0, 2.0])),
+    "law_file": cache(lambda: vr.tables.law(11.0)), "read_run": read_run,
     "stats": stats, "PAPER": vr.presets.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.presets.RUBBER_CYLINDER,
 }  # fmt: skip
 
@@ -90,7 +101,15 @@ def test_answered(call, answer, tmp_path):
     def measured(old: str, new: str) -> object:
         return vr.identify(**read_measurements(experiments.measurements(tmp_path, old, new)), starts=1)
 
-    names, (kind, _, words) = NAMES | {"file": file, "run": run, "measured": measured}, answer.strip().rpartition("! ")
+    def netcdf(data: xr.Dataset, without: str = "") -> Path:
+        """A file of a dataset, without an attribute, as another program writes it."""
+        data = data.copy()
+        data.attrs.pop(without, None)
+        data.to_netcdf(tmp_path / "given.nc", engine="h5netcdf")
+        return tmp_path / "given.nc"
+
+    made = {"file": file, "run": run, "measured": measured, "netcdf": netcdf}
+    names, (kind, _, words) = NAMES | made, answer.strip().rpartition("! ")
     if kind == "says":
         said = str(eval(call, names))
         assert all(word in said for word in words.split(" | ")), said

@@ -49,8 +49,6 @@ DEMO_MOTION = 5.0
 INTEROP = 1e-12
 #: and slopes: those of the grip over their condition likewise.
 INTEROP_SLOPES = 1e-11
-#: Motions of vr_roll.h at rtol 1e-8 against ``roll`` at 1e-10.
-INTEROP_ROLL = 1e-7
 #: The program of docs/loading/README.md, which takes steel as rigid, against ``roll``: 1/E' of steel is 1.2e-5 of
 #: that of the rubber, and six digits are printed.
 RIGID_STEEL = 1e-4
@@ -314,8 +312,6 @@ DMA_MANY = 0.02
 #: E' and E'' of a series fitted to E(t) to 0.1 and 0.3 %, a decade inside the band: E'' has the ripple of one mode a
 #: decade, which E(t) does not show; measured 0.007 and 0.11.
 DMA_RELAXATION, DMA_RELAXATION_LOSS = 0.02, 0.2
-#: contact length at the speed from which on a layer counts as thick: the bisection.
-LAYER_SPEED = 1e-8
 #: share of 1000 random draws, 27 %, and that lam changes with a_T too: three standard deviations and 5 %.
 SHARE = 0.2
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
@@ -331,8 +327,6 @@ DMA_WINDOW = (0.009, 0.006)
 #: M inside that window at the same load, though neither alpha nor E is seen; measured 7.6 % (six seeds, four of
 #: them below 4.1 %).
 DMA_WINDOW_MOMENT = 0.1
-#: The same sums, and shifts given, once more: a few roundings.
-DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
 #: Files written with seven digits: half a unit of the last one, of loss over storage twice.

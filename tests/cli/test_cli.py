@@ -127,7 +127,7 @@ def test_standard_output_that_takes_nothing(redirected, code, error):
 
 @pytest.mark.parametrize("redirected", ["2>&-", "2>/dev/full", ">&- 2>&-"])
 def test_an_error_that_nobody_hears_is_one(redirected):
-    command = ["bash", "-c", f"{shlex.join([*PROGRAM, 'material', 'show', 'none.toml'])} {redirected}"]
+    command = ["bash", "-c", f"{shlex.join(PROGRAM)} contact {redirected}"]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
 

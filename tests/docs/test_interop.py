@@ -280,31 +280,6 @@ def test_a_roller_of_c_refuses_what_is_no_number(roller, place, bad):
         assert c_rolled(roller, *numbers) == [2, 0.5, 0.2, 0.0]
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-def test_a_roller_of_c(tmp_path):
-    """vr_roll.h against roll: the paper's throw, and a pull from next to rest."""
-    need("command -v cc")
-    alpha, kappa, mu, gamma, end = 11.0, 2.91, 0.2, 1.1e4, 1e-3
-    vr.tables.export(vr.tables.law(alpha), tmp_path / "paper.h")
-    shutil.copy(HEADERS / "vr_roll.h", tmp_path)
-    (tmp_path / "roll.c").write_text(
-        '#include <stdio.h>\n#include "paper.h"\n#include "vr_roll.h"\n'
-        "int main(void) {\n"
-        f"  vr_roller a = {{&paper, {kappa}, {mu}, {gamma}, 0.5, 0.0, 0.0, 1e-9, 1.5, -1.0, 0.0, 0.0, 0, 0}};\n"
-        f"  vr_roller b = {{&paper, {kappa}, {mu}, {gamma}, 0.5, 0.05, 0.0, 1e-6, 1e-9, 0.0, 0.0, 0.0, 0, 0}};\n"
-        f"  if (vr_roll(&a, {end}, 1e-8) || vr_roll(&b, {end}, 1e-8)) return 1;\n"
-        '  printf("%.17g %.17g %.17g %.17g %.17g %.17g\\n", a.V, a.V + a.slip, a.x, b.V, b.V + b.slip, b.x);\n'
-        "  return 0;\n}\n"
-    )
-    subprocess.run(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", shell=True, cwd=tmp_path, check=True)
-    done = subprocess.run("./roll", cwd=tmp_path, capture_output=True, text=True, check=True)
-    scene = vr.Scene(alpha, kappa, mu, gamma)
-    throw = vr.roll(scene, 1.5, 0.5, [end], rtol=1e-10)
-    pulled = vr.roll(scene, 0.0, 0.0, [end], rtol=1e-10, force=0.05)
-    exact = [m[-1] for m in (throw.V, throw.omega, throw.x, pulled.V, pulled.omega, pulled.x)]
-    assert close(np.array(done.stdout.split(), dtype=float), np.array(exact), rel=tol.INTEROP_ROLL)
-
-
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # compared is the integrator, not its validity
 def test_the_roller_of_the_page(tmp_path):
     """The program of docs/loading/README.md against roll, for the pair of its file."""

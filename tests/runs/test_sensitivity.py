@@ -9,7 +9,6 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
-from refusals import refused
 from run_files import run_of
 from scipy import stats
 
@@ -175,25 +174,6 @@ def test_rounding_is_no_variation():
     indices = sobol_indices(run_of(text), 64)
     assert indices.attrs["refused"].startswith("lost at t = 0: it varies by no more")
     assert np.isfinite(indices["lost_S1"][1]).all()
-
-
-def test_refused():
-    def refuse(text: str, words: str, n: int = N) -> None:
-        run = run_of(text)
-        refused(lambda: sobol_indices(run, n), words)
-
-    for n in (0, 15, 65537):
-        refuse(SLIDING, f"n = {n}: must be a whole number in [16, 65536]", n)
-    many = SLIDING.replace("t = [5e-5, 1e-4]", "t = { low = 0.0, high = 1e-4, count = 40000 }")
-    refuse(many, "n = 1024: must be less, or t shorter: 80000 quantities and times")
-    still = SLIDING.replace("t = [5e-5, 1e-4]", "t = 0.0").replace('["V", "x"]', '["x"]')
-    refuse(still, "summaries = x at t = 0: it varies by no more than", 16)
-    refuse(SLIDING + "\n[correlation]\nV0.mu = 0.5\n", "[correlation] = mu, V0: must be left out")
-    refuse(re.sub(r"\{ distribution = .*\}", "2.0", SLIDING), "run file = no uncertain input")
-    Path("rows.csv").write_text("a,b\n0.2,1.0\n0.21,1.1\n")
-    text = re.sub(r"mu = \{.*\}", 'mu = { file = "rows.csv", column = "a" }', SLIDING)
-    text = re.sub(r"V0 = \{.*\}", 'V0 = { file = "rows.csv", column = "b" }', text)
-    refuse(text, "[scene] mu, [start] V0 = rows of rows.csv: must be distributions")
 
 
 # --- figure and command ---

@@ -126,9 +126,6 @@ def test_functions_are_the_methods():
         assert said == f"{name} takes a Scene or a Cylinder, not 'a roller'"
 
 
-# --- newtons, by other laws ---
-
-
 # --- many cylinders ---
 
 SLOW, FAST = np.array([1e-3, 1e-2, 2e-2]), np.array([1e-3, 1e-3, 5e-3])

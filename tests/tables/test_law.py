@@ -136,34 +136,9 @@ def test_scene_files_and_material_files(saved, tmp_path):
     path.write_text(f'[material]\nfile = "rubber.nc"\n{cylinder}')
     assert read_roller(path).material == RUBBER
     assert read_law_source(path) == law_table_of(RUBBER).pair
-    vr.tables.save(vr.tables.law(RUBBER, STEEL), tmp_path / "rubber.nc")
-    refused(partial(read_roller, path), "line 2", "law of a pair: give one material", error=vr.FileError)
-    vr.tables.save(vr.tables.law(11.0), tmp_path / "rubber.nc")
-    refused(partial(read_roller, path), "line 2", "without units", error=vr.FileError)
 
 
-# --- files that are refused ---
-
-
-def error_of(path: Path) -> str:
-    return refused(partial(vr.load_law, path), str(path), error=vr.FileError)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda file: file.attrs.__setitem__("law_schema", 2), "law schema 2, but viscoroll"),
-        (lambda file: file["press"].__setitem__((3, 5), 0.125), "its numbers are not those of its sha256_of_numbers"),
-        (lambda file: file.attrs.__setitem__("sha256_of_numbers", "0" * 64), "its numbers are not those"),
-        (lambda file: file.__delitem__("share"), "variable 'share' is missing"),
-        (lambda file: file.attrs.__setitem__("material", "not TOML"), "is an incomplete law file"),
-        (lambda file: file.attrs.__delitem__("material"), "is an incomplete law file"),
-    ],
-)
-def test_edited_by_another_program(copy, change, words):
-    with h5py.File(copy, "a") as file:
-        change(file)
-    assert words in error_of(copy)
+# --- other writers; what is refused of their files: refusals.txt ---
 
 
 def test_rewritten_by_another_program(copy, saved):

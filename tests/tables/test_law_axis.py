@@ -1,14 +1,11 @@
 """The law of every alpha as a file, and a single alpha out of it."""
 
-import math
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll.io.tables.check import check_table
@@ -48,13 +45,3 @@ def test_one_alpha_of_a_file(saved):
         assert close(value, exact, rel=tol.AXIS_LAW, scale=1.0 if name in ("beta", "Q", "epsilon", "M") else 0.0), name
     assert vr.load_law(saved, alpha=32.0).alpha == 32.0
     assert vr.load_law(saved, alpha=1.0) is law_table(1.0)
-
-
-def test_refused(saved, tmp_path):
-    held = f"one of 1 to 32, which {saved} holds (`viscoroll tables law --alpha LOW:HIGH` writes others)"
-    for alpha in (None, 33.0):
-        assert refused(partial(vr.load_law, saved, alpha)).endswith(held)
-    refused(partial(vr.load_law, saved, math.nan), "alpha = nan")
-    vr.tables.save(vr.tables.law(11.0), tmp_path / "one.nc")
-    words = f"left out: {tmp_path / 'one.nc'} is the law of one material"
-    assert refused(partial(vr.load_law, tmp_path / "one.nc", 11.0)).endswith(words)
