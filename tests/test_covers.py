@@ -180,9 +180,14 @@ def test_motions_follow_the_contact():
     assert np.array_equal(both.V[0], m.V)
 
 
-def test_a_thickness_each():
-    """States and motions of many thicknesses are those of each: of a scene, and of cylinders by their load."""
-    cover = vr.Cover(ONE, nu=0.3, thickness=[0.45, 0.55, 0.45], on="base")  # on either side of an octave
+#: on either side of an octave; elastic, with a Poisson's ratio each
+MANY = vr.Cover(ONE, nu=0.3, thickness=[0.45, 0.55, 0.45], on="base")
+MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5, 0.33], thickness=[0.3, 0.55, 0.45])
+
+
+@pytest.mark.parametrize("cover", [MANY, MANY_NU])
+def test_a_thickness_each(cover):
+    """States and motions of many covers are those of each."""
     scene, V = scene_on(cover), np.array([0.01, -0.5, 3.0])
     found, motions = vr.contact(scene, V, delta=-2e-3, slopes=True), vr.ensemble(scene, V, 0.1, [1.0, 9.0], rtol=1e-10)
     for n, each in enumerate(cover):
@@ -190,6 +195,10 @@ def test_a_thickness_each():
         for name, value in vr.contact(one, V[n], delta=-2e-3, slopes=True).as_dict().items():
             assert close(found[name][n], value, rel=tol.COVER_EACH, what=name)
         assert close(motions.V[n], vr.roll(one, V[n], 0.1, [1.0, 9.0], rtol=1e-10).V, rel=tol.COVER_EACH_MOTION)
+
+
+def test_a_load_each():
+    """Cylinders whose loads, and with them thicknesses over l0, differ."""
     thin, load = vr.Material(2e6, 0.5, ONE, 0.1, thickness=0.01), np.array([1.2e3, 1.7e3])
     rollers = vr.Cylinder(R=0.1, m=30.0, material=thin, base=vr.Material.rigid(), mu=0.5, load=load)
     M = [rollers.replace(load=each).contact(1.0, delta=0.0).M for each in load]
