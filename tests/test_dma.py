@@ -83,7 +83,7 @@ def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, deca
     try:
         fit = vr.fit_prony(omega, np.abs(storage), np.abs(loss))
     except vr.ParameterError as refusal:
-        if "as a fluid" in str(refusal):
+        if "no plateau at low frequencies" in str(refusal):
             return
         raise
     assert (fit.prony.E > 0.0).all()

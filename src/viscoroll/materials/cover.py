@@ -32,7 +32,8 @@ class Cover(Bodies):
     ----------
     series : the layer's :class:`Prony` series, times in units of T_ref; or its alpha >= 1, with T_epsilon for the
         unit of time.
-    nu : Poisson's ratio of the layer, in [0, 0.5], constant in time; a number, or one for each thickness, (n,).
+    nu : Poisson's ratio of the layer, in [0, 0.5], constant in time; a number, or one for each thickness, (n,).  Laws
+        are then interpolated: with an error of 1e-10 from h/l0 = 0.25 up, of 5e-9 down to 0.13.
     thickness : h/l0, dimensionless, > 0; l0 is the contact length at rest that the same bodies would have as
         half-spaces.  Half the contact at rest may be at most six thicknesses long.  An array (n,) makes n covers, of
         which ``cover[i]`` is one, for an array parameter of a scene or for the motions of an ensemble.

@@ -105,8 +105,6 @@ def _time_of_laws(run: Run) -> float:
     run: with covers of one thickness over l0, which have one law, or of many, which have some for each octave, and
         twelve times as many where Poisson's ratio is uncertain.
     One law is computed, and its time multiplied.
-
-    run: run of covers of one thickness over l0, which have one law, or of many, which have some for each octave.
     """
     from ...kernels.rows.thickness_axis import NODES, NU_NODES
     from ...materials.law.cover_rows import cover_rows
