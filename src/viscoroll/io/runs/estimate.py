@@ -102,21 +102,18 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 def _time_of_laws(run: Run) -> float:
     """Return the seconds that the laws of the covers of the first block take; 0.0 of half-spaces.
 
-    run: with covers of one thickness over l0, which have one law, or of many, which have some for each octave, and
-        twelve times as many where Poisson's ratio is uncertain.
-    One law is computed, and its time multiplied.
+    run: the run, of half-spaces or of covers.
+    One law is computed, and its time multiplied by the number of laws.
     """
-    from ...kernels.rows.thickness_axis import NODES, NU_NODES
     from ...materials.law.cover_rows import cover_rows
+    from ...materials.law.per_element import count_laws
 
     cover = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene().cover
     if cover is None:
         return 0.0
-    laws = NODES * np.unique(np.frexp(cover.thickness)[1]).size if cover.shape else 1
-    laws *= NU_NODES if np.ndim(cover.nu) else 1
     start = time.perf_counter()
     cover_rows(cover.of_thickness(np.max(cover.thickness), np.max(cover.nu)))
-    return laws * (time.perf_counter() - start)
+    return count_laws(cover) * (time.perf_counter() - start)
 
 
 def _peak_memory() -> float:

@@ -136,6 +136,24 @@ def _lazy_record(
     return Law(rows, marks, N_rows, selector, maker, int(source.ctypes.data), cover_rows)
 
 
+def count_laws(covers: Cover) -> int:
+    """Return the number of laws that :func:`record_of_materials` makes for covers; 1 for a single cover.
+
+    covers: one cover, or many, whose laws are interpolated between nodes of thickness, and of Poisson's ratio where
+        that differs too.
+    """
+    from ...kernels.rows.thickness_axis import NODES, NU_NODES
+
+    if not covers.shape:
+        return 1
+    return np.unique(_octave_of(covers.thickness)).size * NODES * (NU_NODES if np.ndim(covers.nu) else 1)
+
+
+def _octave_of(thickness: Floats) -> Floats:
+    """Return the binary exponent n of the octave [2^n, 2^(n + 1)) that contains each thickness, divided by l0."""
+    return np.floor(np.log2(thickness))
+
+
 def _record_of_covers(covers: Cover, index: Integers) -> Any:
     """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
 
@@ -146,9 +164,8 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     from ...kernels.rows import thickness_axis
     from ...kernels.rows.record import E0, ROW_COUNT
 
-    position, many_nu = np.log2(covers.thickness), np.ndim(covers.nu) > 0
-    octave = np.floor(position)
-    weights, laws = _node_weights(position - octave, thickness_axis.NODES), {}
+    octave, many_nu = _octave_of(covers.thickness), np.ndim(covers.nu) > 0
+    weights, laws = _node_weights(np.log2(covers.thickness) - octave, thickness_axis.NODES), {}
     if many_nu:
         of_nu = _node_weights(np.log(3.0 - 4.0 * covers.nu) / math.log(3.0), thickness_axis.NU_NODES)
         weights = (of_nu[:, :, None] * weights[:, None]).reshape(len(weights), -1)
