@@ -12,6 +12,7 @@ import pytest
 import tolerances as tol
 from closeness import close
 from many import MATERIALS, states
+from scipy.optimize import brentq
 
 import viscoroll as vr
 from pipeline.evidence.truth.enclosures import INPUTS, contact_enclosure, slopes
@@ -48,6 +49,19 @@ def test_an_alpha_each_against_enclosures():
                 assert close(getattr(found, name)[n], float(exact[name]), rel=bound), (name, ALPHA[n], V[n])
             grip = float(1 - exact["Q"] / float(MUS[n]))
             assert close(found.grip[n], grip, rel=2.0 * tol.EACH_ALPHA / left), (ALPHA[n], V[n])
+
+
+@pytest.mark.parametrize("octave", range(-4, 5))
+def test_small_creep_between_two_rows(octave):
+    """Q against enclosures where mu V/(delta_star - delta), the argument of H/F^2, passes 2^n between delta = 0 and
+    0.03 delta_star: its mean slope is then put together from those in two rows.
+    """
+    s = 0.03
+    V = brentq(lambda V: MU * V / delta_star(SCENE, V) - (1.0 - 0.5 * s) * 2.0**octave, 1e-6, 1e3)
+    delta = s * delta_star(SCENE, V)
+    with flint.ctx.workprec(200):
+        exact = contact_enclosure(SCENE.alpha, KAPPA, MU, V, delta)
+    assert close(vr.contact(SCENE, V, delta=delta).Q, float(exact["Q"]), rel=tol.EACH_ALPHA)
 
 
 @pytest.mark.parametrize("name", MATERIALS)
