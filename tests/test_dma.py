@@ -161,6 +161,10 @@ def test_the_reference_that_a_shift_means():
         assert np.isnan(fit.shifts.mismatch).all() == (shift is not None)
         assert close(np.interp(reference, TEMPERATURES, fit.shifts.a_T), 1.0, rel=tol.DMA_SHIFTED_TIMES)
     assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
+    for shift in (wlf, wlf(TEMPERATURES), vr.WLF(C1=8.86, C2=101.6, T0=0.0)):
+        given = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0, shift=shift)
+        assert close(given.shifts.a_T, wlf(TEMPERATURES), rel=tol.DMA_REPEATED)
+        assert close(given.alpha, ALPHA, rel=tol.DMA_ALPHA)
 
 
 def test_temperatures_as_they_were_measured():

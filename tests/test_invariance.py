@@ -35,12 +35,13 @@ X = np.linspace(-0.5, 1.0, 61)[:, None]
 GRID = {"what": SCENE, "V": [0.1, 0.3, 2.0], "delta": [-0.01, 0.0, 0.03], "alpha": [1.0, 11.0]}
 #: control and status register of SSE: rounding in bits 13-14, denormals are zero in 6, flush to zero in 15
 MODES = {
-    "subnormals flushed": 0x8040,
+    "denormals are zero": 0x0040,
+    "flush to zero": 0x8000,
     "down": 0x2000,
     "up": 0x4000,
     "toward zero, subnormals flushed": 0xE040,
 }
-FLUSHING = ("subnormals flushed",)
+FLUSHING = ("denormals are zero", "flush to zero")
 REGISTER = """
 #include <xmmintrin.h>
 unsigned get(void) { return _mm_getcsr(); }

@@ -93,7 +93,7 @@ def check_state(scene, state):
     assert np.all(np.asarray(state.lam) <= 1.0)
 
 
-@long_or_short(100)
+@long_or_short(200)
 @given(scenes, one_or_three(speeds), one_or_three(speeds), creeps, st.booleans())
 def test_stress_and_validity(scene, x, V, creep, is_omega):
     found = vr.stress(scene, x, V, **{"omega" if is_omega else "delta": creep})

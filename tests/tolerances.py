@@ -327,6 +327,8 @@ DMA_WINDOW = (0.009, 0.006)
 #: M inside that window at the same load, though neither alpha nor E is seen; measured 7.6 % (six seeds, four of
 #: them below 4.1 %).
 DMA_WINDOW_MOMENT = 0.1
+#: Shift factors that are given, once more: a few roundings.
+DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
 #: Files written with seven digits: half a unit of the last one, of loss over storage twice.

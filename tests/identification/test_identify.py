@@ -91,16 +91,16 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 
 
 def test_slow_rolling_tells_a_product_alone():
-    fit = vr.identify(roller(), ranges("mu", "E_1", "T_ref"), [resistance(SLOW[::4], seed=2)], starts=1)
+    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW[::4], seed=2)], starts=1)
     assert fit.does_not_act == ("mu",)
-    assert fit.undetermined == ("E_1", "T_ref")
+    assert fit.undetermined == ("E", "E_1", "T_ref")
     assert fit.intervals()["mu"] == (None, None)
     (product,) = fit.products()
     assert product.powers == {"E_1": 1.0, "T_ref": 1.0}
     assert product.low < TRUTH["E_1"] * TRUTH["T_ref"] / product.value < product.high
     text = str(fit)
     assert "the data do not depend on mu" in text
-    assert "E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
+    assert "E, E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
 
 
 # --- what is not a fit of one minimum of good data ---
@@ -110,7 +110,7 @@ def test_a_wrong_model_is_told_before_any_interval():
     """M of two modes, by one."""
     two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
     measured = vr.Resistance(V, two.contact(V, delta=0.0, fields="M").M, sigma=0.01)
-    fit = vr.identify(roller(), ranges("E", "T_ref"), [measured], starts=1)
+    fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), [measured], starts=1)
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
     assert lines[1].startswith("  ! the residuals of M of resistance are autocorrelated (lag-1 correlation 0.8")
@@ -119,9 +119,9 @@ def test_a_wrong_model_is_told_before_any_interval():
 
 def test_sigma_that_is_not_given_is_estimated():
     data = [resistance(seed=4), traction(seed=5)]
-    given = vr.identify(roller(), ranges("mu", "E", "T_ref"), data, starts=1)
+    given = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), data, starts=1)
     bare = [vr.Resistance(V, data[0].M), vr.Traction(data[1].V, data[1].delta, data[1].Q)]
-    fit = vr.identify(roller(), ranges("mu", "E", "T_ref"), bare, starts=1)
+    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), bare, starts=1)
     for name, sigma in {"M of resistance": 0.01, "Q of traction": 1.0}.items():
         assert close(fit.sigma[name][0], sigma, rel=tol.SIGMA), name
     for name in fit.values:

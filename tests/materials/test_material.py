@@ -117,6 +117,14 @@ def test_arrhenius_by_hand():
 # --- other programs ---
 
 
+def test_lsdyna_with_a_bulk_modulus():
+    """66.67 MPa, G_inf = 10 MPa, G_1 = 90 MPa, beta = 0.01/ms: nu = (200.01 - 20)/(400.02 + 20) = 0.42857483."""
+    found = vr.Material.lsdyna(G=[90e6, 20e6], beta=[10.0, 1e4], bulk=66.67e6, G_inf=10e6)
+    assert close(found.nu, 0.42857483, rel=tol.MATERIAL_PRINTED)
+    assert close(found.E, 28.571497e6, rel=tol.MATERIAL_PRINTED)  # 2 (1 + nu) 10 MPa
+    assert found.prony.E.size == 4  # of the modes of G and of 3 K + G
+
+
 def test_what_the_contact_feels_under_a_constant_bulk_modulus():
     """E/(1 - nu^2) = 4 G (3 K + G)/(3 K + 4 G) at every frequency, with 17 modes over 8 decades."""
     tau, G, omega = np.logspace(-8.0, 0.0, 17), np.linspace(1e6, 30e6, 17), np.logspace(-3.0, 10.0, 200)

@@ -3,6 +3,7 @@
 import csv
 import gzip
 import re
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import xarray as xr
 from closeness import close
 from numpy.typing import NDArray
 from places import ROOT
+from refusals import refused
 from scipy import io
 
 import viscoroll as vr
@@ -106,7 +108,7 @@ def test_largest_error_is_where_it_is_stated(name, table):
 def test_splines_keep_the_bounds_of_the_law(name, table):
     """|Q| <= mu P and 0 <= beta <= 1 beside the kink at delta_star, where a cubic spline alone overshoots."""
     axes = schema.axes_of(table)
-    fine = {axis: np.linspace(*table[axis].values[[0, -1]], 25) for axis in axes}
+    fine = {axis: np.linspace(*table[axis].values[[0, -1]], 60) for axis in axes}
     fine["delta"] = np.linspace(-0.04, 0.04, 801)
     found = vr.tables.interpolate(
         table, ("Q", "beta"), **dict(zip(axes, np.meshgrid(*fine.values(), indexing="ij", sparse=True), strict=True))
@@ -196,6 +198,12 @@ def test_files_of_the_first_version(kind, tmp_path):
         truth, name = vr.contact(vr.Scene(3.0, 2.91, 0.2), 0.3, delta=0.011).Q, "Q"
     found = getattr(vr.tables.interpolate(table, name, **points), name)
     assert abs(found - truth) <= table[name].attrs["interpolation_error"]
+
+
+def test_a_grid_that_is_refused_leaves_no_file(alphas, tmp_path):
+    save = partial(vr.tables.save, alphas.drop_vars("beta"), tmp_path / "grid.nc")
+    refused(save, "variable 'beta' is missing", error=vr.FileError)
+    assert not [*tmp_path.iterdir()]
 
 
 # --- formats of other programs ---
