@@ -51,6 +51,22 @@ def test_an_alpha_each_against_enclosures():
             assert close(found.grip[n], grip, rel=2.0 * tol.EACH_ALPHA / left), (ALPHA[n], V[n])
 
 
+@pytest.mark.parametrize("alpha", [2.52, 27.5, 32.1])
+def test_slopes_of_an_alpha_each_where_a_row_ends(alpha):
+    """Slopes of Q by the axis of alpha against the rows of that alpha, where mu V/(delta_star - delta) passes 2^n.
+
+    Terms of the axis that no value needs were once missing in slopes at the ends of rows: dQ_dV was off by 3e-13 mu/V.
+    """
+    scene = vr.Scene(alpha, 1.0, 1.0)
+    V, s = np.geomspace(0.05, 20.0, 4000), np.array([[1e-3], [0.02], [0.05], [0.3], [0.9]])
+    delta = s * delta_star(scene, V)
+    each = vr.contact(scene.replace(alpha=np.full(V.size, alpha)), V, delta=delta, slopes=True)
+    alone = vr.contact(scene, V, delta=delta, slopes=True)
+    bound = tol.EACH_ALPHA / (1.0 - s)  # over the condition of beta
+    assert close(each.dQ_dV, alone.dQ_dV, rel=bound, scale=1.0 / V)
+    assert close(each.dQ_ddelta, alone.dQ_ddelta, rel=bound)
+
+
 @pytest.mark.parametrize("octave", range(-4, 5))
 def test_small_creep_between_two_rows(octave):
     """Q against enclosures where mu V/(delta_star - delta), the argument of H/F^2, passes 2^n between delta = 0 and
