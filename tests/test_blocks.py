@@ -21,7 +21,7 @@ def test_a_number_of_threads_that_is_none(monkeypatch, threads):
 def test_blocks_after_an_error_are_not_begun():
     begun, lock = [], threading.Lock()
 
-    def work(start: int, stop: int) -> None:
+    def work(start, stop):
         with lock:
             begun.append(start)
         if start == 10:
@@ -36,7 +36,7 @@ def test_blocks_cover_the_work_once(monkeypatch):
     for threads in (1, 3):
         seen = np.zeros(1001, dtype=int)
 
-        def work(start: int, stop: int, seen=seen) -> None:
+        def work(start, stop, seen=seen):
             seen[start:stop] += 1
 
         run_blocks(work, 1001, 64, threads=threads)

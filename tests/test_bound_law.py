@@ -31,7 +31,7 @@ def law(request):
     return vr.law(vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[request.param]))
 
 
-def states(scene) -> list[tuple[float, float]]:
+def states(scene):
     """(V, omega) of full slip, of slight and of nearly full slip, free rolling and rest, from 1e-200 to 1e200."""
     V = np.array([1e-200, 1e-20, 1e-6, 3e-3, 0.07, 0.3, 4.0, 1e4, 1e160, 1e200])
     V = np.concatenate([V, -V])
@@ -42,7 +42,7 @@ def states(scene) -> list[tuple[float, float]]:
     return [*given, (0.3, 0.0), (-0.3, 0.4), (0.0, 0.2), (0.0, -0.2), (-0.0, 0.2), (0.0, 0.0)]
 
 
-def bits(values) -> list[int]:
+def bits(values):
     return np.array(values, dtype=np.float64).view(np.int64).tolist()
 
 

@@ -1,7 +1,6 @@
 """TOML files (io/config.py): what is read, and what is refused in which words."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -17,7 +16,7 @@ SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 def toml(tmp_path):
     """Writes a file and returns its path."""
 
-    def write(content: str | bytes) -> Path:
+    def write(content):
         path = tmp_path / "file.toml"
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return path

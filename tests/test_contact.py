@@ -24,7 +24,7 @@ KAPPA, MU = SCENE.kappa, SCENE.mu
 PARTS = ("M_half_space", "M_cylinder")
 
 
-def delta_star(scene: vr.Scene, V: np.ndarray | float) -> np.ndarray | float:
+def delta_star(scene, V):
     return vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
 
 

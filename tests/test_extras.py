@@ -5,7 +5,6 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -30,13 +29,13 @@ MISSING = "zarr", "distributed", "pyarrow"
 
 
 @pytest.fixture
-def run_file(tmp_path: Path) -> Path:
+def run_file(tmp_path):
     (tmp_path / "run.toml").write_text(RUN)
     return tmp_path / "run.toml"
 
 
 @pytest.fixture
-def bare(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def bare(monkeypatch):
     """As after `pip install viscoroll`: no extra."""
     before = set(sys.modules)
     for name in MISSING:

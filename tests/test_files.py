@@ -5,7 +5,6 @@ import os
 import stat
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +18,7 @@ import viscoroll as vr
 from viscoroll.core import files
 
 DATA = xr.Dataset({"V": ("t", np.random.default_rng(1).random(20_000))})
-WRITERS: dict[str, Callable[[Path], object]] = {
+WRITERS = {
     "text": lambda path: files.write_text(path, "new"),
     "bytes": lambda path: files.write_bytes(path, b"new"),
     "dataset": lambda path: files.write_dataset(DATA, path),
@@ -27,7 +26,7 @@ WRITERS: dict[str, Callable[[Path], object]] = {
 
 
 @pytest.fixture(params=WRITERS.values(), ids=WRITERS)
-def write(request: pytest.FixtureRequest) -> Callable[[Path], object]:
+def write(request):
     return request.param
 
 
@@ -35,7 +34,7 @@ def write(request: pytest.FixtureRequest) -> Callable[[Path], object]:
 
 
 #: what stands at a path, and how it is told
-OBSTACLES: dict[str, tuple[Callable[[Path], object], str]] = {
+OBSTACLES = {
     "a directory": (Path.mkdir, "cannot be written: it is a directory"),
     "no folder": (lambda path: path.parent.rmdir(), "No such file or directory"),
     "a loop of links": (lambda path: path.symlink_to(path), "it is a loop of symbolic links"),
@@ -45,7 +44,7 @@ OBSTACLES: dict[str, tuple[Callable[[Path], object], str]] = {
 
 
 @pytest.mark.parametrize("obstacle", OBSTACLES)
-def test_an_obstacle_is_told_and_stays(write: Callable, tmp_path: Path, obstacle: str) -> None:
+def test_an_obstacle_is_told_and_stays(write, tmp_path, obstacle):
     make, words = OBSTACLES[obstacle]
     path = tmp_path / "folder" / "file"
     path.parent.mkdir()
@@ -57,7 +56,7 @@ def test_an_obstacle_is_told_and_stays(write: Callable, tmp_path: Path, obstacle
     assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
 
 
-def test_a_symbolic_link_stays_and_its_target_is_written(write: Callable, tmp_path: Path) -> None:
+def test_a_symbolic_link_stays_and_its_target_is_written(write, tmp_path):
     (tmp_path / "far").mkdir()
     for name, target in (("link", "far/file"), ("link to the link", "link"), ("to nothing yet", "far/new")):
         (tmp_path / name).symlink_to(target)
@@ -67,7 +66,7 @@ def test_a_symbolic_link_stays_and_its_target_is_written(write: Callable, tmp_pa
 
 
 @pytest.fixture
-def shared(tmp_path: Path, write: Callable) -> Path:
+def shared(tmp_path, write):
     """A folder that others may enter; what ``write`` imports is loaded, for they may not read where it lies."""
     write(tmp_path / "before")
     let_in(tmp_path)
@@ -80,7 +79,7 @@ def shared(tmp_path: Path, write: Callable) -> Path:
 @pytest.mark.parametrize(
     ("file", "folder", "words"), [(0o444, 0o777, "it is read-only"), (0o666, 0o555, "Permission denied")]
 )
-def test_what_is_read_only_is_not_replaced(write: Callable, shared: Path, file: int, folder: int, words: str) -> None:
+def test_what_is_read_only_is_not_replaced(write, shared, file, folder, words):
     """A rename would not ask."""
     path = shared / "file"
     path.write_text("as it was")
@@ -117,7 +116,7 @@ for name, write in test_files.WRITERS.items():
 """
 
 
-def test_a_full_disk(tmp_path: Path) -> None:
+def test_a_full_disk(tmp_path):
     """In a process of its own, as HDF5 2.0 crashes one that meets a full disk: it must not meet it."""
     path = tmp_path / "file"
     command = [sys.executable, "-c", FULL, str(Path(__file__).parent), str(path)]
@@ -126,7 +125,7 @@ def test_a_full_disk(tmp_path: Path) -> None:
     assert done.stdout == f"{path}: cannot be written (File too large)\n" * 15
 
 
-def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path: Path) -> None:
+def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path):
     path = tmp_path / "file"
     path.write_text("as it was")
     with pytest.raises(TypeError), files.replace_file(path) as temporary:
@@ -135,7 +134,7 @@ def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_all_is_on_disk_before_the_name_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_is_on_disk_before_the_name_is(tmp_path, monkeypatch):
     """File synced, renamed, folder synced; in this order."""
     done = []
     sync, replace = os.fsync, os.replace
@@ -149,7 +148,7 @@ def test_all_is_on_disk_before_the_name_is(tmp_path: Path, monkeypatch: pytest.M
 # --- the seal ---
 
 
-def test_no_change_goes_unnoticed() -> None:
+def test_no_change_goes_unnoticed():
     """Every flipped bit breaks the seal or unmakes it; so does what is cut or added."""
     sealed = files.seal(b"some content")
     assert files.seal_matches(sealed)
@@ -164,7 +163,7 @@ def test_no_change_goes_unnoticed() -> None:
 
 RUBBER = vr.Material(1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one')
 #: format -> how a file of it is written, and read
-FORMATS: dict[str, tuple[Callable[[Path], object], Callable[[Path], object]]] = {
+FORMATS = {
     "law": (lambda path: vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), path), vr.load_law),
     "law of every alpha": (
         lambda path: vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path),
@@ -179,11 +178,11 @@ FORMATS: dict[str, tuple[Callable[[Path], object], Callable[[Path], object]]] = 
 
 
 @pytest.mark.parametrize("form", FORMATS)
-def test_damage_is_told(form: str, tmp_path: Path) -> None:
+def test_damage_is_told(form, tmp_path):
     """One flipped bit anywhere, a file that is cut, longer or another, none: an error in one line that names it."""
     path, (write, read) = tmp_path / "file.nc", FORMATS[form]
 
-    def told(content: bytes, *words: str) -> None:
+    def told(content, *words):
         path.write_bytes(content)
         refused(lambda: read(path), str(path), *words, error=vr.FileError)
 
@@ -224,7 +223,7 @@ SCRATCH = (
 )  # fmt: skip
 
 
-def calls(node: ast.AST) -> list[ast.Call]:
+def calls(node):
     """Calls outside the body of ``with replace_file(...)``."""
     if isinstance(node, ast.With) and any("replace_file(" in ast.unparse(item) for item in node.items):
         return []
@@ -232,7 +231,7 @@ def calls(node: ast.AST) -> list[ast.Call]:
     return found + [call for child in ast.iter_child_nodes(node) for call in calls(child)]
 
 
-def writes(call: ast.Call) -> bool:
+def writes(call):
     """Whether a call may write a file by other means than those of ``files.py``."""
     owner, _, name = ast.unparse(call.func).rpartition(".")
     if name in ("open", "File"):  # with a mode such as "w", "ab" or "r+"
@@ -241,7 +240,7 @@ def writes(call: ast.Call) -> bool:
     return name in RAW and owner not in {"", "files", "material", "stored", "tables", "vr.tables", "figures"}
 
 
-def test_every_file_is_written_whole_or_not_at_all() -> None:
+def test_every_file_is_written_whole_or_not_at_all():
     """Whatever writes in the package and the pipeline does so inside ``replace_file``, but for what is known."""
     found = {
         f"{path.name}: {ast.unparse(call.func)}"

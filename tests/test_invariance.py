@@ -7,7 +7,6 @@ import platform
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
@@ -16,7 +15,6 @@ from threading import Barrier
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from closeness import close
 from many import MATERIALS, UNLIKE
 from many import states as of_all_alphas
@@ -49,7 +47,7 @@ void set(unsigned value) { _mm_setcsr(value); }
 """
 
 
-def states() -> dict[str, np.ndarray]:
+def states():
     """From the least to the largest speeds, a third of them in full slip."""
     rng = np.random.default_rng(1)
     V = np.concatenate(
@@ -59,37 +57,37 @@ def states() -> dict[str, np.ndarray]:
     return {"V": np.append(V, 0.0), "delta": np.append(delta, 0.01)}
 
 
-def states_of_alphas() -> dict[str, np.ndarray]:
+def states_of_alphas():
     alpha, kappa, mu, V, s = of_all_alphas(300, 5)
     V[::2], V[7] = -V[::2], 0.0
     delta = 1.2 * s * vr.contact(vr.Scene(alpha, kappa, mu), V, delta=0.0, fields="delta_star").delta_star
     return {"alpha": alpha, "kappa": kappa, "mu": mu, "V": V, "delta": delta}
 
 
-def starts() -> dict[str, np.ndarray]:
+def starts():
     V0, omega0 = np.random.default_rng(2).uniform(-2.0, 2.0, (2, 60))
     V0[:4], omega0[:4] = (0.0, 1.0, 0.0, 5e-324), (0.0, 0.0, 1.0, 1.0)
     return {"V0": V0, "omega0": omega0}
 
 
-def drives() -> dict[str, np.ndarray]:
+def drives():
     rng = np.random.default_rng(3)
     return {"V0": rng.uniform(-1.0, 1.0, 12), "force": rng.normal(size=12), "torque": rng.normal(size=(12, 2))}
 
 
-def of_materials(name: str) -> dict[str, object]:
+def of_materials(name):
     many = MATERIALS[name]()
     return {"material": many, "V": np.geomspace(1e-4, 1e6, len(many))}
 
 
-def rolled(scene: vr.Scene, **given) -> dict[str, np.ndarray]:
+def rolled(scene, **given):
     many = vr.ensemble(scene, t=T, rtol=1e-6, fields=FIELDS, **given)
     names = (*FIELDS, "onset_time", "rest_time", "status", "switches", "steps", "flow")
     return {name: getattr(many, name) for name in names}
 
 
 #: name -> arrays of states or starts, and the call of them
-CALLS: dict[str, tuple[Callable, Callable]] = {
+CALLS = {
     "states": (states, lambda **given: vr.contact(SCENE, **given).as_dict()),
     "slopes": (
         lambda: {name: values[::30] for name, values in states().items()},
@@ -132,22 +130,22 @@ CALLS: dict[str, tuple[Callable, Callable]] = {
 }
 
 
-def scene_of(material) -> vr.Scene:
+def scene_of(material):
     return vr.Scene(material=material, kappa=2.91, mu=0.2)
 
 
-def of(name: str, part: slice = slice(None)) -> dict[str, np.ndarray]:
+def of(name, part=slice(None)):
     """What a call gives, of a part of its arrays."""
     make, call = CALLS[name]
     return {field: np.array(value) for field, value in call(**{k: v[part] for k, v in make().items()}).items()}
 
 
 @cache
-def a_grid() -> xr.Dataset:
+def a_grid():
     return vr.tables.build(**GRID)
 
 
-def everything() -> dict[str, np.ndarray]:
+def everything():
     """All calls, a single motion and a table, as named arrays."""
     found = {f"{name}: {field}": value for name in CALLS for field, value in of(name).items()}
     motion = vr.roll(SCENE, 1.5, 0.5, T)
@@ -159,7 +157,7 @@ def everything() -> dict[str, np.ndarray]:
     return {name: np.array(values) for name, values in found.items()}
 
 
-def assert_same(found: dict[str, np.ndarray], expected: dict[str, np.ndarray]) -> None:
+def assert_same(found, expected):
     assert found.keys() == expected.keys()
     for name, values in expected.items():
         assert np.array_equal(found[name], values, equal_nan=values.dtype.kind == "f"), name
@@ -237,7 +235,7 @@ if "fork" in multiprocessing.get_all_start_methods():
 
 
 @pytest.fixture(scope="module")
-def elsewhere(tmp_path_factory) -> dict[str, dict[str, np.ndarray]]:
+def elsewhere(tmp_path_factory):
     """``everything`` of the program above, in each mode and in a fork."""
     folder = tmp_path_factory.mktemp("modes")
     compiler = shutil.which("cc") if platform.machine() in ("x86_64", "AMD64") else None
@@ -257,7 +255,7 @@ def test_other_processes(elsewhere, own_maps):
 
 
 @pytest.fixture(scope="module")
-def modes(elsewhere) -> dict[str, dict[str, np.ndarray]]:
+def modes(elsewhere):
     """``everything`` in each mode, from one process that a host library has set so."""
     if not elsewhere.keys() >= MODES.keys():
         pytest.skip("the register is that of x86, and a C compiler reaches it")
@@ -303,7 +301,7 @@ def test_called_from_several_threads_at_once(own_maps):
     shutil.rmtree(flow_store.folder())
     together = Barrier(4)
 
-    def work(_: int) -> dict[str, np.ndarray]:
+    def work(_):
         together.wait()
         return everything()
 
@@ -312,7 +310,7 @@ def test_called_from_several_threads_at_once(own_maps):
             assert_same(found, expected)
 
 
-def work(_) -> dict[str, np.ndarray]:
+def work(_):
     forget()
     return everything()
 

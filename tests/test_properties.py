@@ -60,7 +60,7 @@ number = usual | any_float | st.integers(-(10**20), 10**20)
 argument = number | st.lists(usual, max_size=4) | st.lists(number, max_size=3) | odd
 
 
-def long_or_short(examples: int):
+def long_or_short(examples):
     """``examples``, or as many times that number as fit into the time of a long run."""
 
     def decorate(test):
@@ -126,7 +126,7 @@ def test_motion(scene, V0, omega0, t, rtol, rest, method):
 # --- refusals ---
 
 
-def own_error(error: vr.ViscorollError) -> None:
+def own_error(error):
     """In one line that says something."""
     text = str(error)
     assert text

@@ -8,7 +8,7 @@ import inspect
 import itertools
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -35,7 +35,7 @@ OMEGA = np.geomspace(1e-2, 1e2, 12)
 TIMES = np.round(OMEGA, 3)
 CURVE = 1e6 * (1.0 + OMEGA**2 / (1.0 + OMEGA**2)), 1e6 * OMEGA / (1.0 + OMEGA**2)
 #: a value of each argument, which goes with those of the others of its function
-SAMPLES: dict[str, Any] = {
+SAMPLES = {
     "roller": SCENE, "cylinder": CYLINDER, "prony": RUBBER.prony, "shift": vr.WLF(T0=20.0), "what": CYLINDER,
     "V": 0.5, "V0": 0.5, "omega": 0.5, "omega0": 0.5, "t": 0.25, "x": 0.125, "delta": 1e-3, "speed": 1.0,
     "force": 0.01, "torque": 0.01, "slope": 0.01, "brake": 0.01, "drag": 0.01, "rest": 1e-3, "rested": 0.5,
@@ -47,7 +47,7 @@ SAMPLES: dict[str, Any] = {
     "sigma": 0.5, "t0": 0.125, "quantiles": (0.25, 0.75), "level": 0.5,
 }  # fmt: skip
 #: the same where a name means something else
-OWN: dict[tuple[str, str], Any] = {
+OWN = {
     ("Prony", "E"): [2.0], ("Prony", "tau"): [0.5], ("Prony.creep", "J"): [0.5], ("Prony.creep", "T"): [0.5],
     ("Prony.creep", "alpha"): 2.0, ("Bodies", "cylinder"): RUBBER.prony, ("Bodies", "base"): RUBBER.prony,
     ("Prony.times", "factor"): 2.0,
@@ -72,7 +72,7 @@ LEFT_OUT = {
     "Fit", "Law", "DynamicModuli", "RelaxationFit",
 }  # fmt: skip
 #: what has methods that take numbers
-MADE: dict[str, Callable[[], Any]] = {
+MADE = {
     "Material": lambda: RUBBER, "WLF": lambda: vr.WLF(T0=20.0), "Arrhenius": lambda: vr.Arrhenius(energy=1e5, T0=20.0),
     "Law": lambda: vr.law(CYLINDER), "Motion": lambda: vr.roll(CYLINDER, 0.5, 0.5, 0.25),
     "Ensemble": lambda: vr.ensemble(CYLINDER, [0.5, 0.4], 0.5, 0.25),
@@ -90,11 +90,11 @@ class Argument(NamedTuple):
     value: Any
     others: dict[str, Any]
 
-    def __call__(self, value: Any) -> Any:
+    def __call__(self, value):
         return self.function(**{**self.others, self.name: value})
 
     @property
-    def unit(self) -> str:
+    def unit(self):
         """The unit that a refusal of another asks for; "" where none is refused."""
         try:
             self(UNITS.Quantity(np.asarray(self.value), "candela"))
@@ -106,12 +106,12 @@ class Argument(NamedTuple):
         return ""
 
 
-def parameters(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
+def parameters(function):
     given = inspect.signature(function).parameters
     return {name: one for name, one in given.items() if one.kind not in (one.VAR_KEYWORD, one.VAR_POSITIONAL)}
 
 
-def may_be_numbers(name: str, parameter: inspect.Parameter) -> bool:
+def may_be_numbers(name, parameter):
     """Whether its annotation allows for a number that has a unit."""
     said = str(parameter.annotation)
     return any(word in said for word in NUMBERS) and not (
@@ -119,7 +119,7 @@ def may_be_numbers(name: str, parameter: inspect.Parameter) -> bool:
     )
 
 
-def public() -> Iterator[tuple[str, Callable[[], Any]]]:
+def public():
     """Functions and classes of the package, and methods, that take numbers: a name, and how to have it."""
     for name in vr.__all__:
         value = getattr(vr, name)
@@ -145,7 +145,7 @@ def public() -> Iterator[tuple[str, Callable[[], Any]]]:
                 yield f"{name}.{method}", lambda name=name, method=method: getattr(MADE[name](), method)
 
 
-def sample(call: str, name: str) -> Any:
+def sample(call, name):
     """The value of an argument; raises AssertionError where there is none."""
     call = call.partition(" of ")[0]
     assert (call, name) in OWN or name in SAMPLES, f"give a value of {name} of {call} in SAMPLES or OWN"
@@ -153,13 +153,13 @@ def sample(call: str, name: str) -> Any:
 
 
 @functools.cache
-def arguments_of(call: str) -> tuple[Argument, ...]:
+def arguments_of(call):
     """The arguments of a call of CALLS that may carry a unit, each with others with which the call works and looks
     at it."""
     return tuple(search_arguments(call, CALLS[call]()))
 
 
-def search_arguments(call: str, function: Callable[..., Any]) -> Iterator[Argument]:
+def search_arguments(call, function):
     given = parameters(function)
     needed = {name: sample(call, name) for name, one in given.items() if one.default is one.empty}
     may = {name: sample(call, name) for name, one in given.items() if may_be_numbers(name, one)}
@@ -176,7 +176,7 @@ def search_arguments(call: str, function: Callable[..., Any]) -> Iterator[Argume
         yield found
 
 
-def works(argument: Argument, value: Any) -> bool:
+def works(argument, value):
     try:
         argument(value)
     except vr.ParameterError:
@@ -184,7 +184,7 @@ def works(argument: Argument, value: Any) -> bool:
     return True
 
 
-def numbers_of(result: Any) -> Iterator[Any]:
+def numbers_of(result):
     """All numbers that a result holds."""
     if isinstance(result, xr.Dataset) or hasattr(result, "to_xarray"):
         data = result if isinstance(result, xr.Dataset) else result.to_xarray()
@@ -203,7 +203,7 @@ def numbers_of(result: Any) -> Iterator[Any]:
         yield result
 
 
-def others_of(unit: str, value: Any) -> Iterator[Any]:
+def others_of(unit, value):
     """The same quantity otherwise: by pint in the unit and in another, by xarray, as a duration."""
     value = np.asarray(value) if np.ndim(value) else value
     spelled = UNITS.Quantity(1.0, "degC" if unit == "degC" else unit.replace("-", "**-").replace("s2", "s**2")).units
@@ -248,7 +248,7 @@ def test_every_argument_is_converted_or_refused(call):
 class Like:
     """What has a value of a float, and is no number."""
 
-    def __float__(self) -> float:
+    def __float__(self):
         return 0.5
 
 
@@ -264,7 +264,7 @@ ODD = {
     "texts": pd.Series(["a"]), "set": {1.0}, "unit in part": [UNITS.Quantity(1.0, ""), 2.0],
 }  # fmt: skip
 #: what is one
-GOOD: dict[str, Callable[[float], Any]] = {
+GOOD = {
     "decimal": Decimal, "fraction": Fraction, "object array": lambda value: np.array(value, object),
     "array": np.array, "long double": np.longdouble, "float32": np.float32, "labelled": xr.DataArray,
 }  # fmt: skip
@@ -287,7 +287,7 @@ def test_odd_values_are_right_or_refused(call):
                 assert np.array_equal(np.squeeze(one), np.squeeze(other), equal_nan=True), (argument, kind)
 
 
-def results() -> Iterator[tuple[str, xr.Dataset]]:
+def results():
     """What functions give of a scene and of a cylinder."""
     for kind, roller in (("a Scene", SCENE), ("a Cylinder", CYLINDER)):
         yield kind, roller.contact(0.5, omega=0.501).to_xarray()
@@ -319,9 +319,9 @@ DRIVEN = (("force", "N/m"), ("torque", "N*m/m"), ("brake", "N*m/m"), ("omega", "
 
 @pytest.mark.parametrize(("name", "unit"), DRIVEN)
 def test_schedules_carry_units(name, unit):
-    def rolled(times: Any, values: Any) -> vr.Motion:
+    def rolled(times, values):
         starts = {"V0": 0.5, "omega0": 0.5}
-        drive: Any = {name: vr.Schedule(times, values)}
+        drive = {name: vr.Schedule(times, values)}
         return CYLINDER.roll(**starts, t=1.0, **drive)
 
     values = np.array([0.5, 0.25])
@@ -341,14 +341,14 @@ def test_schedules_carry_units(name, unit):
 )
 def test_feedbacks_carry_units(name, units):
     values = 2.0, -0.25, -0.125
-    exact: Any = {name: vr.Feedback(*values)}
-    milli: Any = (UNITS.Quantity(1e3 * value, f"milli{unit}") for value, unit in zip(values, units, strict=True))
-    found: Any = {name: vr.Feedback(*milli)}
+    exact = {name: vr.Feedback(*values)}
+    milli = (UNITS.Quantity(1e3 * value, f"milli{unit}") for value, unit in zip(values, units, strict=True))
+    found = {name: vr.Feedback(*milli)}
     pairs = (CYLINDER.roll(0.5, 0.5, 1.0, **found).V, CYLINDER.roll(0.5, 0.5, 1.0, **exact).V)
     assert close(*pairs, rel=tolerances.UNIT_CONVERTED)
     pairs = (CYLINDER.steady(**found).V, CYLINDER.steady(**exact).V)
     assert close(*pairs, rel=tolerances.UNIT_CONVERTED)
-    wrong: Any = {name: vr.Feedback(2.0, V=UNITS.Quantity(1.0, "kg"))}
+    wrong = {name: vr.Feedback(2.0, V=UNITS.Quantity(1.0, "kg"))}
     refused(lambda: CYLINDER.roll(0.5, 0.5, 1.0, **wrong), f"V of {name} is in kilogram")
     refused(lambda: SCENE.roll(0.5, 0.5, 1.0, **found), f"value of {name} is in", "without dimension")
     refused(lambda: SCENE.steady(**found), f"value of {name} is in", "without dimension")
@@ -381,7 +381,7 @@ class Length:
 
     magnitude = 25.0
 
-    def to(self, unit: str) -> "Length":
+    def to(self, unit):
         if unit != "m":
             raise ValueError("a length")
         made = Length()

@@ -72,7 +72,7 @@ NAMES = vars(experiments) | {
 }  # fmt: skip
 
 
-def told(call: str, answer: str, names: dict[str, object]) -> None:
+def told(call, answer, names):
     """One warning that points to who called, with these words; or none, or none with these."""
     first, *words = answer.split(" | ")
     silent = first == "no warning"
@@ -90,18 +90,18 @@ def told(call: str, answer: str, names: dict[str, object]) -> None:
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 @pytest.mark.parametrize(("call", "answer"), [*zip(LINES[::2], LINES[1::2], strict=True)], ids=LINES[::2])
 def test_answered(call, answer, tmp_path):
-    def file(content: str | bytes, name: str = "file.toml") -> Path:
+    def file(content, name="file.toml"):
         (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
         return tmp_path / name
 
-    def run(name: str, old: str, new: str) -> object:
+    def run(name, old, new):
         assert old in FILES[name]
         return read_run(file(FILES[name].replace(old, new, 1)))
 
-    def measured(old: str, new: str) -> object:
+    def measured(old, new):
         return vr.identify(**read_measurements(experiments.measurements(tmp_path, old, new)), starts=1)
 
-    def netcdf(data: xr.Dataset, without: str = "") -> Path:
+    def netcdf(data, without=""):
         """A file of a dataset, without an attribute, as another program writes it."""
         data = data.copy()
         data.attrs.pop(without, None)

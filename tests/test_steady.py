@@ -22,11 +22,11 @@ TEN = vr.Prony(2.0 ** np.arange(10), 10.0 ** np.linspace(0.0, -18.0, 10))
 UNLIKE = vr.Bodies(TWO, vr.Prony([1.0, 3.0], [0.3, 3e-4]), 0.3)
 
 
-def series_scene(material, kappa: float = 10.0, mu: float = 0.2, j: float = 0.5) -> vr.Scene:
+def series_scene(material, kappa=10.0, mu=0.2, j=0.5):
     return vr.Scene(material=material, kappa=kappa, mu=mu, gamma=1.0, j=j)
 
 
-def residuals(scene: vr.Scene, s) -> tuple[np.ndarray, np.ndarray]:
+def residuals(scene, s):
     """V' and j omega' over gamma t at what was found, by the contact law."""
     c = vr.contact(scene, s.V, omega=s.omega, fields=("Q", "M_half_space", "M_cylinder"))
     return c.Q - c.M_half_space + s.force, -c.Q - c.M_cylinder + s.torque
@@ -83,7 +83,7 @@ def test_creep_has_its_traction():
 # --- several modes, two bodies ---
 
 
-def brute(scene: vr.Scene, force: float, torque: float, speeds: np.ndarray) -> int:
+def brute(scene, force, torque, speeds):
     """Equilibria with V > 0 by changes of sign of M(V) - force - torque, friction sufficing."""
     c = vr.contact(scene, speeds, delta=0.0, fields=("M", "M_cylinder"))
     off = c.M - force - torque
@@ -233,7 +233,7 @@ def test_gain_that_unsettles_rest():
         assert s.count == (3 if stable else 1)
 
 
-def brute_feedback(scene: vr.Scene, force: vr.Feedback, torque: vr.Feedback, V: np.ndarray) -> int:
+def brute_feedback(scene, force, torque, V):
     """Equilibria with V > 0: omega by the sum of the equations, changes of sign of what is left of the first."""
     total, gain_V, gain = force.value + torque.value, force.V + torque.V, force.omega + torque.omega
     M = vr.contact(scene, V, delta=0.0, fields="M").M

@@ -11,18 +11,18 @@ from viscoroll.motion import flow_store
 
 
 @pytest.fixture
-def folder(tmp_path, monkeypatch) -> Path:
+def folder(tmp_path, monkeypatch):
     monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "made")
     return tmp_path / "made"
 
 
-def place(alpha: float) -> tuple[tuple[float, ...], Path]:
+def place(alpha):
     """Parameters of a map, and its file."""
     parameters = alpha, 10.0, 0.3, 0.5
     return parameters, flow_store.path_of(parameters, 4)
 
 
-def kept(alpha: float) -> bool:
+def kept(alpha):
     """Whether the map of this alpha is there; else it is made."""
     parameters, path = place(alpha)
     made = flow_store.FlowMap(parameters, -16, np.full(SIZE, alpha), (1e-9, 2e-9, 3e-9), "")

@@ -63,7 +63,7 @@ RUBBER = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=110
 STEEL = vr.Material.elastic(2e11, 0.3, density=7850.0)
 
 
-def pair(material: vr.Material, base: vr.Material | None, plane: str = "strain") -> vr.Cylinder:
+def pair(material, base, plane="strain"):
     return vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base, plane=plane)
 
 

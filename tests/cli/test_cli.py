@@ -50,7 +50,7 @@ def here(tmp_path, monkeypatch):
 def run(capsys):
     """Runs a command line that must succeed; returns what it printed."""
 
-    def run(*argv: str) -> str:
+    def run(*argv):
         code = main(argv)
         out, err = capsys.readouterr()
         assert (code, err) == (0, "")
@@ -67,7 +67,7 @@ def content(folder):
 def refuse(capsys, here):
     """Runs a command line that must fail in one line, leaving the folder as it was; returns the line."""
 
-    def refuse(*argv: str) -> str:
+    def refuse(*argv):
         before = content(here)
         code = main(argv)
         out, err = capsys.readouterr()

@@ -10,7 +10,7 @@ from places import ROOT
 import viscoroll as vr
 
 
-def example(name: str) -> dict:
+def example(name):
     return runpy.run_path(str(ROOT / f"docs/examples/{name}.py"))
 
 

@@ -101,18 +101,18 @@ for _name, _filled, _compile, _needed in (
 
 
 @cache
-def succeeds(command: str) -> bool:
+def succeeds(command):
     return not subprocess.run(command, shell=True, capture_output=True, check=False).returncode
 
 
-def need(command: str) -> None:
+def need(command):
     """Skip where a command fails: what it asks for is not installed."""
     if not succeeds(command):
         pytest.skip(f"not installed (make interop): {command}")
 
 
 @pytest.fixture(scope="module", params=[RUBBER, PAIR], ids=["rubber", "pair"])
-def folder(request, tmp_path_factory) -> Path:
+def folder(request, tmp_path_factory):
     """The readers, the headers of C, a law in every format, and states of it."""
     place, law = tmp_path_factory.mktemp("law"), vr.tables.law(request.param)
     for path in (*LOADING.glob("read_law.*"), *HEADERS.glob("*.h")):
@@ -124,7 +124,7 @@ def folder(request, tmp_path_factory) -> Path:
     return place
 
 
-def states(material) -> np.ndarray:
+def states(material):
     """kappa, mu, V and slip: any speed from far below the slowest time to far beyond the fastest, any creep, rest."""
     random, count = np.random.default_rng(8), 400
     kappa, mu = 10.0 ** random.uniform(0.0, 2.0, count), 10.0 ** random.uniform(-3.0, 0.0, count)
@@ -214,7 +214,7 @@ ROLLED = {
 
 
 @pytest.fixture(scope="module")
-def roller(tmp_path_factory) -> Path:
+def roller(tmp_path_factory):
     """A program of vr_roll.h: numbers of a roller and of its motion -> what each call gave, V, omega, x at the end."""
     need("command -v cc")
     place = tmp_path_factory.mktemp("roll")
@@ -235,7 +235,7 @@ def roller(tmp_path_factory) -> Path:
     return place / "roll"
 
 
-def c_rolled(program: Path, *numbers: float) -> list[float]:
+def c_rolled(program, *numbers):
     """gamma, force, torque, rest, V, slip, time, calls and rtol -> status, V, omega, x."""
     done = subprocess.run([program, *map(repr, numbers)], capture_output=True, text=True, check=True)
     return [float(word) for word in done.stdout.split()]
@@ -367,7 +367,7 @@ READERS = {
 
 
 @pytest.fixture(scope="module")
-def grid(tmp_path_factory) -> Path:
+def grid(tmp_path_factory):
     """A grid in a file."""
     scene, V = vr.presets.PAPER_SECTION_5, np.geomspace(1e-3, 2.0, 12)
     grid = vr.tables.build(scene, V, delta=np.linspace(-0.01, 0.03, 9), alpha=[1.0, 11.0], method="direct")

@@ -3,7 +3,6 @@
 import re
 import shlex
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,7 +25,7 @@ PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in so
 FMUS = ROOT / "docs/loading/fmu_variables.md"
 
 
-def blocks(path: Path, language: str) -> list[str]:
+def blocks(path, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", path.read_text(), re.DOTALL | re.MULTILINE)
 
 
@@ -73,7 +72,7 @@ def test_first_pages_run(page, capsys):
 
 def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    session: dict = {}
+    session = {}
     for code in blocks(ROOT / "docs/offline_runtime.md", "python"):
         exec(compile(code, "offline_runtime.md", "exec"), session)
     worst, way = map(float, capsys.readouterr().out.split())
@@ -84,7 +83,7 @@ def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("page", sorted(path.stem for path in (ROOT / "docs/howto").glob("*.md")))
 def test_howto_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    session: dict = {}
+    session = {}
     for n, code in enumerate(blocks(ROOT / f"docs/howto/{page}.md", "python")):
         exec(compile(code, f"{page}.md, block {n + 1}", "exec"), session)
     if page == "files":
@@ -96,7 +95,7 @@ def test_howto_runs(page, tmp_path, monkeypatch):
 def test_the_page_of_measurements_runs(monkeypatch, capsys):
     """And finds the truth by which its data were made."""
     monkeypatch.chdir(ROOT)
-    session: dict = {}
+    session = {}
     (fits,), (plans,) = (blocks(ROOT / f"docs/{page}.md", "python") for page in ("identify", "identify_design"))
     for code in (fits.replace("starts=2", "starts=1").replace("print(fit)", "print(repr(fit))"), plans):
         exec(compile(code, "identify", "exec"), session)

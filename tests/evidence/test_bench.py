@@ -2,7 +2,6 @@
 
 import json
 import tomllib
-from pathlib import Path
 
 import pytest
 import tolerances as tol
@@ -20,14 +19,14 @@ def results(tmp_path_factory):
     return tmp_path_factory.mktemp("bench") / "bench.json"
 
 
-def measured(results: Path, *parts: str) -> list[dict]:
+def measured(results, *parts):
     made("evidence.bench", "--only", *parts, "--quick", "-o", results)
     found = json.loads(results.read_text())["parts"]
     assert all({"cpu", "cores", "date", "numba", "python"} <= found[part]["machine"].keys() for part in parts)
     return [found[part] for part in parts]
 
 
-def check_rows(result: dict) -> None:
+def check_rows(result):
     assert {row["method"] for row in result["rows"]} == set(result["methods"]) - set(result["skipped"])
     for row in result["rows"]:
         assert row["us"] > 0.0
@@ -87,7 +86,7 @@ def test_last_release(tmp_path):
     """Told for every case, here of a release that is this commit; a clone without the commit says so."""
     section = tomllib.loads(CONFIG.read_text())["bench"]["last-release"]
 
-    def at(commit: str) -> tuple[str | Path, ...]:
+    def at(commit):
         config = tmp_path / "config.toml"
         text = CONFIG.read_text().replace(section["commit"], commit).replace("20_000", "5000")
         config.write_text(text)

@@ -5,12 +5,10 @@ import json
 import re
 import runpy
 from html import escape
-from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
-from matplotlib.figure import Figure
 from processes import made, stage_refused
 
 import viscoroll as vr
@@ -22,7 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 
 
 @pytest.fixture(scope="module")
-def drawn() -> dict[str, Figure]:
+def drawn():
     starts = np.random.default_rng(0).uniform(-2.0, 2.0, (2, 200))
     few = vr.ensemble(vr.presets.PAPER_SECTION_5_ROUNDED, *starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4)
     scene, V = vr.presets.PAPER_SECTION_5_ROUNDED, np.geomspace(1e-2, 4.0, 21)
@@ -101,7 +99,7 @@ kept = 40
 
 
 @pytest.fixture(scope="module")
-def demo(tmp_path_factory) -> tuple[Path, Path]:
+def demo(tmp_path_factory):
     """Configuration and output folder of a small run of every stage."""
     folder = tmp_path_factory.mktemp("demo")
     config, out = folder / "small.toml", folder / "out"

@@ -25,7 +25,7 @@ def test_stage_plans_an_experiment(tmp_path):
             assert found[name][key] == value is None or close(found[name][key], value, rel=tol.INTERVAL), (name, key)
 
 
-def committed_rows(part: str) -> list[dict]:
+def committed_rows(part):
     return kept("identification.json")["parts"][part]["rows"]
 
 

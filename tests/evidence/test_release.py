@@ -14,7 +14,7 @@ def packages(tmp_path_factory):
     return release.built(tmp_path_factory.mktemp("release"))
 
 
-def problems(check: str, packages: release.Packages) -> str:
+def problems(check, packages):
     return "; ".join(release.CHECKS[check](packages))
 
 

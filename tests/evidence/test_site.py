@@ -10,7 +10,6 @@ import subprocess
 import sys
 import threading
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from types import ModuleType
 from urllib.parse import urlsplit
 
@@ -35,7 +34,7 @@ REMARKS = ("[PST]", "Got invalid theme mode")
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory) -> Path:
+def site(tmp_path_factory):
     """The site as `make docs` builds it: any warning is an error.  Of several workers one builds, the others wait."""
     missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if missing:
@@ -85,26 +84,26 @@ def browse(site, tmp_path_factory):
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
         pytest.skip(f"not installed (make site-tools): {' or '.join(BROWSERS)}")
-    missing: list[str] = []
+    missing = []
     profile = tmp_path_factory.mktemp("browser")
     probe = profile / "probe.html"
 
     class Handler(SimpleHTTPRequestHandler):
-        def translate_path(self, path: str) -> str:
+        def translate_path(self, path):
             return str(probe) if urlsplit(path).path == "/probe.html" else super().translate_path(path)
 
-        def end_headers(self) -> None:
+        def end_headers(self):
             # else two probes written within one second are one page to the browser: "not modified since" counts seconds
             self.send_header("Cache-Control", "no-store")
             super().end_headers()
 
-        def log_error(self, format: str, *args: object) -> None:
+        def log_error(self, format, *args):
             missing.append(f"{self.path}: {format % args}")
 
-        def log_message(self, format: str, *args: object) -> None:
+        def log_message(self, format, *args):
             pass
 
-    def open_page(path: str, milliseconds: int = 10_000) -> tuple[str, list[str]]:
+    def open_page(path, milliseconds=10_000):
         missing.clear()
         done = subprocess.run(
             [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-extensions",
@@ -147,7 +146,7 @@ def test_the_browser_tells_what_is_wrong(browse):
 def test_pages_load_in_a_browser(browse):
     """With all that they load; links are Sphinx's and ``docs/test_readme.py``'s to hold."""
     paths = [path.relative_to(SITE).as_posix() for path in SITE.rglob("*.html") if "_static" not in path.parts]
-    found: dict[str, tuple[str, str]] = {}
+    found = {}
     for first in range(0, len(paths), AT_ONCE):
         frames = "\n".join(f'<iframe src="/{html.escape(path)}"></iframe>' for path in paths[first : first + AT_ONCE])
         browse.probe.write_text(FRAMES.format(frames=frames))

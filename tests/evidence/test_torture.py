@@ -11,7 +11,7 @@ from pipeline.evidence.results import rows_of
 SLOWEST, MOST_MEMORY = 5.0, 1000.0
 
 
-def test_nothing_goes_unnoticed(tmp_path) -> None:
+def test_nothing_goes_unnoticed(tmp_path):
     """A sealed file is hardly ever unharmed: a flip must hit the few bytes that make a seal one."""
     made("evidence.torture", "--quick", "--only", "tables", "-o", tmp_path / "torture.json")
     rows = {row["done"]: row for row in json.loads((tmp_path / "torture.json").read_text())["parts"]["tables"]["rows"]}
@@ -20,7 +20,7 @@ def test_nothing_goes_unnoticed(tmp_path) -> None:
         assert rows[name]["refused"] >= 0.9 * rows[name]["tried"]
 
 
-def test_nothing_went_unnoticed_in_the_long_run() -> None:
+def test_nothing_went_unnoticed_in_the_long_run():
     parts = kept("torture.json")["parts"]
     assert set(parts) == {"tables", "ensembles"}
     for row in rows_of(parts):

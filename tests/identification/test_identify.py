@@ -30,20 +30,20 @@ BEARING = {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}
 KNOWN = TRUTH | {"brake": BRAKE, "drag": DRAG, "t0:run": 0.15}
 
 
-def drum(load: float) -> vr.Resistance:
+def drum(load):
     """A roller on a drum, whose bearing takes a part too."""
     M = roller().replace(load=load).contact(V, delta=0.0, fields="M").M
     return vr.Resistance(V, M + BRAKE + DRAG * V / 0.1, sigma=0.01, load=load, name=f"{load} N/m")
 
 
-def late() -> vr.Coastdown:
+def late():
     """A motion under the bearing, by a clock that is late."""
     t = np.linspace(0.0, 30.0, 200)
     m = roller().roll(3.0, 30.0, t, rtol=1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
     return vr.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
 
 
-def warm() -> vr.Resistance:
+def warm():
     """At 60 degrees the relaxation times are others."""
     M = roller(T_ref=TRUTH["T_ref"] * SHIFT(60.0)).contact(V, delta=0.0, fields="M").M
     return vr.Resistance(V, M, sigma=0.01, temperature=60.0, name="warm")
@@ -81,7 +81,7 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
     fit = vr.identify(roller(), ranges("E", "E_1"), [resistance(seed=1)], starts=1)
     low, high = fit.intervals()["E"]
 
-    def rise(E: float) -> float:
+    def rise(E):
         one = vr.identify(roller(E=E), ranges("E_1"), fit.records.values(), starts=1)
         return one.chi2 - fit.chi2
 
@@ -149,7 +149,7 @@ def test_a_robust_fit_tells_outliers_from_a_wrong_model(points):
     spoilt = np.zeros(points)
     spoilt[7::20] = 0.2 * (-1.0) ** np.arange(points // 20)
 
-    def misfit(M: np.ndarray, robust: bool = True) -> bool:
+    def misfit(M, robust=True):
         data = [vr.Resistance(V, M + spoilt, sigma=0.01)]
         return bool(vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, robust=robust).misfit)
 

@@ -17,7 +17,7 @@ KEPT = ("onset_time", "rest_time", "status", "steps")
 of_both = pytest.mark.parametrize("name", ["3 modes", "each"])
 
 
-def scene_of(material, **changes) -> vr.Scene:
+def scene_of(material, **changes):
     return vr.Scene(material=material, **SCENE | changes)
 
 
@@ -59,7 +59,7 @@ def test_stress(name):
 def test_memory_is_bounded_by_a_block():
     """Beside input and result four times as many motions take no more."""
 
-    def beside(count: int) -> int:
+    def beside(count):
         draw = np.random.default_rng(2)
         scene = scene_of(vr.Bodies(rubbers(draw, 3, count=count), rubbers(draw, 3, count=count), 0.4))
         return memory.taken_beside(lambda: vr.ensemble(scene, 1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1))

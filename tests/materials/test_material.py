@@ -24,7 +24,7 @@ OMEGA = np.array([0.0, 1e-9, 0.02, 3.0, 3.3, 1e5, 1e9, 1e200, 1e308])
 T = np.array([0.0, 1e-12, 1e-8, 1e-4, 0.3, 7.0, 1e200])
 
 
-def modulus(material: vr.Material, omega: np.ndarray) -> np.ndarray:
+def modulus(material, omega):
     """E' + i E'' as the sum over the modes."""
     product = 1j * omega[:, None] * material.T_ref * material.prony.tau
     return material.E * (1.0 + (material.prony.E * product / (1.0 + product)).sum(axis=1))

@@ -17,7 +17,7 @@ WIDE = vr.Prony(E=[0.5, 3.0, 8.0, 20.0], tau=[1.0, 3e-2, 4e-5, 1e-9])
 SERIES = st.tuples(st.integers(1, 12), st.floats(0.01, 14.0), st.floats(-3.0, 3.0), st.integers(0, 2**32 - 1))
 
 
-def random_series(modes: int, decades: float, size: float, seed: int) -> vr.Prony:
+def random_series(modes, decades, size, seed):
     draw = np.random.default_rng(seed)
     return vr.Prony(10.0 ** draw.uniform(size - 2.0, size, modes), 10.0 ** draw.uniform(-decades, 0.0, modes))
 
@@ -55,7 +55,7 @@ def test_nothing_given_is_rescaled():
     assert vr.Prony.elastic().alpha == 1.0
 
 
-def scene(material: vr.Prony, **changes: float) -> vr.Scene:
+def scene(material, **changes):
     return vr.Scene(material=material, **({"kappa": 10.0, "mu": 0.3, "gamma": 1e4, "j": 0.5} | changes))
 
 

@@ -16,13 +16,13 @@ SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 7)
 
 
-def starts(count: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+def starts(count, seed=1):
     V0, omega0 = np.random.default_rng(seed).uniform(-2.0, 2.0, (2, count))
     V0[:3], omega0[:3] = (0.0, 1.0, 0.0), (0.0, 1.0, -1.0)
     return V0, omega0
 
 
-def scenes(count: int) -> vr.Scene:
+def scenes(count):
     """Every parameter differs from motion to motion but mu; slip returns in some."""
     rng = np.random.default_rng(4)
     return vr.Scene(
@@ -31,7 +31,7 @@ def scenes(count: int) -> vr.Scene:
     )  # fmt: skip
 
 
-def equal(a, b) -> bool:
+def equal(a, b):
     return np.array_equal(a, b, equal_nan=True)
 
 
@@ -53,7 +53,7 @@ MANY = {
 }  # fmt: skip
 
 
-def one_of(many: vr.Scene, index: int) -> vr.Scene:
+def one_of(many, index):
     if not many.shape:
         return many
     each = {name: np.broadcast_to(getattr(many, name), 40)[index] for name in ("kappa", "mu", "gamma", "j")}
@@ -61,7 +61,7 @@ def one_of(many: vr.Scene, index: int) -> vr.Scene:
     return vr.Scene(**each, **law)
 
 
-def given_to(index: int, value):
+def given_to(index, value):
     if isinstance(value, vr.Schedule):
         return vr.Schedule(value.times, value.values[index])
     return value[index] if np.ndim(value) else value

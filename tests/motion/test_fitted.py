@@ -1,7 +1,6 @@
 """Callables of time as polynomials: how near, in how many values; and the motions that they drive."""
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,11 +10,11 @@ from drives import ROLLER
 
 import viscoroll as vr
 from viscoroll.motion import drive_fit
-from viscoroll.motion.piecewise import Piecewise, check_function, piecewise
+from viscoroll.motion.piecewise import check_function, piecewise
 
 END = 20.0
 #: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a slope without bounds
-CALLABLES: dict[str, Any] = {
+CALLABLES = {
     "tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 0.02)),
     "steep tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 1e-6)),
     "Gauss pulse": lambda t: 0.1 * math.exp(-(((t - 3.0) / 0.1) ** 2)),
@@ -34,15 +33,15 @@ RTOLS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-12)
 class Counted:
     """A callable that counts its calls."""
 
-    def __init__(self, function: Any) -> None:
+    def __init__(self, function):
         self.function, self.calls = function, 0
 
-    def __call__(self, t: float) -> float:
+    def __call__(self, t):
         self.calls += 1
         return float(self.function(t))
 
 
-def values(curve: Piecewise, t: np.ndarray) -> np.ndarray:
+def values(curve, t):
     """A curve of one motion at these times."""
     (starts,), (ends,) = curve.starts, curve.ends
     k = np.searchsorted(starts, t, side="right") - 1
@@ -86,7 +85,7 @@ def test_a_narrow_pulse_is_seen_where_it_is_resolved(many):
     """A pulse of END/8000, between two of the thousand samples that are taken without ``resolve``."""
     width, at = END / 8000.0, END * 0.5
 
-    def pulse(t: float) -> float:
+    def pulse(t):
         return 20.0 * (at < t < at + width)
 
     corners = vr.Schedule([at, at, at + width, at + width], [0.0, 20.0, 20.0, 0.0])
@@ -99,7 +98,7 @@ def test_a_narrow_pulse_is_seen_where_it_is_resolved(many):
     assert np.abs(exact - free).min() > tol.CALLABLE_PULSE_ACTS * np.abs(exact).max()
 
 
-def course(m: Any) -> np.ndarray:
+def course(m):
     return np.stack([m.V, m.omega])
 
 

@@ -25,7 +25,7 @@ pytestmark = [
 ]
 
 
-def starts(count: int, seed: int, scene: vr.Scene, top: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
+def starts(count, seed, scene, top=2.0):
     """Any speeds, a fifth of them inside the stick band or near it, some on the axes."""
     rng = np.random.default_rng(seed)
     V0, omega0 = rng.uniform(-top, top, (2, count))
@@ -35,7 +35,7 @@ def starts(count: int, seed: int, scene: vr.Scene, top: float = 2.0) -> tuple[np
     return V0, omega0
 
 
-def any_scene(seed: int) -> vr.Scene:
+def any_scene(seed):
     rng = np.random.default_rng(seed)
     alpha, kappa, mu = np.exp(rng.uniform(np.log([1.001, 0.5, 0.05]), np.log([1e4, 200.0, 3.0])))
     return vr.Scene(alpha, kappa, mu, 1.0, rng.uniform(0.1, 2.0))

@@ -19,7 +19,7 @@ MOTIONS = json.loads(Path(__file__).with_name("hard_motions.json").read_text())
 TIGHT = 1e-12
 
 
-def mirrored(name: str, drive):
+def mirrored(name, drive):
     """What drives the other way: all but a brake, and gains."""
     if isinstance(drive, vr.Feedback):
         return vr.Feedback(mirrored(name, drive.value), V=drive.V, omega=drive.omega)

@@ -36,13 +36,13 @@ pytestmark = [
 ]
 
 
-def ulps(x: float, n: int) -> float:
+def ulps(x, n):
     for _ in range(abs(n)):
         x = math.nextafter(x, n * math.inf)
     return x
 
 
-def nasty(scene: vr.Scene) -> np.ndarray:
+def nasty(scene):
     """Starts (V0, omega0): axes, V + j omega near 0, the stick boundary and delta = 0, subnormal numbers."""
     star = vr.contact(scene, [1.0, 1e-3], delta=0.0, fields="delta_star").delta_star
     opposite = -0.5 / scene.j

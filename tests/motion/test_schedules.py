@@ -14,7 +14,7 @@ from viscoroll.motion import drive_functions
 from viscoroll.motion.drive import Drive
 
 
-def pieces_of(drive: Drive, end: float) -> np.ndarray:
+def pieces_of(drive, end):
     """The pieces of a drive of one motion."""
     functions = drive_functions.prepare_drive(drive, 0.1, 0.1, end, 1e-8).functions
     assert functions is not None
@@ -47,7 +47,7 @@ def test_schedules_of_many_motions_take_little_memory_beside_themselves():
     times = np.sort(np.random.default_rng(1).uniform(0.0, 1.0, (100, 3000)), axis=1)
     values = np.full(times.shape, 0.01)
 
-    def call() -> vr.Ensemble:
+    def call():
         return vr.ensemble(ROLLER, np.ones(100), 0.5, 0.9, torque=vr.Schedule(times, values), rtol=1e-2, fields=("V",))
 
     call()

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 T = np.linspace(0.0, 2.0, 9)
 
 
-def fastest(m: vr.Motion) -> float:
+def fastest(m):
     return float(max(np.abs(m.V).max(), np.abs(m.omega).max()))
 
 

@@ -7,10 +7,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from pathlib import Path
 
 import pytest
 from refusals import refused
@@ -63,12 +61,12 @@ def whole(tmp_path_factory):
     return folder / "whole.zarr"
 
 
-def content(store: Path) -> dict[str, bytes]:
+def content(store):
     """Every file of a store."""
     return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
 
 
-def copied(store: Path, target: Path) -> Path:
+def copied(store, target):
     for name, data in content(store).items():
         (target / name).parent.mkdir(parents=True, exist_ok=True)
         (target / name).write_bytes(data)
@@ -117,11 +115,11 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
 
 
 @contextmanager
-def disk_for(writes: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def disk_for(writes, monkeypatch):
     """A disk with space for so many writes of files; the block must end with an error that says so."""
     sync, calls = files._sync, itertools.count()
 
-    def limited(path: Path) -> None:
+    def limited(path):
         if next(calls) >= writes:
             raise OSError(errno.ENOSPC, "No space left on device")
         sync(path)
@@ -281,7 +279,7 @@ def test_command(run_file, tmp_path, whole, capsys):
     assert "motions/x/3.0" in capsys.readouterr().out
 
 
-def _heeding() -> None:
+def _heeding():
     """Ctrl-C ends what a shell started in the background too, which is made to ignore it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 

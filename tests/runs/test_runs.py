@@ -16,7 +16,7 @@ from viscoroll import sampling
 from viscoroll.io.runs import estimate, store
 from viscoroll.io.runs.evaluate import roll_block
 from viscoroll.io.runs.inputs import Distribution, Inputs
-from viscoroll.materials.law.cover_rows import CoverRows, cover_rows
+from viscoroll.materials.law.cover_rows import cover_rows
 from viscoroll.motion.histogram import Histogram
 from viscoroll.motion.summaries import QUANTITIES, merge_summaries, summarise
 
@@ -171,7 +171,7 @@ def test_an_estimate_states_the_time_of_the_laws_of_covers(tmp_path, monkeypatch
 
     By a clock that goes by laws alone; one law stands for all.
     """
-    rows: list[CoverRows] = []
+    rows = []
 
     def computed(cover, *_):
         rows.append(rows[0] if rows else cover_rows(cover))

@@ -79,11 +79,11 @@ def here(tmp_path, monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def sliding(tmp_path_factory) -> xr.Dataset:
+def sliding(tmp_path_factory):
     return sobol_indices(run_of(SLIDING, tmp_path_factory.mktemp("sliding")), N)
 
 
-def inside(indices: xr.Dataset, name: str, key: str, name_of_input: str, exact: float, k: int | None = None) -> bool:
+def inside(indices, name, key, name_of_input, exact, k=None):
     """Whether an exact index lies inside the stated interval, which must say something."""
     at = {"input": name_of_input} | ({} if k is None else {"t": indices["t"].values[k]})
     value, half = (float(indices[f"{name}_{kind}"].sel(at)) for kind in (key, f"{key}_conf"))
@@ -93,7 +93,7 @@ def inside(indices: xr.Dataset, name: str, key: str, name_of_input: str, exact: 
 # --- closed forms ---
 
 
-def product_variance() -> float:
+def product_variance():
     return np.prod([law.moment(2) for law in FACTORS.values()]) - np.prod([law.mean() ** 2 for law in FACTORS.values()])
 
 

@@ -19,7 +19,7 @@ TIMES, DOWN = np.linspace(0.0, 2.0, 9), -0.05
 WORKS = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
 
-def units_of(roller: vr.Cylinder, load: float) -> dict[str, float]:
+def units_of(roller, load):
     """By hand: R, T_ref, the load on the plane, and what is made of them."""
     R, T, P = roller.R, roller.T_ref, load
     found = {

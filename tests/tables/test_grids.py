@@ -10,7 +10,6 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
-from numpy.typing import NDArray
 from places import ROOT
 from refusals import refused
 from scipy import io
@@ -30,28 +29,28 @@ WHAT = {
 }
 
 
-def built(name: str) -> xr.Dataset:
+def built(name):
     return vr.tables.build(
         WHAT[name], V, delta=DELTA, alpha=ALPHA if name == "alphas" else None, command="made by a test"
     )
 
 
 @pytest.fixture(scope="module", params=list(WHAT))
-def name(request) -> str:
+def name(request):
     return request.param
 
 
 @pytest.fixture(scope="module")
-def table(name) -> xr.Dataset:
+def table(name):
     return built(name)
 
 
 @pytest.fixture(scope="module")
-def alphas() -> xr.Dataset:
+def alphas():
     return built("alphas")
 
 
-def exact(name: str, points: dict[str, NDArray], fields: tuple[str, ...]) -> dict[str, NDArray]:
+def exact(name, points, fields):
     if name == "cylinder":
         return vr.presets.RUBBER_CYLINDER.contact(points["V"], delta=points["delta"], fields=fields).as_dict()
     scene = vr.presets.PAPER_SECTION_5.replace(alpha=points["alpha"]) if name == "alphas" else WHAT[name]

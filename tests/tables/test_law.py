@@ -3,8 +3,6 @@
 import json
 from dataclasses import fields
 from functools import partial
-from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -25,7 +23,7 @@ from viscoroll.materials.law_file import checksum
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
 RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber"', density=1100.0)
 STEEL = vr.Material.elastic(2e11, 0.3, name="steel")
-GIVEN: dict[str, tuple[Any, ...]] = {
+GIVEN = {
     "alpha": (11.0,), "elastic": (1.0,), "series": (SERIES,),
     "creep": (vr.Prony.creep([0.3, 0.6], [1.0, 1e-2]),),
     "bodies": (vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3),), "like bodies": (vr.Bodies(SERIES, SERIES),),
@@ -36,21 +34,21 @@ V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
 
 
 @pytest.fixture(scope="module")
-def saved(tmp_path_factory) -> Path:
+def saved(tmp_path_factory):
     path = tmp_path_factory.mktemp("law") / "rubber.nc"
     vr.tables.save(vr.tables.law(RUBBER), path)
     return path
 
 
 @pytest.fixture
-def copy(saved: Path, tmp_path: Path) -> Path:
+def copy(saved, tmp_path):
     """The same file, to be changed."""
     path = tmp_path / "copy.nc"
     path.write_bytes(saved.read_bytes())
     return path
 
 
-def same(one: LawTable, other: LawTable) -> None:
+def same(one, other):
     for field in fields(LawTable):
         name = "coefficients" if field.name == "steady_coefficients" else field.name
         first, second = getattr(one, name), getattr(other, name)

@@ -1,7 +1,5 @@
 """The law of every alpha as a file, and a single alpha out of it."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -17,7 +15,7 @@ V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
 
 
 @pytest.fixture(scope="module")
-def saved(tmp_path_factory) -> Path:
+def saved(tmp_path_factory):
     path = tmp_path_factory.mktemp("law") / "law.nc"
     vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path)
     return path

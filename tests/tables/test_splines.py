@@ -19,7 +19,7 @@ V, ALPHA = np.geomspace(1e-4, 4.0, 81), np.array([5.0, 7.0, 11.0, 16.0])
 
 
 @pytest.fixture(scope="module")
-def grid() -> xr.Dataset:
+def grid():
     return vr.tables.build(SCENE, V, delta=vr.tables.creep_nodes(SCENE, V, 81, alpha=ALPHA), alpha=ALPHA)
 
 
@@ -31,7 +31,7 @@ def path(grid, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def si_grid() -> xr.Dataset:
+def si_grid():
     """Of a cylinder, as another program may have it: Q and M alone, over mm/s, in kN/m and N mm/m."""
     speeds = 1e-3 * V
     own = vr.tables.build(ROLLER, speeds, delta=vr.tables.creep_nodes(ROLLER, speeds, 81))
@@ -48,7 +48,7 @@ def si_grid() -> xr.Dataset:
     )
 
 
-def inside(table: xr.Dataset, count: int) -> dict[str, np.ndarray]:
+def inside(table, count):
     """Random points in a grid, of V and alpha even in their logarithms."""
     random, points = np.random.default_rng(3), {}
     for name in schema.axes_of(table):

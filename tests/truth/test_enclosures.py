@@ -1,7 +1,5 @@
 """Certified enclosures; that check values are theirs: ``evidence/test_prove.py``."""
 
-from typing import Any
-
 import flint
 import numpy as np
 
@@ -20,7 +18,7 @@ STATES = [
 ]
 
 
-def printed(state: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, tuple[Any, Any]]:
+def printed(state, alpha, kappa, mu, V, delta):
     """What the equations as printed leave, each with the size of its terms; lengths that are not 0."""
     lam, zeta, epsilon, beta = (state[name] for name in ("lam", "zeta", "epsilon", "beta"))
     r, k, creep = ratio_r(alpha * zeta), ratio_k(zeta), 2 * delta * kappa / (mu * lam)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 
 import viscoroll as vr
 from pipeline.validation import Check, Report, stresses, validate
@@ -16,12 +15,12 @@ SMALL = {"states": 2000, "stress_states": 3, "table_points": 300, "times": 20}
 
 
 @pytest.fixture(scope="module")
-def law() -> xr.Dataset:
+def law():
     return vr.tables.law(11.0)
 
 
 @pytest.fixture(scope="module")
-def report(law) -> Report:
+def report(law):
     return validate((law,), **SMALL, seed=5)
 
 

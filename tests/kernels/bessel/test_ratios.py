@@ -15,7 +15,7 @@ from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r
 from viscoroll.kernels.compile.intrinsics import septic
 
 
-def places() -> np.ndarray:
+def places():
     """Every power of two in reach of a table or a series, every bin edge near the ends, neighbours; and scattered."""
     rng = np.random.default_rng(7)
     edges = [2.0**n * (1.0 + b / layout.BINS) for n in (-30, -4, -1, 0, 1, 5) for b in range(layout.BINS)]

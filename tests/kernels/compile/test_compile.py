@@ -88,7 +88,7 @@ def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
     lock = FileLock(f"{stored}.lock", thread_local=False)
     lock.acquire()
 
-    def store() -> None:
+    def store():
         stored.write_bytes(content)
         lock.release()
 
@@ -146,14 +146,14 @@ def scaled(x):
 
 
 @pytest.fixture
-def cache(tmp_path, monkeypatch) -> Path:
+def cache(tmp_path, monkeypatch):
     """A cache folder of its own that holds ``scaled`` for one signature."""
     monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
     assert fresh() == 0
     return tmp_path / f"kernels-{cache_module.sources_digest()}"
 
 
-def fresh() -> int:
+def fresh():
     """Use the kernel as a new process would: the value is right; returns the number of cache hits."""
     function = kernel(scaled)
     assert function(2.0) == 6.0
@@ -198,7 +198,7 @@ print(sum(at.stats.cache_hits.values()))
         assert re.fullmatch(told, done.stderr), settings
 
 
-def sealed(content: bytes) -> bytes:
+def sealed(content):
     return hashlib.sha256(content).digest() + content
 
 
@@ -225,14 +225,14 @@ def test_a_damaged_file_is_replaced(cache, damage):
 class Planted:
     """Does something where it is unpickled."""
 
-    def __init__(self, trace: Path) -> None:
+    def __init__(self, trace):
         self.trace = trace
 
     def __reduce__(self):
         return Path.touch, (self.trace,)
 
 
-def plant(path: Path) -> Path:
+def plant(path):
     """A file that is whole by its own checksum; where it leaves a trace if it is run."""
     trace = path.parents[1] / "trace"
     path.write_bytes(sealed(zlib.compress(pickle.dumps(Planted(trace)))))
@@ -318,7 +318,7 @@ def test_folders_are_made_for_oneself(tmp_path, monkeypatch):
     assert fresh() == 1
 
 
-def used_from_the_cache() -> None:
+def used_from_the_cache():
     assert fresh() == 1
 
 
@@ -377,7 +377,7 @@ def test_cache_folder_follows_the_environment(monkeypatch):
 def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch):
     """Import of the first kernel ended with the error of pathlib."""
 
-    def nowhere() -> Path:
+    def nowhere():
         raise RuntimeError("Could not determine home directory.")
 
     for name in ("VISCOROLL_CACHE_DIR", "XDG_CACHE_HOME"):

@@ -57,7 +57,7 @@ def test_a_held_cylinder_takes_no_steps(spin):
 def test_a_slip_that_nearly_ends_is_noticed():
     """Friction closes the slip, resistance widens it again: onset jumps where slip just touches its limit."""
 
-    def early(omega0: float, rtol: float) -> bool:
+    def early(omega0, rtol):
         return vr.roll(WIDENING, 2.0, omega0, [1e-2], rtol=rtol).onset_time < 5e-3
 
     low, high = 2.0 - 0.55, 2.0 - 0.525

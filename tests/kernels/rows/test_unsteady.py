@@ -1,7 +1,5 @@
 """N of M = M(V) + N V': against its definition in many digits, its limits, and what is known of its shape."""
 
-from typing import Any
-
 import flint
 import mpmath as mp
 import numpy as np
@@ -17,20 +15,20 @@ from pipeline.evidence.truth.material import Material, material_of
 LARGEST = 0.05
 
 
-def random_series(seed: int) -> vr.Prony:
+def random_series(seed):
     draw = np.random.default_rng(seed)
     modes = int(draw.integers(1, 6))
     return vr.Prony(10.0 ** draw.uniform(-1.5, 1.5, modes), 10.0 ** draw.uniform(-4.0, 0.0, modes))
 
 
-def N(material: vr.Prony, kappa_V: Any) -> Any:
+def N(material, kappa_V):
     return vr.contact(vr.Scene(material=material, kappa=10.0, mu=0.3), 0.1 * kappa_V, delta=0.0, fields="N").N
 
 
-def exact(known: Material, z: Any) -> Any:
+def exact(known, z):
     """N by derivatives of H and H m of a material that is shifted, K(s + sigma), or stretched, K(s + sigma s)."""
 
-    def state(z: Any, shift: Any, stretch: Any) -> tuple[Any, Any, Any]:
+    def state(z, shift, stretch):
         z, shift, stretch = map(flint.arb, (z, shift, stretch))
         moved = Material.of_rates(*([(rate - shift) / (1 + stretch) for rate in rates] for rates in (known.a, known.b)))
         found = zone_of(moved, z)
@@ -40,7 +38,7 @@ def exact(known: Material, z: Any) -> Any:
         H = z * (z + 2 * found.h) / compliance
         return tuple(mp.mpf(value.mid()) for value in (H, H * found.m, found.g))
 
-    def form(z: Any, shift: int) -> Any:
+    def form(z, shift):
         """d(H m) - 2 g dH."""
         moved = [mp.diff(lambda s, n=n: state(z, shift * s, (1 - shift) * s)[n], 0) for n in (0, 1)]
         return moved[1] - 2 * state(z, 0, 0)[2] * moved[0]
