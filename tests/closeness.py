@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 
-def close(found: Any, exact: Any, *, rel: Any, scale: Any = 0.0, what: object = "") -> bool:
+def close(found: Any, exact: Any, rel: Any, *, scale: Any = 0.0, what: object = "") -> bool:
     """Whether ``|found - exact| <= rel max(|exact|, scale)`` everywhere; where it is not, the worst place is told.
 
     ``scale`` is the size of which ``rel`` counts where ``exact`` is small or 0: a sum's largest term, a motion's

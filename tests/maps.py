@@ -21,5 +21,5 @@ def beside(scene: vr.Scene, V0, omega0, t, rtol: float = 1e-6):
     by, size = mapped.flow, np.maximum(abs(exact.V), abs(exact.omega))
     for name in ("V", "omega") if by.any() else ():
         pair = getattr(mapped, name)[by], getattr(exact, name)[by]
-        assert close(*pair, rel=mapped.flow_error, scale=size[by], what=name)
+        assert close(*pair, mapped.flow_error, scale=size[by], what=name)
     return mapped

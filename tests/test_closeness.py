@@ -21,7 +21,7 @@ from closeness import close
 )
 def test_what_is_not_allowed_is_refused(found, exact, rel, scale):
     with pytest.raises(AssertionError):
-        close(found, exact, rel=rel, scale=scale)
+        close(found, exact, rel, scale=scale)
 
 
 @pytest.mark.parametrize(
@@ -35,9 +35,9 @@ def test_what_is_not_allowed_is_refused(found, exact, rel, scale):
     ],
 )
 def test_what_is_allowed_passes(found, exact, rel, scale):
-    assert close(found, exact, rel=rel, scale=scale)
+    assert close(found, exact, rel, scale=scale)
 
 
 def test_the_worst_place_is_told():
     with pytest.raises(AssertionError, match=r"V .*3\.5\) at \(2,\), not np\.float64\(3\.0\).*2 of 3 beyond"):
-        close([1.1, 2.0, 3.5], [1.0, 2.0, 3.0], rel=1e-3, what="V")
+        close([1.1, 2.0, 3.5], [1.0, 2.0, 3.0], 1e-3, what="V")

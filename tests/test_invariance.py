@@ -288,7 +288,7 @@ def test_rounding_mode(modes):
             of_motion = name.startswith(("integrate", "flow", "roll", "driven"))
             bound = tol.ROUNDING_MODE_MOTION if of_motion else tol.ROUNDING_MODE
             if finite.any() and not name.endswith("steps"):
-                assert close(found[finite], usual[finite], rel=bound, scale=largest, what=(mode, name))
+                assert close(found[finite], usual[finite], bound, scale=largest, what=(mode, name))
 
 
 # --- threads and forks ---

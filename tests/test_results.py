@@ -96,7 +96,7 @@ def test_figures_bend_as_results_do():
     """A motion to one time in few steps; terminal speeds of a gentle slope beside the unstable ones."""
     m = ROLLER.roll(2.0, 0.0, 10.0)
     t, x = m.plot().axes[2].lines[0].get_data()
-    assert close(np.interp(5.0, t, x), m.at([5.0]).x[0], rel=tol.FIGURE)
+    assert close(np.interp(5.0, t, x), m.at([5.0]).x[0], tol.FIGURE)
     assert ROLLER.steady(slope=np.radians([0.0, 0.1, 0.2])).plot().axes[0].get_yscale() == "symlog"
 
 
@@ -155,7 +155,7 @@ def test_a_torque_that_jumps_is_drawn_with_both_sides():
         assert np.isin(sides, drawn[t == when]).all()
     assert not (np.diff(t) * np.diff(drawn)).any()
     t, drawn = force
-    assert close(drawn[t == 3.0], m.force[-1], rel=tol.FIGURE)
+    assert close(drawn[t == 3.0], m.force[-1], tol.FIGURE)
     assert 0.7 in t
 
 
@@ -167,7 +167,7 @@ def test_speeds_that_rise_by_factors_have_a_logarithmic_axis():
 
 def test_a_contact_tells_the_coefficient_of_rolling_resistance():
     c = ROLLER.contact(V=[0.1, 1.0], delta=0.0)
-    assert close(c.C_rr, c.M / (ROLLER.load * ROLLER.R), rel=tol.SI_MOTION)
+    assert close(c.C_rr, c.M / (ROLLER.load * ROLLER.R), tol.SI_MOTION)
     assert ROLLER.contact(V=1.0, delta=0.0, fields="C_rr").as_dict().keys() == {"C_rr"}
     assert "coefficient of rolling resistance" in {axes.get_title() for axes in c.plot().axes}
 

@@ -40,18 +40,18 @@ def over(scene, low, high, f):
 def test_by_quadrature_of_N_and_M(scene, V):
     """The unsteadiness, the speeds at which it is 1 % and 10 %, time and way until there and the way left."""
     found = scene.validity(-V).steady
-    assert close(found.value, abs(law(scene, V)[0]), rel=tol.STEADINESS)
+    assert close(found.value, abs(law(scene, V)[0]), tol.STEADINESS)
     rest = over(scene, 1e-9, V, lambda V, brake: V / brake)
-    assert close(found.whole, rest, rel=tol.STEADINESS)
+    assert close(found.whole, rest, tol.STEADINESS)
     for reach, level in ((found.one_percent, 0.01), (found.ten_percent, 0.1)):
         grid = np.geomspace(1e-4 * V, V, 2000)
         top = grid[np.flatnonzero(abs(law(scene, grid)[0]) >= level)[-1]]
         speed = brentq(lambda V, level=level: law(scene, V)[0] - level, top, 1.01 * top, rtol=1e-14)
-        assert close(reach.speed, speed, rel=tol.STEADINESS)
-        assert close(reach.time, over(scene, speed, V, lambda V, brake: 1.0 / brake), rel=tol.STEADINESS)
-        assert close(reach.way, over(scene, speed, V, lambda V, brake: V / brake), rel=tol.STEADINESS)
-        assert close(reach.way + reach.left, rest, rel=tol.STEADINESS)
-    assert close(found.share, found.ten_percent.left / rest, rel=tol.STEADINESS)
+        assert close(reach.speed, speed, tol.STEADINESS)
+        assert close(reach.time, over(scene, speed, V, lambda V, brake: 1.0 / brake), tol.STEADINESS)
+        assert close(reach.way, over(scene, speed, V, lambda V, brake: V / brake), tol.STEADINESS)
+        assert close(reach.way + reach.left, rest, tol.STEADINESS)
+    assert close(found.share, found.ten_percent.left / rest, tol.STEADINESS)
 
 
 @pytest.mark.parametrize("V", [30.0, 5.0])
@@ -62,8 +62,8 @@ def test_a_start_from_rest_costs_an_energy(V):
     L = np.minimum(2.0 * u * T, 4.84 * max(2.0 * ROLLER.kappa * found.whole, 20.0))
     W = (0.25 * J * np.log(1.0 + (0.681 * L) ** 2)).sum() - np.log(DMA.alpha) / (8.0 * DMA.alpha)
     left = np.sqrt(V * V - 0.5 * g * W / ROLLER.kappa**2)
-    assert close(found.start.speed, V - left, rel=tol.STEADINESS)
-    assert close(found.start.way, found.whole - ROLLER.validity(left).steady.whole, rel=tol.STEADINESS)
+    assert close(found.start.speed, V - left, tol.STEADINESS)
+    assert close(found.start.way, found.whole - ROLLER.validity(left).steady.whole, tol.STEADINESS)
 
 
 def test_slow_starts():
@@ -72,7 +72,7 @@ def test_slow_starts():
     assert not slow.holds
     assert slow.ten_percent.way == slow.ten_percent.time == 0.0
     assert slow.share == 1.0
-    assert close(slow.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, rel=tol.STEADINESS)
+    assert close(slow.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, tol.STEADINESS)
     assert ROLLER.validity([0.0, 0.0]).steady[:2] == (None, None)
     assert ROLLER.validity([0.0, 30.0]).steady.value[0] == 0.0
 
@@ -87,7 +87,7 @@ def test_no_relaxation_time_bounds_it():
         assert (N * V * V).max() <= tol.STEADINESS_BOUND * (1.0 - 1.0 / material.alpha)
     years = vr.Prony([0.1, 0.1, *DMA.E], [1e4, 1e2, *DMA.tau])
     speeds = [ROLLER.replace(material=each).validity(30.0).steady.ten_percent.speed for each in (DMA, years)]
-    assert close(speeds[1], speeds[0], rel=0.1)
+    assert close(speeds[1], speeds[0], 0.1)
 
 
 @pytest.mark.parametrize("alpha", [1.001, 1.5, 11.0, 100.0, 1e5])
@@ -112,10 +112,10 @@ def test_each_of_many_is_as_alone():
         for n in range(3):
             own = {name: value if np.isscalar(value) else value[n] for name, value in given.items()}
             one = vr.Scene(kappa=20.0, mu=0.3, gamma=gamma[n], **own).validity(V[n])
-            assert close(found.steady.value[n], one.steady.value, rel=tol.STEADINESS, scale=1e-9)
+            assert close(found.steady.value[n], one.steady.value, tol.STEADINESS, scale=1e-9)
             for name in ("one_percent", "ten_percent", "start"):
                 some, alone = ([*getattr(each.steady, name)] for each in (found, one))
-                assert close([each[n] for each in some], alone, rel=tol.STEADINESS)
+                assert close([each[n] for each in some], alone, tol.STEADINESS)
 
 
 def test_beyond_all_bounds():
@@ -131,15 +131,15 @@ def test_along_a_motion():
     t = np.linspace(0.0, 20.0, 4001)
     m, thrown = (vr.roll(ROLLER, 30.0, omega0, t) for omega0 in (30.0, 0.0))
     found = m.validity().steady
-    assert close(found.value, np.maximum.accumulate(abs(law(ROLLER, m.V)[0])), rel=tol.STEADINESS)
+    assert close(found.value, np.maximum.accumulate(abs(law(ROLLER, m.V)[0])), tol.STEADINESS)
     alone = ROLLER.validity(30.0).steady
-    assert close(found.share, alone.share, rel=0.02)
-    assert close(found.ten_percent.speed, alone.ten_percent.speed, rel=tol.STEADINESS)
+    assert close(found.share, alone.share, 0.02)
+    assert close(found.ten_percent.speed, alone.ten_percent.speed, tol.STEADINESS)
     assert not thrown.validity().steady.value[t < thrown.onset_time].any()
     many = vr.ensemble(ROLLER, [30.0, 30.0], [30.0, 0.0], t).validity().steady
     alone = [each.validity().steady for each in (m, thrown)]
-    assert close(many.value, [each.value[-1] for each in alone], rel=tol.STEADINESS)
-    assert close(many.share, [each.share for each in alone], rel=1e-3, scale=1.0)
+    assert close(many.value, [each.value[-1] for each in alone], tol.STEADINESS)
+    assert close(many.share, [each.share for each in alone], 1e-3, scale=1.0)
 
 
 # --- warnings of roll and ensemble ---

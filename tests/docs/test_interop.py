@@ -191,7 +191,7 @@ def test_programs_have_the_contact_of_the_package(folder, name):
             getattr(exact, field),
         )
         scale = {"M_half_space": exact.M, "M_cylinder": exact.M, "N": np.abs(exact.N).max()}.get(field, 0.0)
-        assert close(found[:, n], value, rel=tol.INTEROP, scale=scale), (name, field)
+        assert close(found[:, n], value, tol.INTEROP, scale=scale), (name, field)
     if more:
         moving = ~still
         at_omega = exact.dQ_dV - (1.0 + delta) / np.where(still, 1.0, V) * exact.dQ_ddelta
@@ -201,7 +201,7 @@ def test_programs_have_the_contact_of_the_package(folder, name):
         )
         for n, field in enumerate(SLOPES, len(FIELDS)):
             scale = np.broadcast_to(np.abs(scales[field]), V.shape)[moving]
-            assert close(found[moving, n], wanted[field][moving], rel=tol.INTEROP_SLOPES, scale=scale), (name, field)
+            assert close(found[moving, n], wanted[field][moving], tol.INTEROP_SLOPES, scale=scale), (name, field)
 
 
 #: motions: V and slip at the start, force and torque; a throw, and drives that pass through rest or start from it
@@ -255,7 +255,7 @@ def test_a_roller_of_c_in_steps_of_any_length(roller, name, calls, rest):
     )
     exact = np.array([motion.V[0], motion.omega[0], motion.x[0]])
     assert status == 0
-    assert close(np.array(found), exact, rel=tol.INTEROP_TURNED, scale=np.abs(exact).max())
+    assert close(np.array(found), exact, tol.INTEROP_TURNED, scale=np.abs(exact).max())
 
 
 def test_a_roller_of_c_stays_at_rest_and_starts_from_it(roller):
@@ -295,8 +295,8 @@ def test_the_roller_of_the_page(tmp_path):
     speed, distance = (float(part.split()[0]) for part in printed.split(","))
     roller = vr.Cylinder(R=0.1, m=35.5, mu=0.3, load=348.0, material=vr.load_law(tmp_path / "rubber.nc"))
     m = roller.roll(2.0, 0.0, 1.0)
-    assert close(speed, m.V[-1], rel=tol.RIGID_STEEL)
-    assert close(distance, m.x[-1], rel=tol.RIGID_STEEL)
+    assert close(speed, m.V[-1], tol.RIGID_STEEL)
+    assert close(distance, m.x[-1], tol.RIGID_STEEL)
 
 
 def test_readers_in_c_refuse_what_is_no_law(tmp_path):
@@ -386,4 +386,4 @@ def test_programs_open_a_grid_without_a_warning(grid, name):
     ]  # Octave 7 at the end of all
     assert (done.returncode, told) == (0, [])
     Q = vr.tables.load(grid).Q
-    assert close(float(done.stdout), float(Q.sum()), rel=tol.INTEROP, scale=float(np.abs(Q).sum()))
+    assert close(float(done.stdout), float(Q.sum()), tol.INTEROP, scale=float(np.abs(Q).sum()))

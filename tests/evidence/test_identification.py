@@ -22,7 +22,7 @@ def test_stage_plans_an_experiment(tmp_path):
     assert row == committed
     for name, one in known.items():
         for key, value in one.items():
-            assert found[name][key] == value is None or close(found[name][key], value, rel=tol.INTERVAL), (name, key)
+            assert found[name][key] == value is None or close(found[name][key], value, tol.INTERVAL), (name, key)
 
 
 def committed_rows(part):
@@ -104,4 +104,4 @@ def test_ends_of_an_interval_are_seen_from_what_fits_of_other_unknowns():
             vr.identify(roller(**fit.values | {"E": end, "E_1": E_1, "T_ref": T_ref}), others, data, starts=1).chi2
             for E_1, T_ref in ((9.0, 1e-3), (0.8, 0.099))
         ]
-        assert close(min(held) - fit.chi2, 3.841, rel=tol.INTERVAL)
+        assert close(min(held) - fit.chi2, 3.841, tol.INTERVAL)

@@ -34,15 +34,15 @@ def test_an_ensemble_is_its_motions(name):
         for field in fields:
             exact = getattr(motion, field)
             scale = max(np.nanmax(np.abs(exact)), float(field.endswith("loss")))
-            assert close(getattr(found, field)[i], exact, rel=tol.MOTION_EACH, scale=scale, what=(field, i))
+            assert close(getattr(found, field)[i], exact, tol.MOTION_EACH, scale=scale, what=(field, i))
         times = motion.onset_time, motion.rest_time
-        assert close((found.onset_time[i], found.rest_time[i]), times, rel=tol.MOTION_EACH)
+        assert close((found.onset_time[i], found.rest_time[i]), times, tol.MOTION_EACH)
     some = slice(1, len(many) - 1)
     again = vr.ensemble(scene_of(many[some], mu=mu[some]), *start[:, some], T, **asked, threads=3)
     for field in (*fields, *KEPT):
         assert np.array_equal(getattr(found, field)[some], getattr(again, field), equal_nan=True), field
     kept = 0.5 * (found.V**2 + 0.5 * found.omega**2) + found.slip_loss + found.rolling_loss
-    assert close(kept, np.broadcast_to(kept[:, :1], kept.shape), rel=tol.ENERGY_OF_PAIRS)
+    assert close(kept, np.broadcast_to(kept[:, :1], kept.shape), tol.ENERGY_OF_PAIRS)
 
 
 @of_both
@@ -53,7 +53,7 @@ def test_stress(name):
         alone = vr.stress(scene_of(one), x[:, 0], 0.3, delta=1e-3)
         for field in ("p", "tau"):
             pair = getattr(found, field)[:, i], getattr(alone, field)
-            assert close(*pair, rel=tol.SERIES_STATES, scale=alone.p.max(), what=(field, i))
+            assert close(*pair, tol.SERIES_STATES, scale=alone.p.max(), what=(field, i))
 
 
 def test_memory_is_bounded_by_a_block():

@@ -36,19 +36,19 @@ def modulus(material, omega):
 def test_moduli_are_the_sums_over_modes():
     inner = OMEGA[OMEGA < 1e100]
     exact = modulus(RUBBER, inner)
-    assert close(RUBBER.storage(inner), exact.real, rel=tol.MATERIAL)
-    assert close(RUBBER.loss(inner), exact.imag, rel=tol.MATERIAL)
-    assert close(RUBBER.tan_delta(inner), exact.imag / exact.real, rel=tol.MATERIAL)
+    assert close(RUBBER.storage(inner), exact.real, tol.MATERIAL)
+    assert close(RUBBER.loss(inner), exact.imag, tol.MATERIAL)
+    assert close(RUBBER.tan_delta(inner), exact.imag / exact.real, tol.MATERIAL)
     times = RUBBER.T_ref * RUBBER.prony.tau
     spelt_out = RUBBER.E * (1.0 + sum(E * np.exp(-T / tau) for E, tau in zip(RUBBER.prony.E, times, strict=True)))
-    assert close(RUBBER.relaxation(T), spelt_out, rel=tol.MATERIAL)
+    assert close(RUBBER.relaxation(T), spelt_out, tol.MATERIAL)
 
 
 def test_limits_of_frequency_and_time():
-    assert close(RUBBER.instant, 20.0 * 2.3e5, rel=tol.MATERIAL)
+    assert close(RUBBER.instant, 20.0 * 2.3e5, tol.MATERIAL)
     assert RUBBER.storage(0.0) == RUBBER.E == RUBBER.relaxation(1e200)
-    assert close((RUBBER.storage(1e308), RUBBER.relaxation(0.0)), np.full(2, RUBBER.instant), rel=tol.MATERIAL)
-    assert close((RUBBER.creep(0.0), RUBBER.creep(1e200)), (1.0 / 20.0, 1.0), rel=tol.MATERIAL)
+    assert close((RUBBER.storage(1e308), RUBBER.relaxation(0.0)), np.full(2, RUBBER.instant), tol.MATERIAL)
+    assert close((RUBBER.creep(0.0), RUBBER.creep(1e200)), (1.0 / 20.0, 1.0), tol.MATERIAL)
     assert np.isfinite(RUBBER.loss(OMEGA)).all()
     assert RUBBER.loss(0.0) == 0.0
 
@@ -58,7 +58,7 @@ def test_creep_is_the_inverse_of_relaxation():
     inner = OMEGA[OMEGA < 1e100]
     product = 1j * inner[:, None] * RUBBER.T_ref * RUBBER.prony.T
     compliance = 1.0 / RUBBER.prony.alpha + (RUBBER.prony.J / (1.0 + product)).sum(axis=1)
-    assert close(RUBBER.E / compliance, modulus(RUBBER, inner), rel=tol.MATERIAL_FORMS)
+    assert close(RUBBER.E / compliance, modulus(RUBBER, inner), tol.MATERIAL_FORMS)
 
 
 def test_standard_linear_solid_is_the_papers_material():
@@ -66,14 +66,14 @@ def test_standard_linear_solid_is_the_papers_material():
     solid = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
     assert (solid.T_ref, solid.prony.T.item(), solid.prony.alpha) == (10.7, 1.0, 10.7 / 0.97)
     spelt_out = 2.3e5 * (1.0 + (10.7 / 0.97 - 1.0) * np.exp(-T / 0.97))
-    assert close(solid.relaxation(T), spelt_out, rel=tol.MATERIAL)
+    assert close(solid.relaxation(T), spelt_out, tol.MATERIAL)
     assert vr.Material.sls(2.3e5, 0.49, 1.0, 1.0).prony == vr.Prony.elastic()
 
 
 def test_elastic_and_rigid():
     steel, rigid = vr.Material.elastic(2e11, 0.3), vr.Material.rigid()
     assert (steel.instant, steel.relaxation(3.0), steel.loss(3.0), steel.creep(3.0)) == (2e11, 2e11, 0.0, 1.0)
-    assert close(steel.G, 2e11 / 2.6, rel=tol.MATERIAL)
+    assert close(steel.G, 2e11 / 2.6, tol.MATERIAL)
     assert rigid.is_rigid > steel.is_rigid
     assert (rigid.storage(1.0), rigid.loss(1.0), rigid.tan_delta(1.0)) == (math.inf, 0.0, 0.0)
 
@@ -85,7 +85,7 @@ def test_wlf_by_hand():
     """log10 a_T = -17.44 * 10/(51.6 + 10) = -2.8312 ten degrees above T0; T_ref becomes a_T T_ref, nothing else."""
     shift = vr.WLF(T0=20.0)
     warm = RUBBER.at(30.0, shift=shift)
-    assert close(math.log10(warm.T_ref / RUBBER.T_ref), -174.4 / 61.6, rel=tol.MATERIAL)
+    assert close(math.log10(warm.T_ref / RUBBER.T_ref), -174.4 / 61.6, tol.MATERIAL)
     assert warm.temperature == 30.0
     assert dataclasses.replace(warm, T_ref=RUBBER.T_ref, temperature=None) == RUBBER
     assert RUBBER.at(20.0, shift=shift) == dataclasses.replace(RUBBER, temperature=20.0)
@@ -99,10 +99,10 @@ def test_a_shift_whose_constants_are_of_another_temperature(reference):
     moved = vr.WLF(C1=8.86 * 101.6 / C2, C2=C2, T0=reference)
     rubber = dataclasses.replace(RUBBER, temperature=20.0, measured=vr.Measured(0.1, 300.0, 0.01))
     warm = rubber.at(60.0, shift=moved)
-    assert close(warm.T_ref, rubber.T_ref * usual(60.0), rel=tol.MATERIAL_PRINTED)
-    assert close(warm.measured.low, 0.1 / usual(60.0), rel=tol.MATERIAL_PRINTED)
+    assert close(warm.T_ref, rubber.T_ref * usual(60.0), tol.MATERIAL_PRINTED)
+    assert close(warm.measured.low, 0.1 / usual(60.0), tol.MATERIAL_PRINTED)
     back = warm.at(20.0, shift=usual)
-    assert close(back.T_ref, rubber.T_ref, rel=tol.MATERIAL_PRINTED)
+    assert close(back.T_ref, rubber.T_ref, tol.MATERIAL_PRINTED)
     assert back.temperature == 20.0
     assert "temperature=20.0" in repr(rubber)
 
@@ -110,7 +110,7 @@ def test_a_shift_whose_constants_are_of_another_temperature(reference):
 def test_arrhenius_by_hand():
     """100 kJ/mol between 20 and 30 degrees: ln a_T = 12027.24 (1/303.15 - 1/293.15) = -1.3533756."""
     shift = vr.Arrhenius(energy=1e5, T0=20.0)
-    assert close(math.log(shift(30.0)), -1.3533756, rel=tol.MATERIAL_PRINTED)
+    assert close(math.log(shift(30.0)), -1.3533756, tol.MATERIAL_PRINTED)
     assert shift(20.0) == 1.0
 
 
@@ -120,8 +120,8 @@ def test_arrhenius_by_hand():
 def test_lsdyna_with_a_bulk_modulus():
     """66.67 MPa, G_inf = 10 MPa, G_1 = 90 MPa, beta = 0.01/ms: nu = (200.01 - 20)/(400.02 + 20) = 0.42857483."""
     found = vr.Material.lsdyna(G=[90e6, 20e6], beta=[10.0, 1e4], bulk=66.67e6, G_inf=10e6)
-    assert close(found.nu, 0.42857483, rel=tol.MATERIAL_PRINTED)
-    assert close(found.E, 28.571497e6, rel=tol.MATERIAL_PRINTED)  # 2 (1 + nu) 10 MPa
+    assert close(found.nu, 0.42857483, tol.MATERIAL_PRINTED)
+    assert close(found.E, 28.571497e6, tol.MATERIAL_PRINTED)  # 2 (1 + nu) 10 MPa
     assert found.prony.E.size == 4  # of the modes of G and of 3 K + G
 
 
@@ -133,7 +133,7 @@ def test_what_the_contact_feels_under_a_constant_bulk_modulus():
     for K in (1e7, 1e9):
         found = vr.Material.lsdyna(G=G, beta=1.0 / tau, bulk=K, G_inf=1e6)
         plane = 4.0 * shear * (3.0 * K + shear) / (3.0 * K + 4.0 * shear)
-        assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, rel=tol.MATERIAL_FORMS)
+        assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, tol.MATERIAL_FORMS)
 
 
 @pytest.mark.parametrize(
@@ -163,9 +163,9 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
         vr.Material.lsdyna(g * G0, 1.0 / tau, bulk=K_inf, G_inf=G_inf, K=k * K0),
         vr.Material.lsdyna([*g * G0, G_inf], [*1.0 / tau, 0.0], K=[*k * K0, K_inf]),
     ):
-        assert close(found.nu, late, rel=tol.MATERIAL_FORMS)
+        assert close(found.nu, late, tol.MATERIAL_FORMS)
         plane = 4.0 * G * (3.0 * K + G) / (3.0 * K + 4.0 * G)
-        assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, rel=tol.MATERIAL_FORMS)
+        assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, tol.MATERIAL_FORMS)
 
 
 def test_bulk_terms_equal_to_those_of_shear_leave_nu_alone():
@@ -184,7 +184,7 @@ def test_one_material_by_all_programs():
         vr.Material.comsol(E, 0.5, G, tau),
         vr.Material.lsdyna(G, 1.0 / tau, nu=0.5, G_inf=1e6),
     ):
-        assert close(found.relaxation(T), 3e6 + 3.0 * (G * np.exp(-T[:, None] / tau)).sum(axis=1), rel=tol.MATERIAL)
+        assert close(found.relaxation(T), 3e6 + 3.0 * (G * np.exp(-T[:, None] / tau)).sum(axis=1), tol.MATERIAL)
 
 
 # --- as netCDF ---

@@ -87,8 +87,8 @@ def test_any_file_is_read_right(tmp_path, file):
     path = tmp_path / "dma.csv"
     path.write_bytes(text.encode(encoding))
     found = vr.read_dma(path)
-    assert close(found.omega, w, rel=tol.DMA_DIGITS)
-    assert close(found.storage, S, rel=tol.DMA_DIGITS)
-    assert close(found.loss, L, rel=tol.DMA_DIGITS)
+    assert close(found.omega, w, tol.DMA_DIGITS)
+    assert close(found.storage, S, tol.DMA_DIGITS)
+    assert close(found.loss, L, tol.DMA_DIGITS)
     assert (found.temperature is not None) == warm
     assert found.mode == "tension"

@@ -22,8 +22,8 @@ def test_a_faint_push_the_other_way(share):
     m = vr.roll(scene, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [-0.2 * share, 0.2]))
     assert m.status == vr.MotionStatus.DONE
     assert m.steps <= 3 * plain.steps
-    assert close(m.reversals, [16.0 * share], rel=1e-3)
-    assert close(m.V[1:], plain.V[1:], rel=100.0 * share + BOUND * 1e-10)
+    assert close(m.reversals, [16.0 * share], 1e-3)
+    assert close(m.V[1:], plain.V[1:], 100.0 * share + BOUND * 1e-10)
 
 
 @pytest.mark.parametrize("early", [0.02, 0.1, 0.3])
@@ -39,10 +39,10 @@ def test_a_brake_locks_just_before_v_is_zero(early):
     t = np.concatenate([np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]), [end + 1.0]])
     m = vr.roll(ELASTIC, 1.0, -stop, t, rtol=rtol, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1]))
     assert [s.regime for s in m.switches] == ["locked", "held"]
-    assert close([s.t for s in m.switches], [stop, end], rel=BOUND * rtol)
+    assert close([s.t for s in m.switches], [stop, end], BOUND * rtol)
     bound = BOUND * rtol * stop
-    assert close(m.V, np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0), rel=bound, scale=1.0)
-    assert close(m.omega, np.minimum(t - stop, 0.0), rel=bound, scale=1.0)
+    assert close(m.V, np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0), bound, scale=1.0)
+    assert close(m.omega, np.minimum(t - stop, 0.0), bound, scale=1.0)
 
 
 @pytest.mark.parametrize("pull", [-0.001, 0.001])
@@ -72,9 +72,9 @@ def test_a_brake_that_begins_at_0():
     m = vr.roll(ELASTIC, 1.0, -1.0, t, rtol=rtol, brake=vr.Schedule([0.0, 6.0], [0.0, 1.8]))
     stop = (np.sqrt(0.34) - 0.2) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
     assert [s.regime for s in m.switches] == ["locked", "held"]
-    assert close([s.t for s in m.switches], [stop, 5.0], rel=BOUND * rtol)
-    assert close(m.V, np.maximum(1.0 - 0.2 * t, 0.0), rel=BOUND * rtol, scale=1.0)
-    assert close(m.omega, np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0), rel=BOUND * rtol, scale=1.0)
+    assert close([s.t for s in m.switches], [stop, 5.0], BOUND * rtol)
+    assert close(m.V, np.maximum(1.0 - 0.2 * t, 0.0), BOUND * rtol, scale=1.0)
+    assert close(m.omega, np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0), BOUND * rtol, scale=1.0)
 
 
 @pytest.mark.parametrize("most", [0.0859, 0.0333, 0.1])
@@ -87,8 +87,8 @@ def test_a_brake_gives_way_to_a_ramp(most):
     plain = vr.roll(scene, 0.0, 0.0, since, rtol=rtol, torque=vr.Schedule([0.0, 1.0], [0.0, slope]))
     assert m.status == vr.MotionStatus.DONE
     assert not m.V[~free].any()
-    assert close(m.V[free], plain.V[1:], rel=BOUND * rtol)
-    assert close(m.omega[free], plain.omega[1:], rel=BOUND * rtol)
+    assert close(m.V[free], plain.V[1:], BOUND * rtol)
+    assert close(m.omega[free], plain.omega[1:], BOUND * rtol)
 
 
 def test_a_brake_lets_go_after_what_it_takes_turned():
@@ -101,7 +101,7 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
         drive = {"torque": vr.Schedule([0.0, 2.0], [-0.3, 0.5]), "brake": vr.Schedule([0.0, 2.0], [0.15, 0.05])}
         m = vr.roll(ELASTIC, 1.0, 0.0, t, rtol=rtol, **drive)
         assert m.switches[0].regime == "full slip"
-        assert close(m.switches[0].t, 0.25 / 0.45, rel=BOUND * rtol)
+        assert close(m.switches[0].t, 0.25 / 0.45, BOUND * rtol)
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-11])
@@ -112,7 +112,7 @@ def test_a_prescribed_speed_stands_at_0(rtol, then):
     stands = vr.Schedule([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, then])
     turning = vr.roll(scene, None, -0.1, t, rtol=rtol, V=stands)
     # sliding at V = 0 it spins down by 0.1 a unit of time
-    assert close(turning.V, np.interp(t, stands.times, stands.values), rel=BOUND * rtol, scale=1.0)
+    assert close(turning.V, np.interp(t, stands.times, stands.values), BOUND * rtol, scale=1.0)
     assert turning.status == vr.MotionStatus.DONE
     assert not turning.omega[(t > 2.5) & (t < 3.0)].any()
 

@@ -55,6 +55,6 @@ def test_as_at_the_tightest_tolerance(row):
         assert m.steps <= row["steps"]
         assert [s.regime for s in m.switches] == [s.regime for s in best.switches]
         events, found = ([*(s.t for s in of.switches), *of.reversals] for of in (best, m))
-        assert not events or close(found, events, rel=bound, scale=row["t"][-1])
+        assert not events or close(found, events, bound, scale=row["t"][-1])
         for name, size in (("V", scale), ("omega", scale), ("x", np.maximum.accumulate(np.abs(best.x)))):
-            assert close(getattr(m, name), getattr(best, name), rel=bound, scale=size, what=(name, rtol))
+            assert close(getattr(m, name), getattr(best, name), bound, scale=size, what=(name, rtol))

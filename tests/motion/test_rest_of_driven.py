@@ -16,7 +16,7 @@ def test_a_later_pulse_is_waited_for():
     assert m.status == vr.MotionStatus.RESTED
     assert m.rest_time > 25.0
     before = m.rest_time > T
-    assert close(m.V[before], whole.V[before], rel=30e-8)
+    assert close(m.V[before], whole.V[before], 30e-8)
     assert not m.V[~before].any()
     assert np.array_equal(m.force, np.where((T < 1.0) | ((T >= 20.0) & (T < 25.0)), 0.05, 0.0))
     assert m.switches[-1] == (m.rest_time, "rest")
@@ -27,7 +27,7 @@ def test_force_after_rest_is_what_is_given():
     ramp = vr.Schedule([0.0, 5.0], [0.004, 0.0])
     m = vr.roll(SCENE, 0.05, 0.05, T, force=ramp, rest=0.045)
     assert m.rest_time == 5.0
-    assert close(m.force, np.interp(T, ramp.times, ramp.values), rel=1e-15, scale=0.004)
+    assert close(m.force, np.interp(T, ramp.times, ramp.values), 1e-15, scale=0.004)
     force = vr.Schedule([[0.0, 5.0], [0.0, 2.0]], [[0.004, 0.0], [0.002, 0.0]])
     e = vr.ensemble(SCENE, 0.05, 0.05, T, force=force, rest=0.045,
                     fields=("V", "force"))  # fmt: skip

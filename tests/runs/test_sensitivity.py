@@ -163,7 +163,7 @@ def test_what_some_motions_lack_is_refused_and_said():
     count = re.fullmatch(r"onset_time: (\d+) of 256 motions have no value", lacking)
     starts = np.linspace(0.0, 0.9, 500)
     late = np.isnan(vr.ensemble(vr.presets.PAPER_SECTION_5, 1.0, starts, 1.2e-4).onset_time).mean()
-    assert close(int(count[1]) / 256, late, rel=tol.SENSITIVITY_SHARE)
+    assert close(int(count[1]) / 256, late, tol.SENSITIVITY_SHARE)
     assert np.isnan(indices["V_S1"][0]).all()
     assert np.isfinite(indices["V_S1"][1]).all()
 
@@ -184,8 +184,8 @@ def test_bars_are_the_indices(sliding):
     axes = figure.axes[0]
     first, total = ([bar.get_height() for bar in axes.containers[k]] for k in (1, 3))
     order = np.argsort(-np.maximum(sliding["V_ST"][-1], sliding["x_ST"][-1]).values, kind="stable")
-    assert close(first, sliding["V_S1"][-1].values[order], rel=tol.FIGURE, scale=1.0)
-    assert close(total, sliding["V_ST"][-1].values[order], rel=tol.FIGURE, scale=1.0)
+    assert close(first, sliding["V_S1"][-1].values[order], tol.FIGURE, scale=1.0)
+    assert close(total, sliding["V_ST"][-1].values[order], tol.FIGURE, scale=1.0)
 
 
 def test_command(here, capsys):

@@ -109,11 +109,11 @@ def test_the_dimensionless_call_in_other_units(name):
     for field in fields:
         exact = np.asarray(getattr(bare, field)) * unit.get(field, 1.0)
         largest = np.abs(exact[np.isfinite(exact)]).max(initial=0.0)
-        assert close(getattr(found, field), exact, rel=rel, scale=largest, what=field)
+        assert close(getattr(found, field), exact, rel, scale=largest, what=field)
     for events in ("switches", "reversals") if field == "rolling_loss" else ():
         pairs = ([getattr(e, "t", e) for e in getattr(m, events)] for m in (found, bare))
         times, exact = map(np.array, pairs)
-        assert not times.size or close(times, exact * unit["t"], rel=rel)
+        assert not times.size or close(times, exact * unit["t"], rel)
 
 
 def test_functions_are_the_methods():
@@ -155,11 +155,11 @@ def test_each_of_many_is_as_alone(name):
         for field in fields:
             exact = getattr(m, field)
             scale = np.abs(np.nan_to_num(exact)).max()
-            assert close(getattr(e, field)[n], exact, rel=tol.SI_ENSEMBLE, scale=scale, what=field)
+            assert close(getattr(e, field)[n], exact, tol.SI_ENSEMBLE, scale=scale, what=field)
         for field in ("M", "Q", "length", "beta"):
             exact = getattr(one.contact(0.5, delta=0.01), field)
-            assert close(getattr(state, field)[n], exact, rel=tol.SI_MOTION, what=field)
-        assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, rel=tol.SI_MOTION)
+            assert close(getattr(state, field)[n], exact, tol.SI_MOTION, what=field)
+        assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, tol.SI_MOTION)
     again = roller.replace(**{key: values.copy() for key, values in each.items()})
     assert (many, hash(many)) == (again, hash(again))
 

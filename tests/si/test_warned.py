@@ -27,7 +27,7 @@ def test_where_the_data_end():
     """Of the same contact, by the law itself: the two ends are passed at the frequencies of the data."""
     for at, end in zip(BELT.body_data.measured_rates, (DATA.low, DATA.high), strict=True):
         speed = at * BELT.l0
-        assert close(speed / BELT.contact(speed, delta=0.0, fields="length").length, end, rel=tol.CONTACT)
+        assert close(speed / BELT.contact(speed, delta=0.0, fields="length").length, end, tol.CONTACT)
     found = BELT.validity(np.array([0.99, 1.01]) * LAST).measured
     assert found.holds.tolist() == [True, False]
 
@@ -130,7 +130,7 @@ def test_the_share_of_motions_that_were_not_measured(tmp_path, monkeypatch):
         estimate(run_of(text, tmp_path), 1)
     (said,) = [str(each.message) for each in found if "as measured" in str(each.message)]
     share = float(said.split("%")[0].split()[-1]) / 100.0
-    assert close(share, stats.norm(20.0, 5.0).cdf(17.0), rel=tol.SHARE)
+    assert close(share, stats.norm(20.0, 5.0).cdf(17.0), tol.SHARE)
 
 
 @pytest.mark.parametrize("E", ["2.0e6", UNSURE])

@@ -79,7 +79,7 @@ def test_compiled_values_are_those_of_the_interpolant(grid, kind, linear):
         out, want = np.empty((500, 4)), look_up(field, **own)[field]
         many(*look_up.jitted(field), *places, out)
         size = np.abs(table[field].values).max()
-        assert close(out[:, 0], want, rel=tol.COMPILED_SPLINE, scale=size), field
+        assert close(out[:, 0], want, tol.COMPILED_SPLINE, scale=size), field
         for n, axis in enumerate(("V", "delta", "alpha"), 1):
             if axis not in own:
                 assert (out[:, n] == 0.0).all()
@@ -97,7 +97,7 @@ def test_compiled_slopes_are_those_of_the_values(grid):
                 low, high = at(spline, *(one - move)).value, at(spline, *(one + move)).value
                 if abs(found.value) < SCENE.mu and {abs(low), abs(high)}.isdisjoint({SCENE.mu}):
                     scale = abs(found.value) / abs(one[n])
-                    assert close((high - low) / (2.0 * move[n]), slope, rel=tol.COMPILED_SLOPE, scale=scale)
+                    assert close((high - low) / (2.0 * move[n]), slope, tol.COMPILED_SLOPE, scale=scale)
 
 
 def test_compiled_values_are_clipped_and_nothing_is_extrapolated(grid):
@@ -152,10 +152,10 @@ def test_slopes_of_the_law_of_a_grid(path):
         ]
         over_omega = (law(V, omega * (1 + step)).Q - law(V, omega * (1 - step)).Q) / (2.0 * step * omega)
         scale = 1.0 / abs(V)
-        assert close(found.dQ_dV, over_V[0], rel=tol.COMPILED_SLOPE, scale=scale)
-        assert close(found.dM_half_space_dV, over_V[2], rel=tol.COMPILED_SLOPE, scale=scale)
-        assert close(found.dM_cylinder_dV, over_V[3], rel=tol.COMPILED_SLOPE, scale=scale)
-        assert close(found.dQ_domega, over_omega, rel=tol.COMPILED_SLOPE, scale=scale)
+        assert close(found.dQ_dV, over_V[0], tol.COMPILED_SLOPE, scale=scale)
+        assert close(found.dM_half_space_dV, over_V[2], tol.COMPILED_SLOPE, scale=scale)
+        assert close(found.dM_cylinder_dV, over_V[3], tol.COMPILED_SLOPE, scale=scale)
+        assert close(found.dQ_domega, over_omega, tol.COMPILED_SLOPE, scale=scale)
 
 
 def test_the_law_of_a_grid_beyond_its_axes(path):
@@ -163,8 +163,8 @@ def test_the_law_of_a_grid_beyond_its_axes(path):
     assert law(0.0, 0.1)[:2] == (SCENE.mu, 0.0)
     assert law(-0.5, 3.0).Q == SCENE.mu
     slow = law(1e-4, 1.01e-4)
-    assert close(law(1e-6, 1.01e-6).Q, slow.Q, rel=tol.COMPILED_SLOPE)
-    assert close(law(1e-6, 1.01e-6).M, 1e-2 * slow.M, rel=tol.COMPILED_SLOPE)
+    assert close(law(1e-6, 1.01e-6).Q, slow.Q, tol.COMPILED_SLOPE)
+    assert close(law(1e-6, 1.01e-6).M, 1e-2 * slow.M, tol.COMPILED_SLOPE)
     assert np.isnan(law.jitted(4.1, 4.1)).all()
     assert np.isnan(called(law.jitted, np.nan, 0.1)).all()
 
@@ -179,6 +179,6 @@ def test_a_grid_of_another_program(si_grid, tmp_path, form):
         omega = V * (1.0 + creep) / ROLLER.R
         found, truth = law(V, omega, slopes=True), exact(V, omega, slopes=True)
         load = ROLLER.load
-        assert close(found.Q, truth.Q, rel=tol.COARSE_GRID, scale=load)
-        assert close(found.M, truth.M, rel=tol.COARSE_GRID, scale=load * ROLLER.R)
-        assert close(found.dQ_domega, truth.dQ_domega, rel=tol.COARSE_GRID_SLOPE, scale=abs(load * ROLLER.R / V))
+        assert close(found.Q, truth.Q, tol.COARSE_GRID, scale=load)
+        assert close(found.M, truth.M, tol.COARSE_GRID, scale=load * ROLLER.R)
+        assert close(found.dQ_domega, truth.dQ_domega, tol.COARSE_GRID_SLOPE, scale=abs(load * ROLLER.R / V))
