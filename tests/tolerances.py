@@ -91,7 +91,7 @@ EACH_ALPHA, EACH_SHIFT = 1e-14, 2e-14
 #: hold with 6e-14; slopes, of their scale, which are those of polynomials fitted to values.
 EACH_MATERIAL, EACH_SLOPE = 1e-13, 1e-11
 
-# --- scene.py (test_scene.py) ---
+# --- scene.py (values.txt) ---
 #: Conversions: a few roundings of products and one square root.
 SCENE = 1e-15
 

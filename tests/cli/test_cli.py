@@ -7,13 +7,13 @@ import subprocess
 import sys
 import tomllib
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import tolerances as tol
 import xarray as xr
+from calls import lines_of
 from closeness import close
 from places import ROOT
 from processes import printed, python
@@ -413,9 +413,7 @@ def test_answered(run, refuse, here, tables):
         ("pair.toml", RUBBER + "[base]\nE = 2e11\nnu = 0.3\n"),
     ):  # fmt: skip
         (here / name).write_text(text)
-    lines = (Path(__file__).parent / "answers.txt").read_text().splitlines()
-    lines = [line.replace("PAPER", "paper-section-5") for line in lines if line and not line.startswith("#")]
-    for command, answer in zip(lines[::2], lines[1::2], strict=True):
-        _, shown, words = answer.strip().rpartition("shows! ")
-        said = (run if shown else refuse)(*command.split()[1:])
+    for command, answer in lines_of("cli/answers.txt"):
+        _, shown, words = answer.replace("PAPER", *PRESET).rpartition("shows! ")
+        said = (run if shown else refuse)(*command.replace("PAPER", *PRESET).split()[1:])
         assert all(word in said for word in words.split(" | ")), (command, said)

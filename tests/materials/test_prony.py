@@ -25,12 +25,6 @@ def random_series(modes, decades, size, seed):
 # --- the two forms ---
 
 
-def test_one_mode_is_the_standard_linear_solid():
-    for p in vr.Prony(E=[10.0], tau=[1.0 / 11.0]), vr.Prony.creep(J=[10.0 / 11.0], T=[1.0], alpha=11.0):
-        found = p.alpha, *p.E, *p.tau, *p.J, *p.T
-        assert close(found, (11.0, 10.0, 1.0 / 11.0, 10.0 / 11.0, 1.0), tol.SERIES_FORMS)
-
-
 @settings(max_examples=60, deadline=None)
 @given(SERIES)
 def test_forms_belong_together(drawn):

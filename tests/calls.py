@@ -1,0 +1,110 @@
+"""Tables of calls, refusals.txt, values.txt and cli/answers.txt; their lines see the names of this module."""
+# ruff: noqa: F401 - names are imported for the lines
+
+import dataclasses
+import math
+from dataclasses import replace
+from functools import cache
+from math import inf, nan, pi
+from pathlib import Path
+
+import experiments
+import numpy as np
+import pandas as pd
+import xarray as xr
+from drives import DMA as DMA_SERIES
+from drives import ON_DMA as DMA_ROLLER
+from run_files import FILES
+from scipy import stats
+
+import viscoroll as vr
+from viscoroll import fmu
+from viscoroll.app.identification.measurements_toml import read_measurements
+from viscoroll.contact_law.validity.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
+from viscoroll.contact_law.validity.free_rolling import FreeRolling
+from viscoroll.contact_law.validity.steadiness import Steadiness
+from viscoroll.core.scale import Scale
+from viscoroll.io.config import read_law_source, read_roller
+from viscoroll.io.runs import read_run
+from viscoroll.io.runs.sensitivity import sobol_indices
+from viscoroll.io.sampling import sample
+from viscoroll.materials.law.netcdf import law_table_of
+from viscoroll.materials.law.table import law_table
+from viscoroll.materials.material_netcdf import material_as_dataset
+from viscoroll.materials.material_toml import read_materials
+from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
+
+SCENE_FILE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
+ROLLER_FILE = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
+RUBBER_FILE = "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1.0, 1e-4] }\nT_ref = 0.3\n"
+CYLINDER_FILE = ROLLER_FILE + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n"
+OMEGA = np.logspace(-2, 4, 20)
+DMA = OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA
+LABELLED = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]})
+FRAME = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"])
+UNSURE = DMA_ROLLER.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA_SERIES.E), DMA_SERIES.tau))
+MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 628.0, 0.01, "dma.csv"))
+BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, mu=0.5)
+SERIES, MANY = vr.Prony([2.0, 6.0], [1.0, 1e-4]), vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
+SOFT, STEEL = vr.Material(2.3e5, 0.49, SERIES, density=1100.0), vr.Material.elastic(2e11, 0.3)
+RUBBER_COVER = vr.Material(2.3e5, 0.49, SERIES, thickness=0.02)
+COVERED = vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0)
+THIN = vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5)
+ONE, PAPER, ROLLER = vr.Scene(11.0, 10.0, 0.5, 120.0), vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.RUBBER_CYLINDER
+#: the paper's cylinder by its parameters, and what is left of them where materials are given
+SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
+BARE = {"R": 0.1, "m": 35.5, "mu": 0.2}
+HEAVY, RUBBER = replace(STEEL, density=7850.0), vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
+TREAD = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0, 11.0], [1.0, 1e-3, 1e-7]), 0.3, "rubber", 1100.0)
+HARD = vr.Material(1e6, 0.5, vr.Prony([4.0, 1.0], [1.0, 1e-2]), T_ref=2.0)
+OTHER_GRID = xr.Dataset(
+    {"Q": (("V", "delta"), np.ones((3, 3)), {"units": "kN/m"}), "M": ("V", np.ones(3), {"units": "N mm/m"})},
+    {"V": ("V", np.arange(1.0, 4.0), {"units": "mm/s"}), "delta": ("delta", [-0.01, 0.0, 0.01], {"units": "1"})},
+    {"R": 0.1, "load": 1e3},
+)
+
+
+def pair(material, base, **more):
+    """A cylinder of a material on a base."""
+    return vr.Cylinder(**BARE, material=material, base=base, **more)
+
+
+@cache
+def grid():
+    return vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2], delta=[0.0, 0.1], alpha=[1.0, 2.0])
+
+
+@cache
+def law_file():
+    return vr.tables.law(11.0)
+
+
+def lines_of(name):
+    """The pairs of lines of a table: a call, and below it the answer; comments and empty lines are left out."""
+    text = Path(__file__).with_name(name).read_text()
+    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    return [*zip(lines[::2], map(str.strip, lines[1::2]), strict=True)]
+
+
+def names_in(folder):
+    """What the calls of a table see, with functions that write files into a folder."""
+
+    def file(content, name="file.toml"):
+        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        return folder / name
+
+    def run(name, old, new):
+        assert old in FILES[name]
+        return read_run(file(FILES[name].replace(old, new, 1)))
+
+    def measured(old, new):
+        return vr.identify(**read_measurements(experiments.measurements(folder, old, new)), starts=1)
+
+    def netcdf(data, without=""):
+        """A file of a dataset, without an attribute, as another program writes it."""
+        data = data.copy()
+        data.attrs.pop(without, None)
+        data.to_netcdf(folder / "given.nc", engine="h5netcdf")
+        return folder / "given.nc"
+
+    return vars(experiments) | globals() | locals()

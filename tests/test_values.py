@@ -1,0 +1,16 @@
+"""The table values.txt: what calls give, to the bit, or within a tolerance of a number by hand."""
+
+import pytest
+import tolerances
+from calls import lines_of, names_in
+from closeness import close
+
+LINES = lines_of("values.txt")
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@pytest.mark.parametrize(("call", "answer"), LINES, ids=[call for call, _ in LINES])
+def test_value(call, answer, tmp_path):
+    names, (exact, within, tolerance) = names_in(tmp_path), answer.partition(" within ")
+    found, exact = eval(call, names), eval(exact.removeprefix("== "), names)
+    assert close(found, exact, eval(tolerance, vars(tolerances))) if within else found == exact
