@@ -26,8 +26,10 @@ from viscoroll.contact_law.validity.steadiness import Steadiness
 from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.runs import read_run
+from viscoroll.io.runs.columns import attributes
 from viscoroll.io.runs.sensitivity import sobol_indices
 from viscoroll.io.sampling import sample
+from viscoroll.kernels.bessel.ratios import ratio_i2, ratio_k, ratio_r
 from viscoroll.materials.law.netcdf import law_table_of
 from viscoroll.materials.law.table import law_table
 from viscoroll.materials.material_netcdf import material_as_dataset
@@ -40,8 +42,8 @@ RUBBER_FILE = "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1
 CYLINDER_FILE = ROLLER_FILE + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n"
 OMEGA = np.logspace(-2, 4, 20)
 DMA = OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA
-LABELLED = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]})
-FRAME = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"])
+LABELLED = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day": 3}, name="speed")
+FRAME = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x", "y"], name="roller"))
 UNSURE = DMA_ROLLER.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA_SERIES.E), DMA_SERIES.tau))
 MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 628.0, 0.01, "dma.csv"))
 BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, mu=0.5)
@@ -51,6 +53,7 @@ RUBBER_COVER = vr.Material(2.3e5, 0.49, SERIES, thickness=0.02)
 COVERED = vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0)
 THIN = vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5)
 ONE, PAPER, ROLLER = vr.Scene(11.0, 10.0, 0.5, 120.0), vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.RUBBER_CYLINDER
+BOTH = PAPER, ROLLER
 #: the paper's cylinder by its parameters, and what is left of them where materials are given
 SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
 BARE = {"R": 0.1, "m": 35.5, "mu": 0.2}
@@ -81,7 +84,7 @@ def law_file():
 
 def lines_of(name):
     """The pairs of lines of a table: a call, and below it the answer; comments and empty lines are left out."""
-    text = Path(__file__).with_name(name).read_text()
+    text = (Path(__file__).parent / name).read_text()
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     return [*zip(lines[::2], map(str.strip, lines[1::2]), strict=True)]
 

@@ -214,13 +214,6 @@ def test_at_rest(alpha, method):
 # --- slopes ---
 
 
-def test_slopes_of_rest_and_of_full_slip():
-    rest = vr.contact(SCENE, 0.0, delta=0.0, slopes=True)
-    assert close((rest.dQ_ddelta, rest.dM_dV), (4.0 * KAPPA, 10.0 / 11.0), 1e-15)
-    assert vr.contact(SCENE, 0.0, omega=0.0, slopes=True).dQ_domega == math.inf
-    assert vr.contact(SCENE, [1.0, -1.0], delta=1.0, slopes=True).dQ_ddelta.tolist() == [0.0, 0.0]
-
-
 def test_slope_by_V_at_slight_creep():
     """dQ_dV at fixed delta relative to itself."""
     for s in (1e-5, 1e-7):

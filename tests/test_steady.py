@@ -154,14 +154,6 @@ def test_eigenvalues_are_those_of_the_slopes_of_the_contact_law():
             assert gains.any() or np.array_equal(c.dM_dV < 0.0, ~s.stable)
 
 
-def test_slow_rate_of_slow_rolling():
-    """(1 + j) V' = -M' V at last, M' = 1 - 1/alpha."""
-    assert close(vr.steady(SCENE, force=1e-100).V[0], 1.1e-100, tol.STEADY)
-    rest = vr.steady(SCENE)
-    assert (rest.V.tolist(), rest.omega.tolist(), rest.stable.tolist()) == ([0.0], [0.0], [True])
-    assert close(rest.eigenvalues[0].real, [-np.inf, -(10.0 / 11.0) / 1.5], tol.STEADY)
-
-
 def test_focus_where_friction_is_all_but_spent():
     """Complex eigenvalues: |Q| -> mu, j < 1."""
     hump = vr.resistance_extrema(SCENE)
@@ -270,21 +262,6 @@ def test_opposite_gains_on_omega():
     assert (np.sort(s.grip)[:3] == 0.0).all()
     for off in residuals(SCENE, s):
         assert (np.abs(off) <= tol.STEADY_SCAN).all()
-    elastic = vr.Scene(1.0, KAPPA, MU)
-    assert close(vr.steady(elastic, torque=vr.Feedback(0.3, omega=-1.0)).V, [0.3], tol.STEADY)
-    assert close(vr.steady(elastic, V=1.0, torque=0.1).force, [-0.1], tol.STEADY)
-    assert vr.resistance_extrema(elastic).V.size == 0
-
-
-def test_spinning_on_the_spot():
-    """Held by a force of mu, a motor spins at the speed at which its torque is mu."""
-    s = vr.steady(SCENE, force=-MU, torque=vr.Feedback(0.5, omega=-1.0))
-    assert (s.V.tolist(), s.Q.tolist(), s.grip.tolist()) == ([0.0], [MU], [0.0])
-    assert close(s.omega[0], 0.3, tol.STEADY)
-    assert s.stable.tolist() == [True]
-    # the motor's gain over j, and -M_half_space'
-    assert close(s.eigenvalues[0].real, [-1.0 / SCENE.j, -0.5 * (10.0 / 11.0)], tol.STEADY)
-    assert close(s.loss.slip[0], 0.06, tol.STEADY)
 
 
 def test_edge_of_grip():

@@ -15,7 +15,6 @@ from run_files import CERTAIN, FILES, PAPER, run_of
 
 import viscoroll as vr
 from viscoroll.io.runs import estimate, export_netcdf, open_run, roll_inputs, run_ensemble, verify
-from viscoroll.io.runs.columns import attributes
 from viscoroll.io.runs.evaluate import block_inputs, roll_block
 from viscoroll.io.runs.identity import identity
 from viscoroll.io.runs.rollers import roller_of
@@ -168,13 +167,6 @@ def test_a_store_holds_the_run(read, tmp_path, file):
     if file == "driven":  # shares of an energy that is not there
         assert np.isnan(found["lost_to_slip_mean"].values).all()
         assert (found["slip_loss_mean"].values > 0.0).all()
-
-
-def test_names_of_inputs():
-    about = attributes("base_tau_1", si=True)
-    assert about == {"long_name": "base: relaxation time 1 divided by T_ref", "units": "1"}
-    assert attributes("base_E", si=True)["units"] == "Pa"
-    assert attributes("E_2", si=False)["long_name"] == "strength 2 of relaxation, divided by the long-time modulus"
 
 
 # --- which method ---

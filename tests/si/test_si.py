@@ -164,14 +164,6 @@ def test_each_of_many_is_as_alone(name):
     assert (many, hash(many)) == (again, hash(again))
 
 
-def test_what_follows_from_a_change():
-    assert ROLLER.replace(nu=0.0) == ROLLER.replace(nu=-0.0)
-    assert hash(ROLLER.replace(nu=0.0)) == hash(ROLLER.replace(nu=-0.0))
-    assert ROLLER.replace(material=RUBBER).E is None
-    assert ON_STEEL.replace(E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97).material is None
-    assert SOLID.replace(T_epsilon=SLOW, T_sigma=FAST).T_ref == 2e-2
-
-
 def test_dataset_in_si():
     """Units of all; that a file keeps them: ``test_results.py``; what drove it: ``motion/test_drive_files.py``."""
     m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, brake=vr.Schedule([1.0, 1.0], [0.0, 3.0]))

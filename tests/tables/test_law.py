@@ -17,7 +17,7 @@ from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.tables.check import check_table
 from viscoroll.materials.law.netcdf import law_table_of
 from viscoroll.materials.law.pack import FUNCTIONS
-from viscoroll.materials.law.table import LawTable, law_table
+from viscoroll.materials.law.table import LawTable
 from viscoroll.materials.law_file import checksum
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
@@ -117,14 +117,6 @@ def test_a_cylinder_of_a_law(tmp_path, name):
     assert (by_law.T_ref, by_law.E_prime, by_law.l0) == (own.T_ref, own.E_prime, own.l0)
     assert by_law.roll(0.2, 0.0, [1e-2]).V[-1] == own.roll(0.2, 0.0, [1e-2]).V[-1]
     assert by_law.replace(mu=0.2).scene().table is law
-
-
-def test_a_scene_keeps_its_law():
-    table = law_table(SERIES)
-    scene = vr.Scene(kappa=20.0, mu=0.3, material=table)
-    assert scene.table is scene.replace(mu=0.2).table is law_table_of(table) is table
-    assert scene.replace(alpha=3.0).table is not table
-    assert vr.Scene(kappa=20.0, mu=0.3, material=law_table(11.0)).alpha == 11.0
 
 
 def test_scene_files_and_material_files(saved, tmp_path):
