@@ -4,12 +4,10 @@
 absolute unless they are told otherwise; the linter forbids the three.  Here nothing is allowed that is not said.
 """
 
-from typing import Any
-
 import numpy as np
 
 
-def close(found: Any, exact: Any, rel: Any, *, scale: Any = 0.0, what: object = "") -> bool:
+def close(found, exact, rel, *, scale=0.0, what=""):
     """Whether ``|found - exact| <= rel max(|exact|, scale)`` everywhere; where it is not, the worst place is told.
 
     ``scale`` is the size of which ``rel`` counts where ``exact`` is small or 0: a sum's largest term, a motion's

@@ -22,10 +22,10 @@ class Wave(NamedTuple):
     rate: float
     phase: float
 
-    def __call__(self, t: float) -> float:
+    def __call__(self, t):
         return self.mean + self.amplitude * math.sin(self.rate * t + self.phase)
 
-    def __rmul__(self, factor: float) -> "Wave":  # type: ignore[override]
+    def __rmul__(self, factor):  # type: ignore[override]
         return self._replace(mean=factor * self.mean, amplitude=factor * self.amplitude)
 
 

@@ -1,7 +1,5 @@
 """A roller of known truth, and experiments on it: a standard linear solid whose M has its hump at 0.64 m/s."""
 
-from pathlib import Path
-
 import numpy as np
 
 import viscoroll as vr
@@ -13,28 +11,28 @@ SLOW, HUMP = np.geomspace(0.02, 0.2, 40), np.geomspace(0.02, 20.0, 40)
 TIMES = np.linspace(0.0, 20.0, 200)
 
 
-def roller(**changes: float) -> vr.Cylinder:
+def roller(**changes):
     """The truth, or another."""
     value = TRUTH | changes
     rubber = vr.Material(value["E"], 0.5, vr.Prony([value["E_1"]], [1.0]), value["T_ref"])
     return vr.Cylinder(R=0.1, m=35.5, mu=value["mu"], material=rubber)
 
 
-def ranges(*names: str) -> dict[str, tuple[float, float]]:
+def ranges(*names):
     return {name: RANGES[name] for name in names}
 
 
-def noise(seed: int | None, values: np.ndarray, sigma: float) -> np.ndarray:
+def noise(seed, values, sigma):
     """Values with noise; without a seed as they are."""
     return values if seed is None else values + sigma * np.random.default_rng(seed).standard_normal(values.shape)
 
 
-def resistance(V: np.ndarray = HUMP, seed: int | None = None, sigma: float = 0.01, **more) -> vr.Resistance:
+def resistance(V=HUMP, seed=None, sigma=0.01, **more):
     body = roller() if "load" not in more else roller().replace(load=more["load"])
     return vr.Resistance(V, noise(seed, body.contact(V, delta=0.0, fields="M").M, sigma), sigma=sigma, **more)
 
 
-def traction(speeds=(0.1,), seed: int | None = None, sigma: float = 1.0, **more) -> vr.Traction:
+def traction(speeds=(0.1,), seed=None, sigma=1.0, **more):
     delta = np.tile(np.linspace(-0.06, 0.06, 21), len(speeds))
     V = np.repeat(speeds, 21)
     return vr.Traction(
@@ -42,7 +40,7 @@ def traction(speeds=(0.1,), seed: int | None = None, sigma: float = 1.0, **more)
     )
 
 
-def thrown(seed: int | None = None, t: np.ndarray = TIMES, omega0: float | None = 0.0, **more) -> vr.Coastdown:
+def thrown(seed=None, t=TIMES, omega0=0.0, **more):
     """V of a roller thrown at 4 m/s without spin, or let go rolling."""
     motion = roller().roll(4.0, 40.0 if omega0 is None else omega0, t, rtol=1e-10, **more)
     spin = {} if omega0 is None else {"omega0": omega0}
@@ -77,7 +75,7 @@ temperature = 20.0
 """
 
 
-def measurements(folder: Path, old: str = "", new: str = "") -> Path:
+def measurements(folder, old="", new=""):
     """A TOML file and its CSV, with this for that in both."""
     data = resistance(SLOW, seed=1)
     rows = [f"{V!r},{M!r}" for V, M in zip(data.V.tolist(), data.M.tolist(), strict=True)]

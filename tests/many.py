@@ -1,7 +1,5 @@
 """Arrays of materials, one for each state or motion: of both forms, with modes that fall away, and of two bodies."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 import viscoroll as vr
@@ -12,7 +10,7 @@ COUNT = 12
 UNLIKE = vr.Bodies(vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7]), 0.3)
 
 
-def states(count: int, seed: int) -> tuple[np.ndarray, ...]:
+def states(count, seed):
     """alpha from exactly 1 to 1e12, kappa, mu, V > 0, and the share of delta_star, graded to both ends."""
     rng = np.random.default_rng(seed)
     alpha = 10.0 ** rng.uniform(0.0, 6.0, count)
@@ -23,7 +21,7 @@ def states(count: int, seed: int) -> tuple[np.ndarray, ...]:
     return alpha, kappa, mu, 10.0 ** rng.uniform(-7.0, 7.0, count) / kappa, s
 
 
-def rubbers(draw: np.random.Generator, modes: int, creep: bool = False, count: int = COUNT) -> vr.Prony:
+def rubbers(draw, modes, creep=False, count=COUNT):
     """Random ones; some with a mode less, of strength 0 or of equal times, and one elastic."""
     times, strengths = 10.0 ** draw.uniform(-4.0, 1.0, (count, modes)), 10.0 ** draw.uniform(-1.0, 1.0, (count, modes))
     if creep:
@@ -33,21 +31,21 @@ def rubbers(draw: np.random.Generator, modes: int, creep: bool = False, count: i
     return (vr.Prony.creep if creep else vr.Prony)(strengths, times)
 
 
-def series(seed: int, modes: int, decades: float, count: int) -> vr.Prony:
+def series(seed, modes, decades, count):
     draw = np.random.default_rng(seed)
     return vr.Prony(
         10.0 ** draw.uniform(-1.5, 1.5, (count, modes)), 10.0 ** draw.uniform(-decades, 0.0, (count, modes))
     )
 
 
-def of_alphas() -> vr.Prony:
+def of_alphas():
     alpha = np.array([1.0 + 1e-9, 1.01, 3.0, 11.0, 27.0, 300.0, 1e4, 1e6, 1e9, 1e12])
     return vr.Prony.creep(((alpha - 1.0) / alpha)[:, None], np.ones((alpha.size, 1)), alpha=alpha)
 
 
 ONE, ELASTIC = vr.Prony([2.0, 1.0], [1.0, 1e-2]), vr.Prony.elastic()
 #: of both forms, of one body for all, of rigid and elastic bodies, of like series with a share each
-PAIRS: dict[str, Callable[..., tuple]] = {
+PAIRS = {
     "each": lambda draw, first, share: (first, rubbers(draw, 3), share),
     "creep": lambda draw, first, share: (rubbers(draw, 2, True), rubbers(draw, 3), 0.3),
     "one base": lambda draw, first, share: (first, ONE, 0.6),
@@ -64,13 +62,13 @@ PAIRS: dict[str, Callable[..., tuple]] = {
 }
 
 
-def pairs(kind: str) -> vr.Bodies:
+def pairs(kind):
     draw = np.random.default_rng(len(kind))
     share = draw.uniform(0.0, 1.0, COUNT)
     return vr.Bodies(*PAIRS[kind](draw, rubbers(draw, 3), share))
 
 
-MATERIALS: dict[str, Callable[[], vr.Prony | vr.Bodies]] = {
+MATERIALS = {
     "one mode": of_alphas,
     "3 modes": lambda: rubbers(np.random.default_rng(3), 3),
     "3 modes, creep": lambda: rubbers(np.random.default_rng(3), 3, True),

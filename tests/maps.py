@@ -6,13 +6,13 @@ from closeness import close
 import viscoroll as vr
 
 
-def decay_time(scene: vr.Scene) -> float:
+def decay_time(scene):
     """1/rate of V at low speed; of the sliding phase where alpha = 1."""
     rate = (scene.alpha - 1.0) / scene.alpha if scene.series is None else scene.series.T_mean
     return (1.0 + scene.j) / (scene.gamma * rate) if rate > 1e-9 else 1.0 / (scene.gamma * scene.mu)
 
 
-def beside(scene: vr.Scene, V0, omega0, t, rtol: float = 1e-6):
+def beside(scene, V0, omega0, t, rtol=1e-6):
     """Motions by the map, whose speeds are those of the integrator to the error that it states."""
     mapped, exact = (
         vr.ensemble(scene, V0, omega0, t, method=method, rtol=rtol, fields=("V", "omega"))

@@ -1,22 +1,20 @@
 """What a process keeps of earlier calls, in one place for the tests that need it gone; and what a call takes."""
 
 import tracemalloc
-from collections.abc import Callable
 
 import numpy as np
 
 from viscoroll.materials.law import table
 from viscoroll.motion import flow
-from viscoroll.motion.ensemble_result import Ensemble
 
 
-def forget() -> None:
+def forget():
     """Neither a table nor a flow map is at hand; those on disk and compiled kernels stay."""
     flow._map.cache_clear()
     table._made.cache_clear()
 
 
-def taken_beside(call: Callable[[], Ensemble]) -> int:
+def taken_beside(call):
     """Bytes that a call takes at most, beside those of its result."""
     tracemalloc.start()
     result = call()

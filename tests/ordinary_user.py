@@ -2,13 +2,12 @@
 
 import os
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 NOBODY = 65534
 
 
-def as_ordinary_user(work: Callable[[], object]) -> str:
+def as_ordinary_user(work):
     """Kind and text of the error that ``work`` raises in a forked process of such a user, or nothing."""
     receiver, sender = os.pipe()
     if (child := os.fork()) == 0:
@@ -27,7 +26,7 @@ def as_ordinary_user(work: Callable[[], object]) -> str:
         return pipe.read()
 
 
-def let_in(folder: Path) -> None:
+def let_in(folder):
     """Let others into a temporary folder of pytest."""
     for part in (folder, *folder.parents):
         if part == Path(tempfile.gettempdir()):

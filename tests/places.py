@@ -3,19 +3,18 @@
 import json
 import tomllib
 from pathlib import Path
-from typing import Any
 
 ROOT = Path(__file__).parents[1]
 PIPELINE, DATA, DOCS = ROOT / "pipeline", ROOT / "data", ROOT / "docs"
 RESULTS = DATA / "results"
 
 
-def kept(name: str) -> Any:
+def kept(name):
     """Results that are committed."""
     return json.loads((RESULTS / name).read_text())
 
 
-def full_sizes(section: str) -> dict[str, Any]:
+def full_sizes(section):
     """Those of a stage of the evidence that are not quick."""
     found = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text())[section]
     del found["quick"]

@@ -7,7 +7,7 @@ import sys
 from places import ROOT
 
 
-def python(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+def python(*arguments, **environment):
     """An interpreter with these arguments, in the repository's folder; an environment of its own beside ours."""
     return subprocess.run(
         [sys.executable, *map(str, arguments)], cwd=ROOT, env=os.environ | environment,
@@ -15,14 +15,14 @@ def python(*arguments: object, **environment: str) -> subprocess.CompletedProces
     )  # fmt: skip
 
 
-def printed(code: str, *arguments: object, **environment: str) -> str:
+def printed(code, *arguments, **environment):
     """What a program that must succeed prints."""
     done = python("-c", code, *arguments, **environment)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-def stage(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
+def stage(name, *arguments):
     """A stage ("evidence.prove", "offline"; "" is all of the demo) that ends of its own accord: 2 where it refuses, 1
     where it fails.
     """
@@ -31,14 +31,14 @@ def stage(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     return done
 
 
-def made(name: str, *arguments: object) -> str:
+def made(name, *arguments):
     """What a stage prints that must do its work."""
     done = stage(name, *arguments)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
-def stage_refused(name: str, *arguments: object) -> str:
+def stage_refused(name, *arguments):
     """The one line of a stage that refuses."""
     done = stage(name, *arguments)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr

@@ -1,13 +1,11 @@
 """Bad input: an error of the package's own, in one line that names the thing, its value and what is allowed."""
 
-from collections.abc import Callable
-
 import pytest
 
 import viscoroll as vr
 
 
-def refused(call: Callable[[], object], *words: str, error: type[Exception] = vr.ParameterError) -> str:
+def refused(call, *words, error=vr.ParameterError):
     """The text of the error that ``call`` raises: one line that holds ``words``."""
     try:
         call()

@@ -6,7 +6,6 @@ from pathlib import Path
 from places import DOCS
 
 from viscoroll.io.runs import read_run
-from viscoroll.io.runs.runfile import Run
 
 PAPER = 'preset = "paper-section-5"\n'
 FULL = (
@@ -188,7 +187,7 @@ FILES = {
 }
 
 
-def run_of(text: str, folder: Path | str = ".") -> Run:
+def run_of(text, folder="."):
     """A run file of this text, read."""
     path = Path(folder) / "run.toml"
     path.write_text(text)
