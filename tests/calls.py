@@ -34,6 +34,7 @@ from viscoroll.materials.law.netcdf import law_table_of
 from viscoroll.materials.law.table import law_table
 from viscoroll.materials.material_netcdf import material_as_dataset
 from viscoroll.materials.material_toml import read_materials
+from viscoroll.motion.histogram import Histogram
 from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
 
 SCENE_FILE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"

@@ -82,14 +82,9 @@ def test_axes_are_named_after_what_varies(results):
 
 
 def test_a_table_of_pandas_has_a_row_each(results):
-    """Of a driven motion too, whose drive has corners of its own; units are in the names of columns."""
+    """Of a driven motion too, whose drive has corners of its own."""
     table = results["driven"].to_pandas()
     assert np.array_equal(table["torque"], results["driven"].torque)
-    header = results["motion in SI"].to_pandas().to_csv().splitlines()[0].split(",")
-    assert header == ["t [s]", "V [m s-1]", "omega [rad s-1]", "x [m]", "angle [rad]", "delta", "regime"]
-    many = ROLLER.ensemble([1.0, 2.0], 0.0, [0.1, 0.2], torque=vr.Schedule([0.0, 1.0], [0.0, 3.0]))
-    assert many.to_pandas().index.names == ["motion", "t [s]"]
-    assert len(many.to_pandas()) == 4
 
 
 def test_figures_bend_as_results_do():
@@ -98,12 +93,6 @@ def test_figures_bend_as_results_do():
     t, x = m.plot().axes[2].lines[0].get_data()
     assert close(np.interp(5.0, t, x), m.at([5.0]).x[0], tol.FIGURE)
     assert ROLLER.steady(slope=np.radians([0.0, 0.1, 0.2])).plot().axes[0].get_yscale() == "symlog"
-
-
-def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
-    t = np.linspace(0.0, 4.0, 5)
-    for drive, panels in ({"brake": 5.0}, 3), ({"torque": 0.5}, 4):
-        assert len(ROLLER.roll(2.0, 20.0, t, **drive).plot().axes) == panels
 
 
 def test_a_motion_tells_its_peak(results):
@@ -115,23 +104,6 @@ def test_a_motion_tells_its_peak(results):
         cut = vr.roll(SCENE, 1.5, 0.5, np.linspace(0.0, 4e-3, 9), max_steps=12)
     assert np.isnan(cut.V[-1])
     assert f"last {cut.V[~np.isnan(cut.V)][-1]:.6g}" in repr(cut)
-
-
-def test_without_a_threshold_nothing_is_told_to_rest():
-    """Nothing stops: V decays to less than doubles hold, and rolls on until there."""
-    m = vr.roll(SCENE, 1.5, 0.5, 1.0, force=vr.Schedule([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.0]))
-    assert (m.V[-1], m.switches[-1].regime) == (0.0, "partial slip")
-    assert np.isnan(m.rest_time)
-    assert "to rest" not in repr(m)
-
-
-def test_a_motion_tells_its_end_in_the_units_of_its_cylinder():
-    """A threshold in m/s is of V and R omega; a speed that is prescribed is no second course of V."""
-    roller = vr.presets.RUBBER_CYLINDER
-    assert "|V| and R |omega| fell below the rest threshold (" in repr(roller.roll(1.0, 0.0, [0.0, 1e4], rest=0.1))
-    rows = [line.split("  ")[1] for line in repr(roller.roll(None, 1.0, [0.0, 1.0], V=1.0)).splitlines()[1:]]
-    assert [rows.count("V"), rows.count("prescribed V")] == [1, 1]
-    assert repr(vr.roll(SCENE, 0.0, 0.0, 1e-4)).endswith("(1 step)")
 
 
 def test_a_validity_is_a_card(results):
@@ -157,19 +129,6 @@ def test_a_torque_that_jumps_is_drawn_with_both_sides():
     t, drawn = force
     assert close(drawn[t == 3.0], m.force[-1], tol.FIGURE)
     assert 0.7 in t
-
-
-def test_speeds_that_rise_by_factors_have_a_logarithmic_axis():
-    for V, scale in (([1.0, 2.0, 5.0, 10.0], "log"), (np.linspace(1e-3, 1.0, 50), "linear")):
-        figure = ROLLER.contact(V=V, delta=0.0).plot()
-        assert {axes.get_xscale() for axes in figure.axes} == {scale}, V
-
-
-def test_a_contact_tells_the_coefficient_of_rolling_resistance():
-    c = ROLLER.contact(V=[0.1, 1.0], delta=0.0)
-    assert close(c.C_rr, c.M / (ROLLER.load * ROLLER.R), tol.SI_MOTION)
-    assert ROLLER.contact(V=1.0, delta=0.0, fields="C_rr").as_dict().keys() == {"C_rr"}
-    assert "coefficient of rolling resistance" in {axes.get_title() for axes in c.plot().axes}
 
 
 @pytest.mark.parametrize(

@@ -66,17 +66,6 @@ def test_a_start_from_rest_costs_an_energy(V):
     assert close(found.start.way, found.whole - ROLLER.validity(left).steady.whole, tol.STEADINESS)
 
 
-def test_slow_starts():
-    """Too slow at all, with the speed from which on it is not; at rest."""
-    slow = ROLLER.validity(1.0).steady
-    assert not slow.holds
-    assert slow.ten_percent.way == slow.ten_percent.time == 0.0
-    assert slow.share == 1.0
-    assert close(slow.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, tol.STEADINESS)
-    assert ROLLER.validity([0.0, 0.0]).steady[:2] == (None, None)
-    assert ROLLER.validity([0.0, 30.0]).steady.value[0] == 0.0
-
-
 def test_no_relaxation_time_bounds_it():
     """Of any material |N| (kappa V)^2 <= 1.35/16 (1 - 1/alpha); modes that are slower change nothing much."""
     draw = np.random.default_rng(1)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from many import COUNT, MATERIALS, pairs, rubbers
+from many import MATERIALS, rubbers
 
 import viscoroll as vr
 
@@ -66,15 +66,6 @@ def test_memory_is_bounded_by_a_block():
 
     beside(64)
     assert beside(1024) - beside(256) <= tol.MEMORY_SLACK / 10
-
-
-def test_exported():
-    many = MATERIALS["3 modes"]()
-    stored = vr.ensemble(scene_of(many), 1.0, 0.0, T[:3]).to_xarray()
-    assert np.array_equal(stored.relaxation_times, many.tau)
-    stored = vr.ensemble(scene_of(pairs("one base")), 1.0, 0.0, T[:3]).to_xarray()
-    assert stored.cylinder_relaxation_times.dims == ("motion", "cylinder_mode")
-    assert stored.share.values.tolist() == [0.6] * COUNT
 
 
 @pytest.mark.parametrize("name", MATERIALS)

@@ -101,35 +101,6 @@ def test_progress_bar_only_when_it_takes_long(capsys, monkeypatch):
 # --- what a result holds ---
 
 
-def test_shapes_and_fields():
-    V0, omega0 = starts(5)
-    result = vr.ensemble(SCENE, V0, omega0, T)
-    assert result.V.shape == result.omega.shape == result.x.shape == (5, 7)
-    assert result.angle is result.delta is result.regime is None
-    assert len(result) == result.onset_time.size == 5
-    only = vr.ensemble(SCENE, V0, omega0, T, fields="angle")
-    assert only.V is None
-    assert equal(only.angle, vr.ensemble(SCENE, V0, omega0, T, fields=FIELDS).angle)
-    assert equal(vr.ensemble(SCENE, V0, omega0, 3e-3).V[:, 0], result.V[:, -1])
-
-
-def test_a_regime_that_was_not_reached_is_no_full_slip():
-    regime = vr.ensemble(SCENE, 1.5, 0.5, T, fields="regime", max_steps=8).to_xarray().regime
-    assert regime.values[0, -1] == -1
-    meanings = dict(zip(regime.flag_values.tolist(), regime.flag_meanings.split(), strict=True))
-    assert meanings == {-1: "not_reached", 0: "full_slip", 1: "partial_slip", 2: "rest", 3: "locked", 4: "held"}
-
-
-def test_status_and_messages():
-    V0, omega0 = starts(20)
-    tiny = vr.ensemble(SCENE, V0, omega0, T, max_steps=8)
-    assert tiny.messages()[vr.MotionStatus.STEP_LIMIT.message] == 19  # all but the one at rest
-    assert np.isnan(tiny.V[:, -1]).sum() == 19
-    resting = vr.ensemble(SCENE, V0, omega0, [1e-2], rest=1e-3)
-    assert resting.messages() == {vr.MotionStatus.RESTED.message: 20}
-    assert not resting.V.any()
-
-
 def test_summary():
     V0, omega0 = starts(50)
     result = vr.ensemble(SCENE, V0, omega0, T)

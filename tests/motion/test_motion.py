@@ -101,22 +101,6 @@ def test_rest_while_sliding_and_from_the_start():
 # --- outputs ---
 
 
-def test_times_of_output():
-    """One time is the state there, as of an ensemble; those asked for, the steps taken, and others later."""
-    last = vr.roll(ROUNDED, 1.5, 0.5, 2e-3)
-    assert last.t.tolist() == vr.ensemble(ROUNDED, 1.5, 0.5, 2e-3).t.tolist() == [2e-3]
-    whole = last.course
-    assert (whole.t[0], whole.t[-1], whole.V[-1]) == (0.0, 2e-3, last.V[0])
-    assert whole.onset_time in whole.t
-    chosen = vr.roll(ROUNDED, 1.5, 0.5, [0.0, 1e-3, 1e-3, 2e-3])
-    assert (chosen.V[0], chosen.V[1], chosen.V[3]) == (1.5, chosen.V[2], whole.V[-1])
-    assert vr.roll(ROUNDED, 1.5, 0.5, [0.0, 0.0]).omega.tolist() == [0.5, 0.5]
-    assert np.array_equal(whole.at(whole.t).V, whole.V)
-    t = np.linspace(0.0, 2e-3, 50)
-    between = vr.roll(ROUNDED, 1.5, 0.5, t, rtol=1e-12)
-    assert abs(whole.at(t).V / between.V - 1.0).max() <= tol.MOTION_DEFAULT
-
-
 def test_a_motion_that_is_given_up_says_where_it_stood():
     """In the units that it is asked in, with what to try."""
     words = re.compile(

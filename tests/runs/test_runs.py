@@ -122,17 +122,6 @@ def test_moments_and_quantiles(size):
     assert abs(one.spread / one.count - kept.var()) <= tol.MOMENT
 
 
-def test_quantiles_of_those_at_rest_are_zero():
-    one = Histogram.of(np.array([0.0] * 8 + [-1.0, 0.5, 2.0]))
-    assert one.quantiles((0.1, 0.2, 0.5, 0.8)).tolist() == [0.0] * 4
-
-
-def test_of_nothing_there_are_none():
-    one = Histogram.of(np.array([np.nan]))
-    assert one.count == 0
-    assert np.isnan(one.quantiles((0.5,))).all()
-
-
 def test_merged_summaries_are_those_of_all(run):
     blocks = [roll_block(run, block) for block in range(run.blocks)]
     total = merge_summaries(summarise(motions, run.settings.summaries) for _, motions in blocks)

@@ -162,14 +162,3 @@ def test_each_of_many_is_as_alone(name):
         assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, tol.SI_MOTION)
     again = roller.replace(**{key: values.copy() for key, values in each.items()})
     assert (many, hash(many)) == (again, hash(again))
-
-
-def test_dataset_in_si():
-    """Units of all; that a file keeps them: ``test_results.py``; what drove it: ``motion/test_drive_files.py``."""
-    m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, brake=vr.Schedule([1.0, 1.0], [0.0, 3.0]))
-    data = m.to_xarray()
-    said = {name: data[name].attrs["units"] for name in ("t", "V", "force", "slip_loss", "drive_brake_time")}
-    assert said == {"t": "s", "V": "m s-1", "force": "N m-1", "slip_loss": "J m-1", "drive_brake_time": "s"}
-    assert [data.attrs[name] for name in ("R", "load", "T_ref")] == [ROLLER.R, ROLLER.load, ROLLER.T_ref]
-    e = ROLLER.replace(mu=[0.2, 0.3]).ensemble(0.02, 0.1, TIMES)
-    assert e.to_xarray()["V"].attrs["units"] == e.summary().V_mean.attrs["units"] == "m s-1"

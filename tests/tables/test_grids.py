@@ -164,13 +164,6 @@ def test_creep_nodes_lie_around_the_edge_of_full_slip():
     assert steps[inside].mean() < np.diff(even.delta).mean()
 
 
-def test_axes_of_few_nodes():
-    for few in ([0.5], [0.4, 0.5], [0.4, 0.5, 0.6]):
-        table = vr.tables.build(vr.presets.PAPER_SECTION_5, few, delta=[0.0, 0.01], alpha=11.0)
-        found = vr.tables.interpolate(table, "Q", V=0.5, delta=0.01, alpha=11.0)
-        assert close(found.Q, table.Q.sel(V=0.5, delta=0.01, alpha=11.0).item(), tol.TABLE_SPLINE_NODE)
-
-
 # --- files ---
 
 
