@@ -2,7 +2,6 @@
 
 import csv
 import io
-import os
 import shutil
 import subprocess
 import sys
@@ -100,6 +99,13 @@ for _name, _filled, _compile, _needed in (
     PROGRAMS[_name] = (_C.format(**_filled), f"{_compile} && ./run < states.csv", _needed)
 
 
+def output(command, folder=None):
+    """What a command of the shell prints that must succeed."""
+    done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
 @cache
 def succeeds(command):
     return not subprocess.run(command, shell=True, capture_output=True, check=False).returncode
@@ -141,20 +147,18 @@ def states(material):
 
 
 #: no states, of which every field is NaN: kappa, mu, V, slip
-NO_STATES = np.array(
-    [
-        [np.nan, 0.3, 0.1, 0.01],
-        [10.0, np.nan, 0.1, 0.01],
-        [10.0, 0.3, np.nan, 0.01],
-        [10.0, 0.3, 0.1, np.nan],
-        [10.0, 0.3, np.inf, 0.01],
-        [10.0, 0.3, 0.1, -np.inf],
-        [10.0, 0.3, np.nan, -0.01],
-        [-10.0, 0.3, 0.1, 0.01],
-        [10.0, 0.0, 0.1, 0.01],
-        [10.0, 0.3, -1e300, 0.01],
-    ]
-)
+NO_STATES = """\
+nan,0.3,0.1,0.01
+10,nan,0.1,0.01
+10,0.3,nan,0.01
+10,0.3,0.1,nan
+10,0.3,inf,0.01
+10,0.3,0.1,-inf
+10,0.3,nan,-0.01
+-10,0.3,0.1,0.01
+10,0,0.1,0.01
+10,0.3,-1e300,0.01
+"""
 
 
 #: A language -> how it reads NaN and infinity, where not as "nan" and "inf".
@@ -168,14 +172,11 @@ def test_programs_have_the_contact_of_the_package(folder, name):
     need(needed)
     (folder / "program").write_text(program)
     given = np.loadtxt(folder / "moving.csv", delimiter=",")
-    np.savetxt(folder / "states.csv", np.concatenate([given, NO_STATES]), fmt="%.17g", delimiter=",")
     nan, infinity = SPELLED.get(name, ("nan", "inf"))
-    text = (folder / "states.csv").read_text().replace("nan", nan).replace("inf", infinity)
-    (folder / "states.csv").write_text(text)
-    done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    found = np.array([row for row in csv.reader(io.StringIO(done.stdout)) if row], dtype=float)
-    assert len(found) == len(given) + len(NO_STATES)
+    no_states = NO_STATES.replace("nan", nan).replace("inf", infinity)
+    (folder / "states.csv").write_text((folder / "moving.csv").read_text() + no_states)
+    found = np.array([row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float)
+    assert len(found) == len(given) + NO_STATES.count("\n")
     assert np.isnan(found[len(given) :]).all()
     found, (kappa, mu, V, slip) = found[: len(given)], given.T
     scene = vr.Scene(kappa=kappa, mu=mu, material=vr.load_law(folder / "law.nc"))
@@ -231,14 +232,13 @@ def roller(tmp_path_factory):
         '  printf("%d %.17g %.17g %.17g\\n", worst, r.V, r.V + r.slip, r.x);\n'
         "  return 0;\n}\n"
     )
-    subprocess.run(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", shell=True, cwd=place, check=True)
+    output(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", place)
     return place / "roll"
 
 
 def c_rolled(program, *numbers):
     """gamma, force, torque, rest, V, slip, time, calls and rtol -> status, V, omega, x."""
-    done = subprocess.run([program, *map(repr, numbers)], capture_output=True, text=True, check=True)
-    return [float(word) for word in done.stdout.split()]
+    return [float(word) for word in output(f"{program} {' '.join(map(repr, numbers))}").split()]
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # slow rolling is unsteady
@@ -290,8 +290,7 @@ def test_the_roller_of_the_page(tmp_path):
     shutil.copy(HEADERS / "vr_roll.h", tmp_path)
     page = (LOADING / "README.md").read_text().split("## Motions in C")[1]
     (tmp_path / "roll.c").write_text(page.split("```c\n")[1].split("```")[0])
-    subprocess.run(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", shell=True, cwd=tmp_path, check=True)
-    printed = subprocess.run("./roll", cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    printed = output(f"cc -std=c99 {_STRICT} roll.c -o roll -lm && ./roll", tmp_path)
     speed, distance = (float(part.split()[0]) for part in printed.split(","))
     roller = vr.Cylinder(R=0.1, m=35.5, mu=0.3, load=348.0, material=vr.load_law(tmp_path / "rubber.nc"))
     m = roller.roll(2.0, 0.0, 1.0)
@@ -311,11 +310,9 @@ def test_readers_in_c_refuse_what_is_no_law(tmp_path):
         'int main(int n, char **path) { vr_law a; int e = n == 2 ? vr_law_open(path[1], &a) : 0; printf("%d", e); '
         "if (!e) vr_law_close(&a); return 0; }\n"
     )
-    command = f"cc -std=c99 {_STRICT} -I'{HEADERS}' open.c -o open $(nc-config --cflags --libs) -lm"
-    subprocess.run(command, shell=True, cwd=tmp_path, check=True)
+    output(f"cc -std=c99 {_STRICT} -I'{HEADERS}' open.c -o open $(nc-config --cflags --libs) -lm", tmp_path)
     for name, expected in (("grid.nc", -1000), ("later.nc", -1000), ("none.nc", 2)):
-        done = subprocess.run(["./open", name], cwd=tmp_path, capture_output=True, text=True, check=True)
-        assert int(done.stdout) == expected, name
+        assert int(output(f"./open {name}", tmp_path)) == expected, name
 
 
 @pytest.mark.parametrize("kind", ["law", "grid"])
@@ -324,19 +321,15 @@ def test_cf_checker_finds_nothing(tmp_path, kind):
     need(f"test -x '{checker}'")
     path, law = tmp_path / f"{kind}.nc", vr.tables.law(PAIR)
     vr.tables.save(law if kind == "law" else vr.tables.build(law, V=[0.1, 1.0], delta=[0.0, 0.1, 0.2]), path)
-    command = [checker, "--test", "cf:1.11", "--criteria", "strict", path]
-    home = os.environ | {"HOME": str(tmp_path)}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=home)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "All tests passed!" in done.stdout
+    command = f"HOME='{tmp_path}' '{checker}' --test cf:1.11 --criteria strict '{path}'"
+    assert "All tests passed!" in output(command, tmp_path)
 
 
 def test_netcdf_of_a_law_by_ncdump(folder):
     need("command -v ncdump")
     vr.tables.export(vr.tables.load(folder / "law.nc"), folder / "three.cdf")
     for name, kind in (("law.nc", "netCDF-4"), ("three.cdf", "64-bit offset")):
-        shown = subprocess.run(["ncdump", "-k", folder / name], capture_output=True, text=True, check=True)
-        assert shown.stdout == f"{kind}\n"
+        assert output(f"ncdump -k {name}", folder) == f"{kind}\n"
 
 
 #: A program -> what prints the sum of Q over grid.nc, and what succeeds where it can run.

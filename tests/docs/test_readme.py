@@ -29,6 +29,14 @@ def blocks(path, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", path.read_text(), re.DOTALL | re.MULTILINE)
 
 
+def run_page(name):
+    """Execute the blocks of Python of a page of docs, in one session, which is returned."""
+    session = {}
+    for n, code in enumerate(blocks(ROOT / f"docs/{name}.md", "python")):
+        exec(compile(code, f"{name}.md, block {n + 1}", "exec"), session)
+    return session
+
+
 def test_readme_block_runs(capsys):
     code, _ = blocks(ROOT / "README.md", "python")
     assert len([line for line in code.splitlines() if line.strip()]) <= 12
@@ -65,16 +73,13 @@ def test_readme_grid(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("page", ["index", "validity"])
 def test_first_pages_run(page, capsys):
-    for code in blocks(ROOT / f"docs/{page}.md", "python"):
-        exec(compile(code, page, "exec"), {})
+    run_page(page)
     assert "small_contact  yes " in capsys.readouterr().out
 
 
 def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    session = {}
-    for code in blocks(ROOT / "docs/offline_runtime.md", "python"):
-        exec(compile(code, "offline_runtime.md", "exec"), session)
+    run_page("offline_runtime")
     worst, way = map(float, capsys.readouterr().out.split())
     assert worst < tol.LAW_STATED
     assert way == vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0).x[-1]
@@ -83,9 +88,7 @@ def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("page", sorted(path.stem for path in (ROOT / "docs/howto").glob("*.md")))
 def test_howto_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    session = {}
-    for n, code in enumerate(blocks(ROOT / f"docs/howto/{page}.md", "python")):
-        exec(compile(code, f"{page}.md, block {n + 1}", "exec"), session)
+    session = run_page(f"howto/{page}")
     if page == "files":
         assert (tmp_path / "motion.nc").exists()
     if page == "law":  # the integral part removes the steady-state error
