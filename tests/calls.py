@@ -28,6 +28,7 @@ from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.runs import read_run
 from viscoroll.io.runs.columns import attributes
 from viscoroll.io.runs.sensitivity import sobol_indices
+from viscoroll.io.runs.uncertain import read_column
 from viscoroll.io.sampling import sample
 from viscoroll.kernels.bessel.ratios import ratio_i2, ratio_k, ratio_r
 from viscoroll.materials.law.netcdf import law_table_of
@@ -68,6 +69,15 @@ OTHER_GRID = xr.Dataset(
 )
 
 
+#: a resistance over speed, in files
+DRUM_V, DRUM_M = np.geomspace(0.1, 10.0, 5), np.array([0.1, 0.3, 0.7, 0.5, 0.2])
+
+
+def rows(*columns, sep=",", decimal="."):
+    """Lines of a file of these columns."""
+    return "\n".join(sep.join(f"{x:.10g}".replace(".", decimal) for x in row) for row in zip(*columns, strict=True))
+
+
 def pair(material, base, **more):
     """A cylinder of a material on a base."""
     return vr.Cylinder(**BARE, material=material, base=base, **more)
@@ -103,6 +113,12 @@ def names_in(folder):
 
     def measured(old, new):
         return vr.identify(**read_measurements(experiments.measurements(folder, old, new)), starts=1)
+
+    def data(text, kind="resistance"):
+        """The first data of a file of measurements, whose columns have the names of its own kind."""
+        file(text, "drum.csv")
+        plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "").replace("resistance", kind)
+        return read_measurements(file(plain))["data"][0]
 
     def netcdf(data, without=""):
         """A file of a dataset, without an attribute, as another program writes it."""

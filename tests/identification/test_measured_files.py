@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from calls import names_in
 from experiments import FILE, measurements
 from places import ROOT
 
@@ -52,3 +53,8 @@ def test_a_files_temperature_is_where_its_shift_is_one(folder):
     shift = read_measurements(path)["shift"]["material"]
     assert shift(60.0) == 1.0
     assert shift(20.0) == 1.0 / vr.WLF(T0=20.0)(60.0)
+
+
+def test_columns_that_are_left_aside_are_told(tmp_path):
+    with pytest.warns(vr.ModelWarning, match=r"drum.csv: unused columns: 'T \[°C\]'"):
+        names_in(tmp_path)["data"]("V,M,T [°C]\n0.1,0.2,20\n0.2,0.3,20\n")

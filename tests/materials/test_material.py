@@ -109,19 +109,6 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
         assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, tol.MATERIAL_FORMS)
 
 
-def test_one_material_by_all_programs():
-    """G(t) = 1 + 2 exp(-t/0.1 s) + 3 exp(-t/4 s) MPa, nu = 1/2."""
-    E, G, tau = 3e6, np.array([2e6, 3e6]), np.array([0.1, 4.0])
-    for found in (
-        vr.Material.abaqus(18e6, 0.5, G / 6e6, tau),
-        vr.Material.abaqus(3e6, 0.5, G / 6e6, tau, long_term=True),
-        vr.Material.ansys(18e6, 0.5, G / 6e6, tau),
-        vr.Material.comsol(E, 0.5, G, tau),
-        vr.Material.lsdyna(G, 1.0 / tau, nu=0.5, G_inf=1e6),
-    ):
-        assert close(found.relaxation(T), 3e6 + 3.0 * (G * np.exp(-T[:, None] / tau)).sum(axis=1), tol.MATERIAL)
-
-
 # --- as netCDF ---
 
 STORED = (
