@@ -3,6 +3,7 @@
 
 import dataclasses
 import math
+import pickle
 from dataclasses import replace
 from functools import cache
 from math import inf, nan, pi
@@ -14,6 +15,7 @@ import pandas as pd
 import xarray as xr
 from drives import DMA as DMA_SERIES
 from drives import ON_DMA as DMA_ROLLER
+from drives import ROLLER as DRIVEN
 from run_files import FILES
 from scipy import stats
 
@@ -25,8 +27,9 @@ from viscoroll.contact_law.validity.free_rolling import FreeRolling
 from viscoroll.contact_law.validity.steadiness import Steadiness
 from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_law_source, read_roller
-from viscoroll.io.runs import read_run
+from viscoroll.io.runs import estimate, read_run
 from viscoroll.io.runs.columns import attributes
+from viscoroll.io.runs.evaluate import block_inputs
 from viscoroll.io.runs.sensitivity import sobol_indices
 from viscoroll.io.runs.uncertain import read_column
 from viscoroll.io.sampling import sample
@@ -56,6 +59,7 @@ COVERED = vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, m
 THIN = vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5)
 ONE, PAPER, ROLLER = vr.Scene(11.0, 10.0, 0.5, 120.0), vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.RUBBER_CYLINDER
 BOTH = PAPER, ROLLER
+T = np.linspace(0.0, 8.0, 33)
 #: the paper's cylinder by its parameters, and what is left of them where materials are given
 SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
 BARE = {"R": 0.1, "m": 35.5, "mu": 0.2}

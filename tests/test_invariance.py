@@ -2,7 +2,6 @@
 flushed subnormals, little memory."""
 
 import os
-import pickle
 import platform
 import shutil
 import subprocess
@@ -313,19 +312,6 @@ def test_called_from_several_threads_at_once(own_maps):
 def work(_):
     forget()
     return everything()
-
-
-def test_what_is_pickled_is_what_it_was():
-    """Scenes, materials, and results of calls of them."""
-    for thing in (SCENE, vr.presets.RUBBER_ROLLER, MATERIALS["each"](), vr.presets.RUBBER_CYLINDER):
-        assert pickle.loads(pickle.dumps(thing)) == thing
-    for result in (
-        vr.contact(SCENE, [0.3, 1.0], delta=1e-3),
-        vr.roll(SCENE, 1.5, 0.5, T),
-        vr.ensemble(SCENE, [1.0, 2.0], 0.5, T),
-    ):
-        again = pickle.loads(pickle.dumps(result))
-        assert again.to_xarray().identical(result.to_xarray())
 
 
 # --- numpy ---

@@ -196,33 +196,7 @@ def test_critical_slope():
     np.testing.assert_array_equal(vr.steady(SCENE, slope=0.05).V, vr.steady(turned(0.05), force=np.tan(0.05)).V)
 
 
-# --- prescribed speeds ---
-
-
-def test_given_speed_finds_the_other_load():
-    V = np.array([-0.5, -0.1, 0.0, 0.1, 0.5])
-    towed = vr.steady(SCENE, V=V, torque=0.0)
-    np.testing.assert_array_equal(towed.V[:, 0], V)
-    assert close(towed.force, towed.M, tol.STEADY, scale=1.0)
-    assert close(towed.Q, -0.5 * towed.M, tol.STEADY, scale=1.0)
-    driven = vr.steady(SCENE, V=V, force=0.01)
-    assert close(driven.torque, driven.M - 0.01, tol.STEADY)
-    up = vr.steady(SCENE, V=0.1, slope=-0.02)
-    assert close(up.torque[0], up.M[0] + math.tan(0.02), tol.STEADY)
-    assert vr.steady(SCENE, V=0.1, torque=-0.3).count == 0
-
-
 # --- feedback ---
-
-
-def test_gain_that_unsettles_rest():
-    c = 10.0 / 11.0
-    for share, stable in ((0.99, True), (1.01, False)):
-        s = vr.steady(SCENE, force=vr.Feedback(0.0, V=0.6 * share * c), torque=vr.Feedback(0.0, V=0.4 * share * c))
-        assert s.V[0] == 0.0
-        assert s.stable[0] == stable
-        # M < c V: the gain alone holds a speed where it is below c
-        assert s.count == (3 if stable else 1)
 
 
 def brute_feedback(scene, force, torque, V):

@@ -15,6 +15,7 @@ def test_value(call, answer, tmp_path):
     names, (exact, within, tolerance) = names_in(tmp_path), answer.partition(" within ")
     found, exact = eval(call, names), eval(exact.removeprefix("== "), names)
     if within:
-        assert close(found, exact, eval(tolerance, vars(tolerances)))
+        tolerance, _, scale = tolerance.partition(" of ")
+        assert close(found, exact, eval(tolerance, vars(tolerances)), scale=float(scale or 0.0))
     else:
         assert np.array_equal(found, exact, equal_nan=True) if isinstance(found, np.ndarray) else found == exact

@@ -31,15 +31,6 @@ def test_how_a_schedule_is_written():
     assert jumps.torque[T == 2.0] == 0.03  # the later side
 
 
-def test_a_brake_lets_go_where_the_force_is_more():
-    """Held at rest while |f| <= mu and |f + q| <= B."""
-    force = vr.Schedule([0.0, 10.0], [0.0, 0.2])
-    m = vr.roll(ROLLER, 0.0, 0.0, np.linspace(0.0, 10.0, 41), force=force, brake=0.1)
-    assert close(m.switches[0].t, 5.0, 1e-6)
-    assert not m.V[m.t < 5.0].any()
-    assert m.V[-1] > 0.0
-
-
 @pytest.mark.parametrize("share", [0.7, 1.3])
 def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
     """A cylinder thrown with backspin slides, Q = -mu; where omega has come to 0, mu - M/2 would turn it on."""
@@ -84,31 +75,6 @@ def test_the_end_of_a_motion_of_bodies_that_differ():
     assert m.V[-1] == 0.0
 
 
-def test_nothing_is_no_drive():
-    """Zeros, however they are written: the integrator of free motions, and its bits; arrays of them count motions."""
-    free = vr.roll(ROLLER, 1.5, 0.5, T)
-    for nothing in ({"slope": 0.0}, {"force": np.float32(0.0)}, {"torque": np.array(0.0)}, {"brake": 0}):
-        m = vr.roll(ROLLER, 1.5, 0.5, T, **nothing)
-        assert np.array_equal(m.V, free.V)
-        assert m.steps == free.steps
-        assert not m.drive.given
-    assert not vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields="force").force.any()
-    for nothing in ({"force": np.zeros(3)}, {"slope": [0.0, 0.0, 0.0]}, {"brake": np.zeros(3)}):
-        e = vr.ensemble(ROLLER, 1.5, 0.5, T, **nothing)
-        assert len(e) == 3
-        assert np.array_equal(e.V[2], free.V)
-
-
-def test_a_prescribed_speed_of_many_motions():
-    """Start speeds of n motions are n motions, also of the speed that is prescribed for all of them."""
-    for name, start in (("V", {"V0": np.ones(3), "omega0": 0.5}), ("omega", {"V0": 0.5, "omega0": np.ones(3)})):
-        e = vr.ensemble(ROLLER, **start, t=T, **{name: 1.0})
-        m = vr.roll(ROLLER, *(float(np.ravel(each)[0]) for each in start.values()), T, **{name: 1.0})
-        assert e.V.shape == (3, T.size)
-        assert np.array_equal(e.V, np.broadcast_to(m.V, e.V.shape))
-        assert getattr(e, f"{name}0").shape == (3,)
-
-
 @pytest.mark.parametrize("V", [0.05, 0.5, 2.0])
 def test_traction_of_the_smallest_creep(V):
     """The force that a prescribed V asks for is M/2 - Q, and Q what the contact says of creep that is nearly none."""
@@ -118,28 +84,3 @@ def test_traction_of_the_smallest_creep(V):
         state = vr.contact(SCENE, V, omega=omega)
         held = vr.roll(SCENE, None, omega, [0.0, 1e-9], V=V)
         assert close(0.5 * state.M - held.force[0], state.Q, tol.SMALL_TRACTION)
-
-
-def test_small_beginnings():
-    """Rest stays while nothing acts, and ends where a ramp begins; a push against friction below its limit moves."""
-    still = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 4.0, 4.0, 8.0], [0.0, 0.0, 0.0, 0.1]))
-    assert not still.V[T <= 4.0].any()
-    assert (still.V[T > 4.0] > 0.0).all()
-    assert (still.regime[T < 4.0] == 2).all()
-    pushed = vr.roll(ROLLER, 0.0, 0.0, T, force=1e-6)
-    assert (pushed.V[1:] > 0.0).all()
-    balanced = vr.roll(ROLLER, 0.0, 0.0, T, force=-0.1, torque=0.1)
-    assert not balanced.V.any()
-    assert (balanced.regime == 2).all()
-
-
-def test_a_drag_is_a_torque_that_grows_with_omega():
-    """The same bits as by feedback, of a scene, of a cylinder in its units, and of one motion in each of many."""
-    scene, c = vr.presets.RUBBER_ROLLER, 3e-4
-    by_drag = vr.roll(scene, 2.0, 0.5, [1.0, 5.0], torque=0.01, drag=c)
-    by_feedback = vr.roll(scene, 2.0, 0.5, [1.0, 5.0], torque=vr.Feedback(0.01, omega=-c))
-    assert np.array_equal(by_drag.omega, by_feedback.omega)
-    coast = vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, 3.0, drag=0.05)
-    assert close(coast.torque[-1], -0.05 * coast.omega[-1], tol.SCENE)
-    many = vr.ensemble(scene, 2.0, 0.5, [1.0, 5.0], torque=0.01, drag=[0.0, c])
-    assert np.array_equal(many.V[1], by_drag.V)

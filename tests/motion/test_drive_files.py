@@ -39,22 +39,6 @@ def test_a_motion_carries_its_drive(tmp_path):
         assert "drive_brake" not in data
 
 
-def test_a_callable_that_starts_at_rest_does():
-    """Its polynomials begin with rounding of either sign, which would be a start in full slip the wrong way."""
-    for speed in ({"V": lambda t: 0.1 * np.sin(t), "omega0": 0.0}, {"omega": lambda t: 0.1 * np.sin(t), "V0": 0.0}):
-        m = vr.roll(ROLLER, **{"V0": None, "omega0": None, "t": [0.0, 0.5, 1.0]} | speed)
-        assert m.V[0] == m.omega[0] == 0.0
-        assert (m.switches, m.reversals.size) == ((), 0)
-
-
-def test_traction_at_rest_has_the_sign_of_what_follows():
-    """V = -0 at the start of a motion backward: contact() takes the limit from that side."""
-    for torque in (0.1, 0.8):
-        Q, other = (vr.roll(ROLLER, 0.0, 0.0, [0.0, 1e-9, 1.0], torque=q).contact("Q").Q for q in (torque, -torque))
-        assert np.array_equal(Q, -other)
-        assert Q[0] > 0.0
-
-
 def test_an_ensemble_carries_its_drives():
     steps = vr.Schedule([0.0, 1.0, 1.0], [[0.0, 0.2, 0.0], [0.0, 0.1, 0.0]])
     e = vr.ensemble(ROLLER, 0.0, 0.0, [1.0, 4.0], torque=steps, slope=[0.01, 0.02], fields=("V", *ACTING))

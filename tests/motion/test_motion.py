@@ -130,17 +130,6 @@ def test_a_high_step_limit_takes_no_memory():
     assert taken_beside(lambda: vr.roll(ROUNDED, 1.5, 0.5, 5e-3, rtol=1e-12, max_steps=10_000_000)) < 10_000_000
 
 
-def test_contact_along_the_motion():
-    motion = vr.roll(ROUNDED, 1.5, 0.5, [0.0, 1e-4, 2e-4, 1e-3])
-    state = motion.contact()
-    assert state.full_slip.tolist() == [True, True, False, False]
-    assert state.Q[0] == -ROUNDED.mu
-    assert np.array_equal(state.full_slip, motion.regime == FULL)
-    spin = vr.roll(ROUNDED, 0.0, 1.0, [0.0, 1e-5])
-    assert spin.delta[0] == math.inf
-    assert spin.contact().Q[0] == ROUNDED.mu
-
-
 @pytest.mark.filterwarnings("ignore:roll")
 def test_contact_along_a_motion_that_ended_early():
     """NaN where it did not arrive; elsewhere the same bits as of the motion up to there."""

@@ -34,14 +34,6 @@ def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
     assert peak <= tol.BYTES_A_CORNER * 2 * count
 
 
-def test_corners_do_not_use_up_the_step_limit():
-    """A measured torque of 300 corners, at each of which a step ends, and a limit of 100 steps."""
-    times = np.arange(300) * 1e-2
-    m = vr.roll(ROLLER, 0.1, 0.1, times[-1], torque=vr.Schedule(times, 0.01 * np.sin(times)), rtol=1e-4, max_steps=100)
-    assert m.success
-    assert m.steps >= 299
-
-
 def test_schedules_of_many_motions_take_little_memory_beside_themselves():
     """100 motions of 3,000 corners each: pieces of all at once would take 24 MB."""
     times = np.sort(np.random.default_rng(1).uniform(0.0, 1.0, (100, 3000)), axis=1)
