@@ -21,7 +21,6 @@ from memory import forget
 from processes import printed
 
 import viscoroll as vr
-from viscoroll.motion import flow_store
 from viscoroll.motion.ensemble import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
@@ -210,12 +209,13 @@ folder = Path(sys.argv[1])
 sys.path.insert(0, sys.argv[2])
 import numpy as np
 import test_invariance as test
+from viscoroll.motion import flow_store
 library = folder / "register.so"
 register = ctypes.CDLL(str(library)) if library.exists() else None
 usual = register.get() if register else 0
 for name, bits in ({"usual": 0} | (test.MODES if register else {})).items():
     test.forget()
-    test.flow_store.folder = lambda: folder / name
+    flow_store.folder = lambda: folder / name
     if register:
         register.set(usual | bits)
     try:
@@ -226,7 +226,7 @@ for name, bits in ({"usual": 0} | (test.MODES if register else {})).items():
             register.set(usual)
     np.savez(folder / f"{name}.npz", register_after=register_after, **found)
 if "fork" in multiprocessing.get_all_start_methods():
-    test.flow_store.folder = lambda: folder / "fork"
+    flow_store.folder = lambda: folder / "fork"
     with multiprocessing.get_context("fork").Pool(1) as pool:
         (found,) = pool.map_async(test.work, range(1)).get(timeout=200)
     np.savez(folder / "fork.npz", **found)
@@ -246,9 +246,13 @@ def elsewhere(tmp_path_factory):
     return {path.stem: dict(np.load(path)) for path in folder.glob("*.npz")}
 
 
-def test_other_processes(elsewhere, own_maps):
+@pytest.fixture(scope="module")
+def expected(maps_of_this_file):
+    return everything()
+
+
+def test_other_processes(elsewhere, expected):
     """A process of its own and the child of one that has used threads and kernels compute the same bits, and end."""
-    expected = everything()
     for way in {"usual", "fork"} & elsewhere.keys():
         assert_same({name: values for name, values in elsewhere[way].items() if name != "register_after"}, expected)
 
@@ -293,11 +297,8 @@ def test_rounding_mode(modes):
 # --- threads and forks ---
 
 
-def test_called_from_several_threads_at_once(own_maps):
+def test_called_from_several_threads_at_once(expected, own_maps):
     """The same bits as one call alone, with nothing at hand when they start."""
-    expected = everything()
-    forget()
-    shutil.rmtree(flow_store.folder())
     together = Barrier(4)
 
     def work(_):
@@ -317,9 +318,7 @@ def work(_):
 # --- numpy ---
 
 
-def test_numpy_set_to_raise(own_maps):
-    expected = everything()
-    forget()
+def test_numpy_set_to_raise(expected, own_maps):
     with np.errstate(all="raise"):
         found = everything()
     assert_same(found, expected)

@@ -290,8 +290,13 @@ def test_odd_values_are_right_or_refused(call):
                 assert np.array_equal(np.squeeze(one), np.squeeze(other), equal_nan=True), (argument, kind)
 
 
+@functools.cache
 def results():
     """What functions give of a scene and of a cylinder."""
+    return [*compute_results()]
+
+
+def compute_results():
     for kind, roller in (("a Scene", SCENE), ("a Cylinder", CYLINDER)):
         yield kind, roller.contact(0.5, omega=0.501).to_xarray()
         yield kind, roller.stress(1e-4, 0.5, delta=1e-3).to_xarray()
