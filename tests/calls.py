@@ -22,6 +22,7 @@ from scipy import stats
 import viscoroll as vr
 from viscoroll import fmu
 from viscoroll.app.identification.measurements_toml import read_measurements
+from viscoroll.contact_law.contact_fields import FIELDS, SLOPES
 from viscoroll.contact_law.validity.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
 from viscoroll.contact_law.validity.free_rolling import FreeRolling
 from viscoroll.contact_law.validity.steadiness import Steadiness
