@@ -106,6 +106,14 @@ def opened(path, kind="ModelExchange", **given):
         shutil.rmtree(one.folder)
 
 
+def simulated(path, t, kind="CoSimulation", rtol=None, **starts):
+    """v, omega and x of a roller at these even times from 0, by FMPy."""
+    return fmpy.simulate_fmu(
+        path, stop_time=t[-1], output_interval=t[1], fmi_type=kind, relative_tolerance=rtol, start_values=starts,
+        output=["v", "omega", "x"],
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("name", CYLINDERS)
@@ -169,11 +177,8 @@ def test_roller_by_co_simulation_is_that_of_roll(built, name, throw, version):
     V0, omega0, force, torque = THROWS[throw]
     force, torque, t = force * cylinder.load, torque * cylinder.load * cylinder.R, np.linspace(0.0, 0.5, 11)
     exact = cylinder.roll(V0, omega0, t, rtol=1e-11, force=force, torque=torque)
-    found = fmpy.simulate_fmu(
-        built(name, "Roller", version), stop_time=t[-1], output_interval=t[1], fmi_type="CoSimulation",
-        start_values={"v0": V0, "omega0": omega0, "drive_force": force, "drive_torque": torque},
-        output=["v", "omega", "x"],
-    )  # fmt: skip
+    path = built(name, "Roller", version)
+    found = simulated(path, t, v0=V0, omega0=omega0, drive_force=force, drive_torque=torque)
     assert close(found["time"], t, tol.FMU_ROUNDED, scale=1.0)
     for column, values in {"v": exact.V, "omega": exact.omega, "x": exact.x}.items():
         assert close(found[column], values, tol.FMU_ROLLER, scale=np.abs(values).max()), column
@@ -197,20 +202,16 @@ def test_the_law_of_a_cover_holds_at_its_load(built, tmp_path):
 
 
 def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
-    options = {"stop_time": 0.2, "output_interval": 0.1, "fmi_type": "CoSimulation", "output": ["v", "x"]}
-    still = fmpy.simulate_fmu(built("alike", "Roller", 2), start_values={"v0": 0.0}, **options)
-    assert np.abs(still["v"]).max() < 1e-6  # v_min
-    pulled = fmpy.simulate_fmu(built("alike", "Roller", 2), start_values={"v0": 0.0, "drive_force": -20.0}, **options)
+    path, t = built("alike", "Roller", 2), [0.0, 0.1, 0.2]
+    assert np.abs(simulated(path, t, v0=0.0)["v"]).max() < 1e-6  # v_min
+    pulled = simulated(path, t, v0=0.0, drive_force=-20.0)
     exact = CYLINDERS["alike"].roll(0.0, 0.0, [0.1, 0.2], rtol=1e-10, force=-20.0)
     assert close(pulled["v"][1:], exact.V, tol.FMU_FROM_REST)
 
 
 def test_roller_by_an_integrator_of_the_tool(built):
     cylinder, t = CYLINDERS["unlike"], np.linspace(0.0, 0.3, 4)
-    found = fmpy.simulate_fmu(
-        built("unlike", "Roller", 3), stop_time=t[-1], output_interval=t[1], fmi_type="ModelExchange",
-        relative_tolerance=1e-8, start_values={"v0": 1.0}, output=["v", "omega"],
-    )  # fmt: skip
+    found = simulated(built("unlike", "Roller", 3), t, "ModelExchange", 1e-8, v0=1.0)
     exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
     assert close(found["v"], exact.V, tol.FMU_TOOL)
     assert close(found["omega"], exact.omega, tol.FMU_TOOL, scale=np.abs(exact.omega).max())
@@ -235,11 +236,8 @@ def test_an_integrator_of_the_tool_passes_through_rest(built, name, throw):
     V0, omega0, force, torque = NEAR_REST[throw]
     omega0 *= 0.1 / CYLINDERS[name].R
     t = np.linspace(0.0, 20.0, 21)
-    found = fmpy.simulate_fmu(
-        built(name, "Roller", 2), stop_time=t[-1], output_interval=t[1], fmi_type="ModelExchange",
-        start_values={"v0": V0, "omega0": omega0, "drive_force": force, "drive_torque": torque},
-        output=["v", "omega"],
-    )  # fmt: skip
+    path = built(name, "Roller", 2)
+    found = simulated(path, t, "ModelExchange", v0=V0, omega0=omega0, drive_force=force, drive_torque=torque)
     exact = CYLINDERS[name].roll(V0, omega0, t, rtol=1e-10, force=force or None, torque=torque or None)
     for column, values in {"v": exact.V, "omega": exact.omega}.items():
         scale = max(np.abs(values).max(), 1.0 if column == "v" else 1.0 / CYLINDERS[name].R)
