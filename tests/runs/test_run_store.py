@@ -19,6 +19,7 @@ from viscoroll.core import files
 from viscoroll.io.runs import export_netcdf, open_run, read_run, run_ensemble, verify
 from viscoroll.io.runs.store import Store, locked
 
+refused_file = partial(refused, error=vr.FileError)
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 RUN = """
@@ -88,7 +89,7 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
         export_netcdf(store, tmp_path / "all.nc")
     assert not (tmp_path / "all.nc").exists()
     (store / "V_mean/0").write_bytes(b"")
-    refused(lambda: open_run(store), "V_mean/0", error=vr.FileError)
+    refused_file(lambda: open_run(store), "V_mean/0")
 
 
 @pytest.mark.parametrize("change", ["flip", "truncate", "remove"])
@@ -106,7 +107,7 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
         else:
             (store / name).write_bytes(data if change == "flip" else data[: len(data) // 2])
         if name == "records/start":
-            refused(lambda: verify(store), "start", error=vr.FileError)
+            refused_file(lambda: verify(store), "start")
         else:
             assert not verify(store).ok, name
         made = run_ensemble(read_run(run_file), store)
@@ -163,16 +164,16 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
         (partial(run_ensemble, run, thesis), "not a results store, it contains chapter.tex"),
         (partial(verify, thesis), "not a results store"),
     ):
-        refused(call, words, error=vr.FileError)
+        refused_file(call, words)
     assert [path.name for path in thesis.iterdir()] == ["chapter.tex"]
     with locked(tmp_path / "store.zarr"):
-        refused(partial(run_ensemble, run, tmp_path / "store.zarr"), "another process", error=vr.FileError)
+        refused_file(partial(run_ensemble, run, tmp_path / "store.zarr"), "another process")
 
 
 def test_a_folder_that_may_not_be_read_is_no_damaged_store(run_file, tmp_path, whole, monkeypatch):
     monkeypatch.setattr(os, "access", lambda *_: False)
     for call in (lambda: verify(whole), lambda: open_run(whole), lambda: run_ensemble(read_run(run_file), whole)):
-        refused(call, "whole.zarr: cannot be read (Permission denied)", error=vr.FileError)
+        refused_file(call, "whole.zarr: cannot be read (Permission denied)")
 
 
 # --- more motions ---
@@ -204,7 +205,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
         with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), smaller, threads=1)
         assert not verify(smaller).ok
-        refused(lambda: open_run(smaller), "repairs it", error=vr.FileError)
+        refused_file(lambda: open_run(smaller), "repairs it")
     run_ensemble(read_run(run_file), smaller)
     assert content(smaller) == content(whole)
 
@@ -229,7 +230,7 @@ def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, word
     run_ensemble(read_run(run_file), store, threads=2)
     was = content(store)
     run_file.write_text(text.replace("n = 1200", now))
-    refused(lambda: run_ensemble(read_run(run_file), store), words, "give another folder", error=vr.FileError)
+    refused_file(lambda: run_ensemble(read_run(run_file), store), words, "give another folder")
     assert content(store) == was
 
 
