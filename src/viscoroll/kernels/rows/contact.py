@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
 from .contact_states import read_state, slip_and_creepage, write_field
-from .cover import free_creep_value, sliding_creep, slope_over_speed
+from .cover import free_creep_at, sliding_creep, slope_over_speed
 from .evaluate import (
     H_over_F2,
     H_over_F2_secants,
@@ -223,7 +223,7 @@ def _write_functions_of_speed(k, column, buffer, law, request):
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
     buffer[0, column] = functions.L
-    buffer[3, column] = free_creep_value(position, u, law.cover_rows)
+    buffer[3, column] = free_creep_at(position, u, law.cover_rows)[0]
     write_field(to.M, factor * functions.m, n, request)
     if to.dM_dV >= 0 or _requests_Q_slopes(to):
         # evaluated again: otherwise the compiler would compute slopes that are not requested

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from .rows import NODES, Rows, row_range
 PER_OCTAVE = 12
 #: nodes on either side of an octave that take part in its polynomial; with 18 it is accurate to rounding
 _ASIDE = 18
+#: imaginary step of log2 u for derivatives: its square is far below rounding
+_IMAGINARY_STEP = 1e-30
 #: index of lam among the quantities that are computed at the nodes
 _LAM = 0
 #: index of L = 2 kappa delta_star/mu
@@ -45,6 +48,9 @@ _BEYOND = 42
 _END_NODES = 52
 #: degree of these polynomials
 _END_DEGREE = 12
+#: degree of that of delta_0, which for nu < 1/2 has a term u^2 ln u at low speed, from the memory of the pressure near
+#: the edges: with 12 delta_0 jumped by 2e-10 of delta_star/mu where the first octave begins, with 18 by 3e-13
+_STRAIN_DEGREE = 18
 #: the secant method ends where the product of the last two relative errors of the load is below this: the next step
 #: then leaves an error below rounding
 _LOAD_ERRORS = 1e-14
@@ -86,11 +92,12 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     values = _solve_nodes(modes, thickness, u, slow_limit[_LAM])
     values[_FREE] *= side
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
-    slow, slow_limit = _fit_slow_row(u[:_END_NODES], values[:, :_END_NODES], slow_limit, rows)
+    y = np.ldexp(u[:_END_NODES], -e0)
+    slow_limit, _, slow = _fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0])
     inside = _interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
     x = rows.x[last - e0 + 1 :]
     fast, limits = _fit_fast_rows(u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last))
-    powers = rows.fit_slopes(*np.concatenate([slow, inside, fast], axis=2))
+    powers = rows.fit_slopes(*np.concatenate([slow[:, :, None], inside, fast], axis=2))
     powers[:, 0, 0] = slow_limit
     share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
     nothing = np.zeros_like(press)
@@ -190,18 +197,6 @@ def _solve_elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
     return values
 
 
-def _fit_slow_row(u: Floats, values: Floats, limits: Floats, rows: Rows) -> tuple[Floats, Floats]:
-    """Fit the row [0, 2^e0), where all quantities are polynomials of u.
-
-    u, values: nodes in that row, (n,), and the quantities there, (5, n).
-    limits: for u -> 0, (5,); NaN: not known.
-    rows: of the cover.
-    Returns (values and slopes over ln u at the nodes of the row, (2, 5, 1, nodes); all limits, (5,)).
-    """
-    limits, _, fitted = _fit_end(u / math.ldexp(1.0, rows.e0), values, limits, rows.t[0])
-    return fitted[:, :, None], limits
-
-
 def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: float) -> tuple[Floats, Floats]:
     """Fit the rows beyond the last octave, where limits, epsilon u and M u^2/V are polynomials of 1/u.
 
@@ -214,9 +209,9 @@ def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: 
     y, x_inverse = begin / u, (begin / x).ravel()
     values = values.copy()
     values[_MOMENT] /= y
-    limits, factors, (fitted, slopes) = _fit_end(y, values, limits, x_inverse)
+    limits, first, (fitted, slopes) = _fit_end(y, values, limits, x_inverse)
     fitted[_MOMENT], slopes[_MOMENT] = fitted[_MOMENT] * x_inverse, (slopes[_MOMENT] + fitted[_MOMENT]) * x_inverse
-    first = np.array([_value_at_0(y, factor) for factor in factors]) * begin
+    first *= begin
     first[_MOMENT] *= begin
     order = [_LIMIT, _LAM, _FREE]
     packed = np.array([*limits[order], *first[order], *first[[_EPSILON, _MOMENT]]])
@@ -224,28 +219,24 @@ def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: 
 
 
 def _fit_end(y: Floats, values: Floats, limits: Floats, wanted: Floats) -> tuple[Floats, Floats, Floats]:
-    """Fit values = limit + y P(y) with a polynomial P of degree 12, by least squares.
+    """Fit values = limit + y P(y) with polynomials P, by least squares.
 
     y: nodes in [0.05, 1], (n,).
     values: at the nodes, (5, n).
-    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial of degree 12 is taken.
+    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
     wanted: points in [0, 1], (m,).
-    Returns (limits, (5,); (values - limit)/y at the nodes, (5, n); values and derivatives with respect to ln y at
-    the points, (2, 5, m)).
+    Returns (limits, (5,); P(0), (5,); values and derivatives with respect to ln y at the points, (2, 5, m)).
     """
-    from numpy.polynomial.chebyshev import chebder, chebfit, chebval
+    from numpy.polynomial import Chebyshev
 
-    given = zip(values, limits, strict=True)
-    limits = np.array([_value_at_0(y, row) if np.isnan(limit) else limit for row, limit in given])
-    factors = (values - limits[:, None]) / y
-    terms = chebfit(2.0 * y - 1.0, factors.T, _END_DEGREE)
-    P, slope = chebval(2.0 * wanted - 1.0, terms), 2.0 * chebval(2.0 * wanted - 1.0, chebder(terms))
-    return limits, factors, np.stack([wanted * P + limits[:, None], wanted * (P + wanted * slope)])
+    def fit(n: int, values: Floats) -> Any:
+        return Chebyshev.fit(y, values, _STRAIN_DEGREE if n == _FREE else _END_DEGREE, [0.0, 1.0])
 
-
-def _value_at_0(y: Floats, values: Floats) -> float:
-    """Return the value at 0 of the polynomial of degree 12 that fits ``values`` at nodes ``y`` in [0.05, 1]."""
-    return float(np.polynomial.chebyshev.Chebyshev.fit(y, values, _END_DEGREE, [0.0, 1.0])(0.0))
+    limits = np.array([fit(n, values[n])(0.0) if np.isnan(limit) else limit for n, limit in enumerate(limits)])[:, None]
+    factors = [fit(n, factor) for n, factor in enumerate((values - limits) / y)]
+    P, slope = (np.array([f(wanted) for f in each]) for each in (factors, [f.deriv() for f in factors]))
+    fitted = np.stack([wanted * P + limits, wanted * (P + wanted * slope)])
+    return limits[:, 0], np.array([factor(0.0) for factor in factors]), fitted
 
 
 def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
@@ -270,11 +261,10 @@ def _interpolation_matrices() -> tuple[Floats, Floats]:
     count = PER_OCTAVE + 2 * _ASIDE + 1
     nodes = (np.arange(count) - _ASIDE) / PER_OCTAVE
     weights = np.array([(-1.0) ** k * math.comb(count - 1, k) for k in range(count)])
-    inverse = 1.0 / (np.log2(0.5 * (NODES + 3.0)) - nodes[:, None])
-    terms = weights[:, None] * inverse
+    # slopes by a step in the imaginary direction, which cancels no digits
+    terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _IMAGINARY_STEP - nodes[:, None])
     basis = terms / terms.sum(axis=0)
-    slopes = basis * ((terms * inverse).sum(axis=0) / terms.sum(axis=0) - inverse)
-    return basis, slopes / math.log(2.0)
+    return basis.real, basis.imag / (_IMAGINARY_STEP * math.log(2.0))
 
 
 def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
