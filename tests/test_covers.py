@@ -96,7 +96,7 @@ def test_an_elastic_cover(nu):
 
 def test_a_thin_compressible_cover_is_a_foundation():
     """To a first order in the thickness, whose extrapolation is ten times as near."""
-    modes = CoverModes(ONE, ONE, 1.0, 0.0, 0.5)
+    modes = CoverModes(vr.Cover(ONE, nu=0.0, thickness=1.0))
     ratios = []
     for theta in (3.0, 6.0):
         state = solve(modes, 1.0, theta)

@@ -18,7 +18,7 @@ from ...core.array_types import Floats
 from ...core.errors import ParameterError
 from ..cover import Cover
 from .cover_pressure import local_strain
-from .cover_solve import LARGEST_THETA, CoverModes, modes_of_cover, solve
+from .cover_solve import LARGEST_THETA, CoverModes, solve
 from .pack import CoverRows, constant_rows, steady_table
 from .rows import NODES, Rows, row_range
 
@@ -73,8 +73,8 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
     """
     # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder
-    modes, thickness, side = modes_of_cover(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
-    slow_limit = _solve_elastic(modes, thickness, 1.0) if thickness > _THINNEST else None
+    modes, thickness, side = CoverModes(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
+    slow_limit = _solve_elastic(modes, 1.0) if thickness > _THINNEST else None
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
         allowed = f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
         raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
@@ -82,14 +82,14 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
         lam, L, free = slow_limit[_LAM], slow_limit[_LIMIT], side * slow_limit[_FREE]
         table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
         return CoverRows(0, table, constant_rows(L, free), np.array([L, lam, free, *np.zeros(5)]))
-    fast_limit = _solve_elastic(modes, thickness, modes.alpha)
+    fast_limit = _solve_elastic(modes, modes.alpha)
     # the solve loses digits of delta_0: its limits are extrapolated, to join the values at the nodes
     slow_limit[_FREE] = fast_limit[_FREE] = math.nan
     e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
     last = math.frexp(modes.series.a[-1] * max(1.0, thickest or thickness))[1] + _FAST_OCTAVES
     first_node = e0 * PER_OCTAVE - _END_NODES + 1
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
-    values = _solve_nodes(modes, thickness, u, slow_limit[_LAM])
+    values = _solve_nodes(modes, u, slow_limit[_LAM])
     values[_FREE] *= side
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
     y = np.ldexp(u[:_END_NODES], -e0)
@@ -114,14 +114,13 @@ def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floa
     orders: terms of the pressure; default: as many as rows are made with.
     Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V.
     """
-    modes, thickness = modes_of_cover(cover), cover.thickness
-    z = 0.5 / u / math.sqrt(1.0 + (modes.alpha - 1.0) * u / (u + 1.0)) / (1.0 + 0.2 / thickness)
-    return _solve_node(modes, thickness, u, math.log(z), 2.0, orders)[0]
+    modes = CoverModes(cover)
+    z = 0.5 / u / math.sqrt(1.0 + (modes.alpha - 1.0) * u / (u + 1.0)) / (1.0 + 0.2 / cover.thickness)
+    return _solve_node(modes, u, math.log(z), 2.0, orders)[0]
 
 
 def _solve_node(
     modes: CoverModes,
-    thickness: float,
     u: float,
     start: float,
     slope: float,
@@ -131,7 +130,6 @@ def _solve_node(
     """Solve for the half contact length that carries the load, ln H = -ln(4 stiffness u^2), by the secant method.
 
     modes: of the cover.
-    thickness: divided by l0.
     u: kappa |V|.
     start: first approximation of ln z.
     slope: first approximation of d ln H/d ln z.
@@ -139,7 +137,7 @@ def _solve_node(
     stiffness: stiffness of the bodies divided by their long-time stiffness.
     Returns (lam, L, 2 kappa delta_0, epsilon and M/V as an array; ln z; d ln H/d ln z).
     """
-    y, goal, previous = start, -math.log(4.0 * stiffness * u * u), None
+    y, goal, previous, thickness = start, -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
     for _ in range(_MOST_STEPS):
         z = math.exp(y)
         state = solve(modes, z, z * u / thickness, orders)
@@ -161,11 +159,10 @@ def _solve_node(
     raise ParameterError("thickness/l0", f"{thickness:g}", "larger: no contact length with this load was found")
 
 
-def _solve_nodes(modes: CoverModes, thickness: float, u: Floats, lam: float) -> Floats:
+def _solve_nodes(modes: CoverModes, u: Floats, lam: float) -> Floats:
     """Solve the states of a cover at increasing speeds.
 
     modes: of the cover.
-    thickness: divided by l0.
     u: kappa |V|, shape (n,).
     lam: contact length at rest divided by l0.
     Returns the five quantities at each node, (5, n).
@@ -175,23 +172,22 @@ def _solve_nodes(modes: CoverModes, thickness: float, u: Floats, lam: float) -> 
         last = logs[max(n - _EXTRAPOLATED, 0) : n][::-1]
         binomials = [math.comb(last.size, k) for k in range(1, last.size + 1)]
         start = float(sum((-1.0) ** np.arange(last.size) * binomials * last)) if n else math.log(0.5 * lam / speed)
-        values[:, n], logs[n], slope = _solve_node(modes, thickness, speed, start, slope)
+        values[:, n], logs[n], slope = _solve_node(modes, speed, start, slope)
     return values
 
 
-def _solve_elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
+def _solve_elastic(modes: CoverModes, alpha: float) -> Floats:
     """Solve the cover as an elastic layer; slopes and creep depend on the shape of the contact alone.
 
     modes: of the cover.
-    thickness: divided by l0.
     alpha: 1 for its long-time stiffness; its alpha for the instantaneous stiffness.
     Returns the five quantities: epsilon 0; M/V is 0 at once, and at long times T_mean, or NaN (not known) beside a body
     that deforms too.
     """
     instant = alpha != 1.0
-    elastic = modes.elastic(modes.layer_instant * modes.alpha if instant else modes.share)
-    start = math.log(0.5 / (1.0 + 0.2 / thickness) / math.sqrt(alpha))
-    values = _solve_node(elastic, thickness, 0.5, start, 2.0, stiffness=alpha)[0]
+    elastic = modes.elastic(min(modes.layer_instant * modes.alpha, 1.0) if instant else modes.share)
+    start = math.log(0.5 / (1.0 + 0.2 / modes.cover.thickness) / math.sqrt(alpha))
+    values = _solve_node(elastic, 0.5, start, 2.0, stiffness=alpha)[0]
     T_mean = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
     values[_EPSILON], values[_MOMENT] = 0.0, 0.0 if instant else T_mean
     return values
@@ -282,12 +278,11 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     u = v.copy()
     for _ in range(60):
         (L, lam), (d_L, d_lam) = _read_lengths(rows, powers, limits, u)
-        step = np.log(v * L / (2.0 * u)) / (1.0 - d_L / L)
-        u *= np.exp(step)
+        dlnu_dlnv, share, press = 1.0 / (1.0 - d_L / L), lam / L, 1.0 / (L * L)
+        step = np.log(v * L / (2.0 * u)) * dlnu_dlnv
         if np.abs(step).max() < 1e-15:
             break
-    (L, lam), (d_L, d_lam) = _read_lengths(rows, powers, limits, u)
-    dlnu_dlnv, share, press = 1.0 / (1.0 - d_L / L), lam / L, 1.0 / (L * L)
+        u *= np.exp(step)
     slopes = dlnu_dlnv * np.stack([share * (d_lam / lam - d_L / L), -2.0 * press * d_L / L])
     return np.stack([share, press]).reshape(2, *rows.x.shape), slopes.reshape(2, *rows.x.shape)
 
