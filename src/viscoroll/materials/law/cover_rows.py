@@ -27,8 +27,8 @@ from .rows import NODES, Rows, row_range
 PER_OCTAVE = 12
 #: nodes on either side of an octave that take part in its polynomial; with 18 it is accurate to rounding
 _ASIDE = 18
-#: imaginary step of log2 u for derivatives: its square is far below rounding
-_IMAGINARY_STEP = 1e-30
+#: imaginary step for derivatives, relative or of log2 u; its square is far below rounding, dimensionless
+_TINY = 1e-30
 #: index of lam among the quantities that are computed at the nodes
 _LAM = 0
 #: index of L = 2 kappa delta_star/mu
@@ -51,6 +51,9 @@ _END_DEGREE = 12
 #: degree of that of delta_0, which for nu < 1/2 has a term u^2 ln u at low speed, from the memory of the pressure near
 #: the edges: with 12 delta_0 jumped by 2e-10 of delta_star/mu where the first octave begins, with 18 by 3e-13
 _STRAIN_DEGREE = 18
+#: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too; without them M was
+#: wrong by 1 % at a thousand times the fastest rate
+_LOG_TERMS = 5
 #: the secant method ends where the product of the last two relative errors of the load is below this: the next step
 #: then leaves an error below rounding
 _LOAD_ERRORS = 1e-14
@@ -96,7 +99,10 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     slow_limit, _, slow = _fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0])
     inside = _interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
     x = rows.x[last - e0 + 1 :]
-    fast, limits = _fit_fast_rows(u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last))
+    log_terms = _LOG_TERMS if cover.other.alpha > 1.0 else 0
+    fast, limits = _fit_fast_rows(
+        u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last), log_terms
+    )
     powers = rows.fit_slopes(*np.concatenate([slow[:, :, None], inside, fast], axis=2))
     powers[:, 0, 0] = slow_limit
     share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
@@ -193,19 +199,22 @@ def _solve_elastic(modes: CoverModes, alpha: float) -> Floats:
     return values
 
 
-def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: float) -> tuple[Floats, Floats]:
+def _fit_fast_rows(
+    u: Floats, values: Floats, limits: Floats, x: Floats, begin: float, log_terms: int
+) -> tuple[Floats, Floats]:
     """Fit the rows beyond the last octave, where limits, epsilon u and M u^2/V are polynomials of 1/u.
 
     u, values: last nodes, (n,), and the quantities there, (5, n).
     limits: for u -> infinity, (5,); NaN: not known.
     x: nodes of these rows, (rows, nodes).
     begin: where they begin.
+    log_terms: as of :func:`_fit_end`.
     Returns (values and slopes over ln u at x, (2, 5, rows, nodes); :attr:`.pack.CoverRows.limits`).
     """
     y, x_inverse = begin / u, (begin / x).ravel()
     values = values.copy()
     values[_MOMENT] /= y
-    limits, first, (fitted, slopes) = _fit_end(y, values, limits, x_inverse)
+    limits, first, (fitted, slopes) = _fit_end(y, values, limits, x_inverse, log_terms)
     fitted[_MOMENT], slopes[_MOMENT] = fitted[_MOMENT] * x_inverse, (slopes[_MOMENT] + fitted[_MOMENT]) * x_inverse
     first *= begin
     first[_MOMENT] *= begin
@@ -214,25 +223,34 @@ def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: 
     return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
 
 
-def _fit_end(y: Floats, values: Floats, limits: Floats, wanted: Floats) -> tuple[Floats, Floats, Floats]:
-    """Fit values = limit + y P(y) with polynomials P, by least squares.
+def _fit_end(
+    y: Floats, values: Floats, limits: Floats, wanted: Floats, log_terms: int = 0
+) -> tuple[Floats, Floats, Floats]:
+    """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares.
 
     y: nodes in [0.05, 1], (n,).
     values: at the nodes, (5, n).
     limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
-    wanted: points in [0, 1], (m,).
-    Returns (limits, (5,); P(0), (5,); values and derivatives with respect to ln y at the points, (2, 5, m)).
+    wanted: points in (0, 1], (m,).
+    log_terms: terms of R.
+    Returns (limits, (5,); P + R ln y at the last point, (5,); values and derivatives with respect to ln y at the points,
+    (2, 5, m)).
     """
-    from numpy.polynomial import Chebyshev
+    from numpy.polynomial.chebyshev import chebvander
 
-    def fit(n: int, values: Floats) -> Any:
-        return Chebyshev.fit(y, values, _STRAIN_DEGREE if n == _FREE else _END_DEGREE, [0.0, 1.0])
+    def basis(y: Any, n: int, log_terms: int) -> Any:
+        terms = chebvander(2.0 * y - 1.0, _STRAIN_DEGREE if n == _FREE else _END_DEGREE)
+        return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
-    limits = np.array([fit(n, values[n])(0.0) if np.isnan(limit) else limit for n, limit in enumerate(limits)])[:, None]
-    factors = [fit(n, factor) for n, factor in enumerate((values - limits) / y)]
-    P, slope = (np.array([f(wanted) for f in each]) for each in (factors, [f.deriv() for f in factors]))
-    fitted = np.stack([wanted * P + limits, wanted * (P + wanted * slope)])
-    return limits[:, 0], np.array([factor(0.0) for factor in factors]), fitted
+    def fit(values: Floats, at: Any, log_terms: int) -> Any:
+        fits = (np.linalg.lstsq(basis(y, n, log_terms), row, rcond=None)[0] for n, row in enumerate(values))
+        return np.array([basis(at, n, log_terms) @ terms for n, terms in enumerate(fits)])
+
+    limits = np.where(np.isnan(limits), fit(values, np.array([_TINY]), 0)[:, 0], limits)[:, None]
+    # slopes by a step in the imaginary direction, which cancels no digits
+    P = fit((values - limits) / y, wanted * (1.0 + 1j * _TINY), log_terms)
+    value, slope = P.real, P.imag / _TINY
+    return limits[:, 0], value[:, -1], np.stack([wanted * value + limits, wanted * (value + slope)])
 
 
 def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
@@ -258,9 +276,9 @@ def _interpolation_matrices() -> tuple[Floats, Floats]:
     nodes = (np.arange(count) - _ASIDE) / PER_OCTAVE
     weights = np.array([(-1.0) ** k * math.comb(count - 1, k) for k in range(count)])
     # slopes by a step in the imaginary direction, which cancels no digits
-    terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _IMAGINARY_STEP - nodes[:, None])
+    terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _TINY - nodes[:, None])
     basis = terms / terms.sum(axis=0)
-    return basis.real, basis.imag / (_IMAGINARY_STEP * math.log(2.0))
+    return basis.real, basis.imag / (_TINY * math.log(2.0))
 
 
 def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
