@@ -44,12 +44,6 @@ class FreeCreep(NamedTuple):
 
 
 @inline_kernel
-def is_cover(cover_rows):
-    """Return whether the law is that of a cover."""
-    return cover_rows is not None
-
-
-@inline_kernel
 def fast_moment(shift, u, cover_rows):
     """Return M/V, divided by its scale, behind the last row of the law, where the fast limit holds.
 

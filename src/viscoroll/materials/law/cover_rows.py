@@ -51,9 +51,9 @@ _END_DEGREE = 12
 #: degree of that of delta_0, which for nu < 1/2 has a term u^2 ln u at low speed, from the memory of the pressure near
 #: the edges: with 12 delta_0 jumped by 2e-10 of delta_star/mu where the first octave begins, with 18 by 3e-13
 _STRAIN_DEGREE = 18
-#: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too; without them M was
-#: wrong by 1 % at a thousand times the fastest rate
-_LOG_TERMS = 5
+#: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too: without them M was
+#: wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9; more terms amplify the noise of the solve
+_LOG_TERMS = 2
 #: the secant method ends where the product of the last two relative errors of the load is below this: the next step
 #: then leaves an error below rounding
 _LOAD_ERRORS = 1e-14
@@ -63,8 +63,8 @@ _LEAST_STEP = 1e-8
 _MOST_STEPS = 40
 #: thickness divided by l0 below which the half contact is longer than six thicknesses for any nu, and nothing is solved
 _THINNEST = 0.01
-#: nodes from which the start for the next one is extrapolated
-_EXTRAPOLATED = 8
+#: factors of ln z at the last eight nodes in its extrapolation to the next one, the start of the secant method there
+_EXTRAPOLATION = np.array([(-1.0) ** (k + 1) * math.comb(8, k) for k in range(8, 0, -1)])
 
 
 def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
@@ -92,7 +92,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     last = math.frexp(modes.series.a[-1] * max(1.0, thickest or thickness))[1] + _FAST_OCTAVES
     first_node = e0 * PER_OCTAVE - _END_NODES + 1
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
-    values = _solve_nodes(modes, u, slow_limit[_LAM])
+    values = _solve_nodes(modes, u)
     values[_FREE] *= side
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
     y = np.ldexp(u[:_END_NODES], -e0)
@@ -120,16 +120,14 @@ def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floa
     orders: terms of the pressure; default: as many as rows are made with.
     Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V.
     """
-    modes = CoverModes(cover)
-    z = 0.5 / u / math.sqrt(1.0 + (modes.alpha - 1.0) * u / (u + 1.0)) / (1.0 + 0.2 / cover.thickness)
-    return _solve_node(modes, u, math.log(z), 2.0, orders)[0]
+    return _solve_node(CoverModes(cover), u, orders=orders)[0]
 
 
 def _solve_node(
     modes: CoverModes,
     u: float,
-    start: float,
-    slope: float,
+    start: float | None = None,
+    slope: float = 2.0,
     orders: int | None = None,
     stiffness: float = 1.0,
 ) -> tuple[Floats, float, float]:
@@ -137,13 +135,16 @@ def _solve_node(
 
     modes: of the cover.
     u: kappa |V|.
-    start: first approximation of ln z.
+    start: first approximation of ln z; None: by a half-space of the stiffness between slow and fast, which is softer.
     slope: first approximation of d ln H/d ln z.
     orders: terms of the pressure; None: the default of the solve.
     stiffness: stiffness of the bodies divided by their long-time stiffness.
     Returns (lam, L, 2 kappa delta_0, epsilon and M/V as an array; ln z; d ln H/d ln z).
     """
-    y, goal, previous, thickness = start, -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
+    goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
+    if start is None:
+        start = 0.5 * goal - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0)) - math.log1p(0.2 / thickness)
+    y = start
     for _ in range(_MOST_STEPS):
         z = math.exp(y)
         state = solve(modes, z, z * u / thickness, orders)
@@ -165,19 +166,16 @@ def _solve_node(
     raise ParameterError("thickness/l0", f"{thickness:g}", "larger: no contact length with this load was found")
 
 
-def _solve_nodes(modes: CoverModes, u: Floats, lam: float) -> Floats:
+def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
     """Solve the states of a cover at increasing speeds.
 
     modes: of the cover.
     u: kappa |V|, shape (n,).
-    lam: contact length at rest divided by l0.
     Returns the five quantities at each node, (5, n).
     """
     values, logs, slope = np.empty((5, u.size)), np.empty(u.size), 2.0
     for n, speed in enumerate(u.tolist()):
-        last = logs[max(n - _EXTRAPOLATED, 0) : n][::-1]
-        binomials = [math.comb(last.size, k) for k in range(1, last.size + 1)]
-        start = float(sum((-1.0) ** np.arange(last.size) * binomials * last)) if n else math.log(0.5 * lam / speed)
+        start = float(_EXTRAPOLATION @ logs[n - _EXTRAPOLATION.size : n]) if n >= _EXTRAPOLATION.size else None
         values[:, n], logs[n], slope = _solve_node(modes, speed, start, slope)
     return values
 
@@ -192,8 +190,7 @@ def _solve_elastic(modes: CoverModes, alpha: float) -> Floats:
     """
     instant = alpha != 1.0
     elastic = modes.elastic(min(modes.layer_instant * modes.alpha, 1.0) if instant else modes.share)
-    start = math.log(0.5 / (1.0 + 0.2 / modes.cover.thickness) / math.sqrt(alpha))
-    values = _solve_node(elastic, 0.5, start, 2.0, stiffness=alpha)[0]
+    values = _solve_node(elastic, 0.5, stiffness=alpha)[0]
     T_mean = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
     values[_EPSILON], values[_MOMENT] = 0.0, 0.0 if instant else T_mean
     return values
@@ -233,8 +230,8 @@ def _fit_end(
     limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
     wanted: points in (0, 1], (m,).
     log_terms: terms of R.
-    Returns (limits, (5,); P + R ln y at the last point, (5,); values and derivatives with respect to ln y at the points,
-    (2, 5, m)).
+    Returns (limits, (5,); P + R ln y at the last point, (5,); values and derivatives with respect to ln y at the
+    points, (2, 5, m)).
     """
     from numpy.polynomial.chebyshev import chebvander
 

@@ -28,7 +28,6 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ..cover import Cover
-from ..prony import Prony
 from .evaluate import modes_record
 
 #: terms of the pressure for theta -> 0
@@ -63,15 +62,13 @@ class LayerNodes(NamedTuple):
     """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on Poisson's ratio alone.
 
     u : nodes, wave number times thickness, (n,).
-    du : weights of the rule.
     L : (L - 1)/u times the weights.
     T : (T - 1)/u times the weights.
-    C : C less its limit for short waves.
+    C : C less its limit for short waves, times the weights.
     local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu).
     """
 
     u: Floats
-    du: Floats
     L: Floats
     T: Floats
     C: Floats
@@ -160,7 +157,7 @@ def layer_nodes(nu: float) -> LayerNodes:
     local = (kap - 1.0) / (kap + 1.0)
     coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / ((kap + 1.0) * denominator) - local
     weights = du / (u * denominator)
-    return LayerNodes(u, du, -weights * (rest + 4.0 * u * e), -weights * (rest - 4.0 * u * e), coupling, local)
+    return LayerNodes(u, -weights * (rest + 4.0 * u * e), -weights * (rest - 4.0 * u * e), du * coupling, local)
 
 
 def bessel(v: Floats, order: int) -> Floats:
@@ -299,5 +296,5 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     source = (nodes.T - nodes.L) * part * (even - 1j * odd)
     limit = z + shift + np.sum((source * np.exp(1j * v) * J).real)
     power = (even**2 + odd**2) / v**2
-    strain = -2.0 * theta * np.sum(nodes.du * nodes.C * own.real * power) / q[0]
+    strain = -2.0 * theta * np.sum(nodes.C * own.real * power) / q[0]
     return CoverState(z * q[0], shift, moment, limit, strain, q, X0 - Xi @ (c @ q))
