@@ -9,7 +9,6 @@ octave there is a polynomial of u, beyond the last one a polynomial of 1/u, both
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -77,7 +76,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     """
     # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder
     modes, thickness, side = CoverModes(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
-    slow_limit = _solve_elastic(modes, 1.0) if thickness > _THINNEST else None
+    slow_limit = _solve_elastic(modes, modes.share, 1.0) if thickness > _THINNEST else None
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
         allowed = f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
         raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
@@ -85,7 +84,8 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
         lam, L, free = slow_limit[_LAM], slow_limit[_LIMIT], side * slow_limit[_FREE]
         table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
         return CoverRows(0, table, constant_rows(L, free), np.array([L, lam, free, *np.zeros(5)]))
-    fast_limit = _solve_elastic(modes, modes.alpha)
+    fast_limit = _solve_elastic(modes, min(modes.layer_instant * modes.alpha, 1.0), modes.alpha)
+    slow_limit[_MOMENT] = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
     # the solve loses digits of delta_0: its limits are extrapolated, to join the values at the nodes
     slow_limit[_FREE] = fast_limit[_FREE] = math.nan
     e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
@@ -180,19 +180,16 @@ def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
     return values
 
 
-def _solve_elastic(modes: CoverModes, alpha: float) -> Floats:
+def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     """Solve the cover as an elastic layer; slopes and creep depend on the shape of the contact alone.
 
     modes: of the cover.
-    alpha: 1 for its long-time stiffness; its alpha for the instantaneous stiffness.
-    Returns the five quantities: epsilon 0; M/V is 0 at once, and at long times T_mean, or NaN (not known) beside a body
-    that deforms too.
+    share: the layer's part of the compliance.
+    stiffness: stiffness of the bodies divided by their long-time stiffness.
+    Returns the five quantities, with epsilon and M/V 0.
     """
-    instant = alpha != 1.0
-    elastic = modes.elastic(min(modes.layer_instant * modes.alpha, 1.0) if instant else modes.share)
-    values = _solve_node(elastic, 0.5, stiffness=alpha)[0]
-    T_mean = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
-    values[_EPSILON], values[_MOMENT] = 0.0, 0.0 if instant else T_mean
+    values = _solve_node(modes.elastic(share), 0.5, stiffness=stiffness)[0]
+    values[[_EPSILON, _MOMENT]] = 0.0
     return values
 
 
@@ -251,31 +248,22 @@ def _fit_end(
 
 
 def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
-    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes.
+    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes, barycentric.
 
     values: at the nodes of the solve, (5, n).
     begin: index of the node where the first octave begins.
     count: number of octaves.
     Returns values and slopes over ln u at the nodes of the octaves, (2, 5, octaves, nodes).
     """
-    windows = np.lib.stride_tricks.sliding_window_view(values, PER_OCTAVE + 2 * _ASIDE + 1, axis=1)
-    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
-    return np.stack([around @ matrix for matrix in _interpolation_matrices()])
-
-
-@lru_cache(maxsize=1)
-def _interpolation_matrices() -> tuple[Floats, Floats]:
-    """Return the matrices from values at the 49 nodes around an octave to its row, by the barycentric formula.
-
-    Returns (matrix to values, matrix to slopes over ln u) at the 24 nodes of the row, (49, 24) each.
-    """
-    count = PER_OCTAVE + 2 * _ASIDE + 1
-    nodes = (np.arange(count) - _ASIDE) / PER_OCTAVE
-    weights = np.array([(-1.0) ** k * math.comb(count - 1, k) for k in range(count)])
+    points = PER_OCTAVE + 2 * _ASIDE + 1
+    nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
+    weights = np.array([(-1.0) ** k * math.comb(points - 1, k) for k in range(points)])
     # slopes by a step in the imaginary direction, which cancels no digits
     terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _TINY - nodes[:, None])
     basis = terms / terms.sum(axis=0)
-    return basis.real, basis.imag / (_TINY * math.log(2.0))
+    windows = np.lib.stride_tricks.sliding_window_view(values, points, axis=1)
+    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
+    return np.stack([around @ basis.real, around @ basis.imag / (_TINY * math.log(2.0))])
 
 
 def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
@@ -290,9 +278,11 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     Returns two arrays (2, rows, nodes).
     """
     v = rows.x.ravel()
-    u = v.copy()
+    u, end = v.copy(), math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
     for _ in range(60):
-        (L, lam), (d_L, d_lam) = _read_lengths(rows, powers, limits, u)
+        values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
+        first = limits[3:5, None] / u
+        (L, lam), (d_L, d_lam) = np.where(u > end, [limits[:2, None] + first, -first], [values, slopes])
         dlnu_dlnv, share, press = 1.0 / (1.0 - d_L / L), lam / L, 1.0 / (L * L)
         step = np.log(v * L / (2.0 * u)) * dlnu_dlnv
         if np.abs(step).max() < 1e-15:
@@ -300,16 +290,3 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
         u *= np.exp(step)
     slopes = dlnu_dlnv * np.stack([share * (d_lam / lam - d_L / L), -2.0 * press * d_L / L])
     return np.stack([share, press]).reshape(2, *rows.x.shape), slopes.reshape(2, *rows.x.shape)
-
-
-def _read_lengths(rows: Rows, powers: Floats, limits: Floats, u: Floats) -> tuple[Floats, Floats]:
-    """Return L and lam at u and their derivatives with respect to ln u, by the rows and, beyond these, by the limits.
-
-    rows, powers, limits: as of :func:`_stick_functions`.
-    u: kappa |V|, (n,).
-    Returns two arrays (2, n).
-    """
-    end = math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
-    values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
-    first = limits[3:5, None] / u
-    return np.where(u > end, limits[:2, None] + first, values), np.where(u > end, -first, slopes)
