@@ -62,9 +62,9 @@ def test_slopes_of_an_alpha_each_where_a_row_ends(alpha):
     delta = s * delta_star(scene, V)
     each = vr.contact(scene.replace(alpha=np.full(V.size, alpha)), V, delta=delta, slopes=True)
     alone = vr.contact(scene, V, delta=delta, slopes=True)
-    bound = tol.EACH_ALPHA / (1.0 - s)  # over the condition of beta
-    assert close(each.dQ_dV, alone.dQ_dV, rel=bound, scale=1.0 / V)
-    assert close(each.dQ_ddelta, alone.dQ_ddelta, rel=bound)
+    condition = 1.0 / (1.0 - s)  # of beta
+    assert close(each.dQ_dV, alone.dQ_dV, rel=tol.EACH_SLOPE_OVER_V * condition, scale=1.0 / V)
+    assert close(each.dQ_ddelta, alone.dQ_ddelta, rel=tol.EACH_ALPHA * condition)
 
 
 @pytest.mark.parametrize("octave", range(-4, 5))

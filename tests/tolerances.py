@@ -87,6 +87,8 @@ AXIS_UNSTEADY = 2e-14
 #: An alpha each, by the axis of alpha: lam, delta_star, M and Q, and beta times its condition; epsilon.  As asked of
 #: the axis, and of epsilon what the row of one alpha has; 400 states from 1 to 2^20 have 2.5e-15 at most.
 EACH_ALPHA, EACH_SHIFT = 1e-14, 2e-14
+#: dQ_dV of an alpha each over mu/V: terms of the axis that are left out; measured 1.6e-14.
+EACH_SLOPE_OVER_V = 2e-14
 #: A material each, by the grid of z, against its own table: values, as asked, which 300 random series of 1 to 16 modes
 #: hold with 6e-14; slopes, of their scale, which are those of polynomials fitted to values.
 EACH_MATERIAL, EACH_SLOPE = 1e-13, 1e-11

@@ -53,7 +53,7 @@ PART_BLOCKS = PART_SIZE // BLOCK_SIZE
 #: Terms of a group, a cubic polynomial in s.
 GROUP = 4
 #: Groups of the blocks of (L, M/V), (lam, epsilon), H/F^2 and eta/F in most rows; bodies are alike and not on the axis.
-SHORT = (4, 4, 3, 2, 2, 1), (4, 4, 3, 2, 2, 1), (4, 3, 2), (4, 3, 2)
+SHORT = (4, 4, 2, 2, 1, 1), (4, 4, 2, 2, 1, 1), (4, 3, 2), (4, 3, 2)
 #: Functions of a row, or pairs of them, on the axis.
 ALPHA_FUNCTIONS = len(SHORT)
 #: Groups of a block in the other rows.

@@ -30,11 +30,12 @@ _DIVIDED_BY_C = [AXIS_FUNCTIONS.index(name) for name in ("epsilon", "m", "N")]
 #: coefficient of Chebyshev polynomials of t and s, divided by the least value of its function in the row, below which
 #: it is dropped: the sum of some hundred of them is below the rounding of a double
 _NEGLIGIBLE = 4e-17
-#: the same of functions whose slopes are fields or enter slopes of Q, multiplied by k^2, the slope of T_k at the ends
-#: of a row: with the bound above alone dQ_dV was off by 3e-13 of mu/V where a row ends, with these by 6e-15
-_NEGLIGIBLE_SLOPES = {"L": 3e-16, "m": 1e-14, "H_over_F2": 7e-17}
-#: functions of a row in the order in which terms are dropped
-_ROW_FUNCTIONS = ("L", "m", "lam", "epsilon", "H_over_F2", "eta_over_F")
+#: the same of functions whose slopes enter those of Q, multiplied by k^2, the slope of T_k at the ends of a row: with
+#: the bound above alone dQ_dV was off by 3e-13 of mu/V where a row ends, with this one by 1.6e-14; a quarter of it
+#: leaves 6e-15, at a tenth more of all terms
+_NEGLIGIBLE_SLOPE = 4e-16
+#: L and H/F^2, the functions with that bound, among L, m, lam, epsilon, H/F^2 and eta/F
+_FUNCTIONS_WITH_SLOPES = [0, 4]
 #: column of M/V of the half-space in a table over alpha
 _AXIS_M = AXIS_FUNCTIONS.index("m")
 
@@ -335,8 +336,7 @@ def _significant_terms(values: Floats) -> Floats:
     to_terms = np.array([np.pad(poly2cheb(power), (0, count - 1 - k)) for k, power in enumerate(units)])
     of_both = terms[:, 1:] @ to_terms
     allowed = np.full(values.shape[2:], _NEGLIGIBLE)
-    for name, slope in _NEGLIGIBLE_SLOPES.items():
-        allowed[_ROW_FUNCTIONS.index(name), 1:] = np.minimum(_NEGLIGIBLE, slope / np.arange(1, count) ** 2)
+    allowed[_FUNCTIONS_WITH_SLOPES, 1:] = np.minimum(_NEGLIGIBLE, _NEGLIGIBLE_SLOPE / np.arange(1, count) ** 2)
     dropped = np.where(np.abs(of_both) < allowed * least[1:, :, None], of_both, 0.0)
     # dropped terms are subtracted: converting the others to Chebyshev polynomials and back would add rounding errors
     terms[:, 1:] -= dropped @ powers_of_chebyshev(count, 0.0, 1.0)
