@@ -4,6 +4,8 @@ A scene fixes l0/h, so that theta = lam l0/(2 h) follows from the half contact l
 quantities are then smooth functions of u alone.  They are computed at twelve nodes an octave, from slow to fast, each
 from a start that is extrapolated from the nodes before.  Octaves are interpolated between these nodes.  Below the first
 octave there is a polynomial of u, beyond the last one a polynomial of 1/u, both with the limits of elastic layers.
+Beside a half-space that relaxes too, that of 1/u has a second one times ln u: long waves then have a memory of their
+own, which the core does not cut off.
 """
 
 from __future__ import annotations
