@@ -41,8 +41,12 @@ SCENES = (
     scene_on(vr.Cover(ONE, nu=0.3, thickness=1.0, on="base")),
     scene_on(vr.Cover(THREE, nu=0.45, thickness=2.0, part=0.8, other_nu=0.3)),
 )
-#: a layer beside a body that relaxes too
-TWO_RELAXING = scene_on(vr.Cover(THREE, nu=0.3, thickness=0.4, part=0.6, other=ONE))
+#: with layers, one of them elastic, beside a body that relaxes
+ALL = (
+    *SCENES,
+    scene_on(vr.Cover(THREE, nu=0.3, thickness=0.4, part=0.6, other=ONE)),
+    scene_on(vr.Cover(1.0, nu=0.5, thickness=0.8, part=0.3, other=THREE, on="base")),
+)
 on_each = pytest.mark.parametrize("scene", SCENES)
 
 
@@ -65,7 +69,7 @@ def test_a_thick_cover_is_a_half_space(p, other, part):
     assert list(found.keys()) == ["p"]
 
 
-@pytest.mark.parametrize("scene", [*SCENES, TWO_RELAXING])
+@pytest.mark.parametrize("scene", ALL)
 def test_rows_are_the_solve(scene):
     """With twice as many terms of the pressure; slow and fast these lose digits of epsilon."""
     cover, u = scene.material, 10.0 ** np.linspace(-12.0, 12.0, 33)
@@ -236,11 +240,7 @@ def test_a_law_of_a_roller_on_disk(tmp_path):
     refused(lambda: loaded.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "thickness/l0 = 0.5", "0.49")
 
 
-#: a layer that is elastic beside a body that relaxes
-ELASTIC_LAYER = scene_on(vr.Cover(1.0, nu=0.5, thickness=0.8, part=0.3, other=THREE, on="base"))
-
-
-@pytest.mark.parametrize("scene", [*SCENES, TWO_RELAXING, ELASTIC_LAYER])
+@pytest.mark.parametrize("scene", ALL)
 @pytest.mark.parametrize("V", [0.0, 2e-3, 0.04, 0.2])
 def test_pressure_of_a_cover_makes_the_parabola(scene, V):
     """Its integral is the load, its moment M, and the slope that both bodies take on, by Fourier's transform with the
