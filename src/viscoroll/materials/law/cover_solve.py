@@ -63,14 +63,14 @@ class LayerNodes(NamedTuple):
 
     u : nodes, wave number times thickness, (n,).
     L : (L - 1)/u times the weights.
-    T : (T - 1)/u times the weights.
+    shear : (T - L)/u times the weights.
     C : C less its limit for short waves, times the weights.
     local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu).
     """
 
     u: Floats
     L: Floats
-    T: Floats
+    shear: Floats
     C: Floats
     local: float
 
@@ -153,11 +153,11 @@ def layer_nodes(nu: float) -> LayerNodes:
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
     denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
-    rest = (2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap) * e
-    local = (kap - 1.0) / (kap + 1.0)
+    local = _half_space_coupling(nu)
     coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / ((kap + 1.0) * denominator) - local
-    weights = du / (u * denominator)
-    return LayerNodes(u, -weights * (rest + 4.0 * u * e), -weights * (rest - 4.0 * u * e), du * coupling, local)
+    rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
+    shear = du * e / denominator
+    return LayerNodes(u, -shear * rest / u, 8.0 * shear, du * coupling, local)
 
 
 def bessel(v: Floats, order: int) -> Floats:
@@ -293,7 +293,7 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     # transform of the pressure divided by pi z, times v: its even and odd terms
     mq = np.arange(1, N + 1) * q
     odd, even = mq[::2] @ A[1::2], mq[1::2] @ A[2::2]
-    source = (nodes.T - nodes.L) * part * (even - 1j * odd)
+    source = nodes.shear * part * (even - 1j * odd)
     limit = z + shift + np.sum((source * np.exp(1j * v) * J).real)
     power = (even**2 + odd**2) / v**2
     strain = -2.0 * theta * np.sum(nodes.C * own.real * power) / q[0]
