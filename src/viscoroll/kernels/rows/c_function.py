@@ -18,7 +18,7 @@ from ..compile.intrinsics import floats_at, function_address, integers_at, recor
 from ..compile.jit import inline_kernel, kernel
 from .contact import Q_slopes, signed_creep, signed_traction, stick_argument
 from .contact_states import State
-from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE, free_creep_value
+from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE, free_creep_at
 from .evaluate import body_moments, length_and_moment, locate_row, moment_factor
 from .record import PARTS_PER_ROW, ROW_SIZE, Law
 
@@ -77,7 +77,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
-    free_creep = free_creep_value(position, u, cover_rows)
+    free_creep = free_creep_at(position, u, cover_rows)[0]
     D = signed_creep(functions.L, free_creep, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)

@@ -13,7 +13,7 @@ import numpy as np
 from ..compile.intrinsics import bits_to_float, float_to_bits
 from ..compile.jit import inline_kernel, kernel
 from .contact_states import TOGETHER, State, read_state, slip_and_creepage, write_field
-from .cover import free_creep_value, sliding_creep, slope_over_speed
+from .cover import free_creep_at, sliding_creep, slope_over_speed
 from .evaluate import (
     H_over_F2,
     H_over_F2_secants,
@@ -325,7 +325,7 @@ def contact_loop(laws, request, scratch, count):
                 position = _position(_POSITION, c, scratch)
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
-                scratch[_FREE_CREEP + c] = free_creep_value(position, u, law.cover_rows)
+                scratch[_FREE_CREEP + c] = free_creep_at(position, u, law.cover_rows)[0]
                 factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
                 write_field(to.M, factor * functions.m, _index(first + k, request), request)
             for k in range(begin, end):
