@@ -142,7 +142,7 @@ class Pair:
         """
         if self.covered is not None:
             allowed = "left out, or in a Cylinder: the law of a layer depends on its load and radius"
-            raise ParameterError("thickness", f"of the {self.covered}", allowed)
+            raise described_error(f"thickness of the {self.covered}", "is given", allowed)
         if self.like:
             return self.cylinder.prony
         one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space))
@@ -170,7 +170,7 @@ class Pair:
                 "one series and compliance share where a body has a thickness: only the thickness, l0 and, beside a "
                 "rigid body, nu may vary"
             )
-            raise ParameterError(on, "of many materials", allowed)
+            raise described_error(on, "has several materials", allowed)
         series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
         part = float(np.max(parts))
         more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}

@@ -32,9 +32,7 @@ WIDTH = 6.4
 THIN = {"color": "0.7", "linewidth": 0.6}
 
 
-def new_figure(
-    title: str, rows: int = 1, columns: int = 1, height: float = 4.2, **options: Any
-) -> tuple[Figure, Any]:
+def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2, **options: Any) -> tuple[Figure, Any]:
     """Make a figure without a change of matplotlib's global state.
 
     title: line on top.
@@ -50,9 +48,7 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def new_panels(
-    title: str, count: int, per_row: int, height: float, **options: bool
-) -> tuple[Figure, list[Any]]:
+def new_panels(title: str, count: int, per_row: int, height: float, **options: bool) -> tuple[Figure, list[Any]]:
     """Make a figure with several axes of one size, row after row.
 
     title: line on top.
