@@ -20,6 +20,7 @@ TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: a hump a mode, of ever smaller height
 TEN = vr.Prony(2.0 ** np.arange(10), 10.0 ** np.linspace(0.0, -18.0, 10))
 UNLIKE = vr.Bodies(TWO, vr.Prony([1.0, 3.0], [0.3, 3e-4]), 0.3)
+COVER = vr.Cover(TWO, nu=0.3, thickness=1.0, on="base")
 
 
 def series_scene(material, kappa: float = 10.0, mu: float = 0.2, j: float = 0.5) -> vr.Scene:
@@ -247,7 +248,7 @@ def test_feedback_on_omega_misses_none():
     rng = np.random.default_rng(3)
     V, several = np.geomspace(1e-5, 1e6, 400001), 0
     for n in range(24):
-        scene = (SCENE, series_scene(TWO, mu=0.02), series_scene(UNLIKE, mu=0.02))[n % 3]
+        scene = (SCENE, *(series_scene(material, mu=0.02) for material in (TWO, UNLIKE, COVER)))[n % 4]
         size = vr.resistance_extrema(scene).M[0]
         gains = rng.uniform(-1.0, 1.0, 4) * 10.0 ** rng.uniform(-2.0, 0.0)
         force = vr.Feedback(rng.uniform(-1.5, 1.5) * size, V=gains[0], omega=gains[1])

@@ -461,8 +461,10 @@ COVER_THICK = 1e-12
 #: Rows against the solve with more terms: lam, delta_star, epsilon and M; asked.  The solve itself loses digits of
 #: epsilon at very low and of M at very high speed.
 COVER_ROWS = 1e-11
-# on either side of an octave's end: a hundred roundings of the node nearest to it
+#: On either side of an octave's end, delta_0 over delta_star/mu: a hundred roundings of the node nearest to it.
 COVER_JOIN = 1e-12
+#: M beside a body that relaxes too, up to a million millions of its fastest rate: the terms in ln u are extrapolated.
+COVER_LOGARITHMS = 1e-7
 #: delta_0 times 2 kappa where nu < 1/2: the strain is added up along the contact between points.
 COVER_FREE = 1e-5
 #: The load of an elastic layer by pipeline/evidence/prove/layer.py, which is good to seven digits.

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from refusals import refused
 from run_files import run_of
 from scipy import stats
 from scipy.stats import qmc
 
+import viscoroll as vr
 from viscoroll import sampling
 from viscoroll.io.runs import estimate, store
 from viscoroll.io.runs.evaluate import roll_block
@@ -206,3 +208,9 @@ t = 0.1
     assert "once for the laws of covers" in str(one)
     assert (one.law_seconds, one.seconds) == (1.0, 1.0)
     assert (many.law_seconds, many.seconds) == (14.0, 14.0)
+    text = text.format(load=LOADS[0]).replace("nu = 0.49", 'nu = { distribution = "uniform", loc = 0.4, scale = 0.1 }')
+    words = (
+        "[material] nu: E or nu of a body differs from motion to motion: must be",
+        "or make the other body rigid (E = inf)",
+    )
+    assert "truncate" not in refused(lambda: run_of(text, tmp_path), *words, error=vr.FileError)

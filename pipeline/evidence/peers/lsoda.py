@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.compile.intrinsics import floats_at, integers_at
-from viscoroll.kernels.rows.contact import signed_traction
+from viscoroll.kernels.rows.contact import signed_creep, signed_traction
 from viscoroll.kernels.rows.contact_states import State
 from viscoroll.kernels.rows.evaluate import length_and_moment, locate_row, moment_factor
 from viscoroll.kernels.rows.record import Law
@@ -50,7 +50,10 @@ def _compiled():
         u = state.kappa * abs(y[0])
         at = locate_row(u, law)
         of = length_and_moment(at, u, law)
-        Q, M = signed_traction(u, of.L, 0.0, state, law), moment_factor(at, u, of.scale, state) * of.m
+        Q, M = (
+            signed_traction(u, of.L, signed_creep(of.L, 0.0, state, law), state.mu, law),
+            moment_factor(at, u, of.scale, state) * of.m,
+        )
         found[0] = par[2] * (Q - 0.5 * M + par[4])
         found[1] = par[2] / par[3] * (par[5] - Q - 0.5 * M)
 

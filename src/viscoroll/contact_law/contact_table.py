@@ -15,7 +15,7 @@ from ..core.checks import broadcast_shape, extent
 from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law.evaluate import evaluate_by_modes
-from ..materials.law.per_element import record_of_alphas, record_of_materials, sort_by_octave
+from ..materials.law.per_element import record_of_materials, records_of_alphas, sort_by_octave
 from ..materials.law.table import LawTable
 from ..materials.prony import Prony
 from .contact_fields import UNSTEADY, complete, computed_fields, kernel_rows
@@ -25,8 +25,9 @@ from .parameters import Parameters
 _BLOCK = 1 << 15
 #: States of a block in which each has a material of its own, which takes some kilobytes.
 _BLOCK_OF_MATERIALS = 1 << 8
-#: States of one law that a kernel evaluates side by side; a call of no more states is evaluated without blocks.
-_TOGETHER = 64
+#: States of an alpha each that are evaluated together, in records of their own: one after the other, each would wait
+#: for its own numbers, which took half as long again; more than four gain nothing.
+_ALPHAS_TOGETHER = 4
 #: Order of states as they are.
 _NO_ORDER = np.empty(0, np.int64)
 #: Largest kappa |V|: beyond it zeta underflows.
@@ -123,16 +124,16 @@ def evaluate_law(
         alpha: alphas, or indices of materials, of these states.
         parts: kappa, mu, V and creep of these states.
         """
-        law, order = (record, _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
+        laws, order = ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
-        workspace = np.empty((4, _TOGETHER if record else 1))
+        scratch = np.empty(states.SCRATCH_SIZE)
         if direct:
-            if loop(law, request, stop - start):
+            if loop(laws, request, stop - start):
                 raise ConvergenceError(
                     f"contact: an iteration reached its limit near element {start} (method 'direct')"
                 )
         elif names != (UNSTEADY,):
-            loop(law, request, workspace, stop - start)
+            loop(laws, request, scratch, stop - start)
         if UNSTEADY not in names:
             return
         N = out[names.index(UNSTEADY), start:stop]
@@ -142,10 +143,10 @@ def evaluate_law(
             unsteady_loop(material.unsteady_record, parts[0], parts[2], N)
         else:
             zeta = np.empty((1, stop - start))
-            loop(law, request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0), workspace, stop - start)
+            loop(laws, request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0), scratch, stop - start)
             N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
-    if count <= _TOGETHER and record:
+    if count <= states.TOGETHER and record:
         numbers = np.empty((len(arrays), *(shape or (1,))))
         for row, array in zip(numbers, arrays, strict=True):
             row[...] = array
@@ -181,15 +182,15 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
     material, direct: arguments of :func:`evaluate_law`.
     alpha: alphas of the states, or indices of their materials, (n,) or (1,).
     parts: kappa, mu, V, creep, each (n,) or (1,).
-    Returns (the record of the laws that kernels take, indices of the states in order of evaluation; none for the given
-    order).
+    Returns (a tuple of the records of the laws that kernels take, or ``alpha`` if ``direct``; indices of the states in
+    order of evaluation, none for the given order).
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
-        return record_of_materials(material, alpha.astype(np.int64)), order
+        return (record_of_materials(material, alpha.astype(np.int64)),), order
     if direct:
         return alpha, _NO_ORDER
-    return record_of_alphas(alpha), sort_by_octave(alpha, parts[0], parts[2])
+    return records_of_alphas(alpha, _ALPHAS_TOGETHER), sort_by_octave(alpha, parts[0], parts[2])
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:

@@ -15,7 +15,7 @@ from ..core.labels import strip_labels
 from ..core.results import Values
 from ..materials.bodies import total_series
 from ..materials.law.cover_pressure import pressure
-from ..materials.law.cover_solve import modes_of_cover
+from ..materials.law.cover_solve import CoverModes
 from ..materials.law.evaluate import series_record
 from .contact_table import evaluate_contact
 from .parameters import Parameters, Roller, resolve_model
@@ -142,7 +142,7 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     Returns p/E', (n,).
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
-    modes = modes_of_cover(cover)
+    modes = CoverModes(cover)
     x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
     states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
     found = np.empty(x.size)

@@ -60,8 +60,9 @@ class Cover(Bodies):
     Notes
     -----
     lam, epsilon, M and delta_star solve the normal and the full-slip problem of the layer to 1e-11; boundary elements
-    agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  delta_0 is exact where shear does not act back on the
-    pressure, for nu = 1/2 to 1e-10 and else to 1e-5 of delta_star/mu.
+    agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  Beside a body that relaxes too, epsilon and M are good to
+    1e-7 where kappa |V| is 16 to 1e8 times the fastest rate (``tests/test_covers.py``).  delta_0 is exact where shear
+    does not act back on the pressure, for nu = 1/2 to 1e-10 and else to 1e-5 of delta_star/mu.
 
     Q follows Eq. (15) with the cover's own contact in place of the half-space's: the stick zone of creep limit F' has
     the traction that a full contact with that creep limit would carry at the same l0/h.  Beside the exact solution

@@ -159,18 +159,22 @@ class Pair:
         Raises
         ------
         ParameterError
-            Many series or parts of the compliance.
+            Many series, or many parts of the compliance beside an elastic body.
         """
         on = self.covered
         assert on is not None
         layer, other = (self.cylinder, self.half_space) if on == "cylinder" else (self.half_space, self.cylinder)
         parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
-        if layer.prony.shape or np.ptp(parts) > 0.0:
+        found = "differs from motion to motion"
+        if layer.prony.shape:
+            allowed = "the same in all of them: thickness, load and R may differ, and beside a rigid body E and nu"
+            raise described_error(f"the series of the {on}, which is a cover,", found, allowed)
+        if np.ptp(parts) > 0.0:
             allowed = (
-                "one series and compliance share where a body has a thickness: only the thickness, l0 and, beside a "
-                "rigid body, nu may vary"
+                "the same in all of them beside an elastic body, since a cover has one law for each part of the "
+                "compliance: let thickness, load or R differ, or make the other body rigid (E = inf)"
             )
-            raise described_error(on, "has several materials", allowed)
+            raise described_error("E or nu of a body", found, allowed)
         series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
         part = float(np.max(parts))
         more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}

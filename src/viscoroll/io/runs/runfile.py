@@ -313,12 +313,23 @@ def _check_inputs(run: Run) -> None:
         except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
                 raise locate_error(run.path, inputs.content, error) from error
-            reaches = f"{number.name}: draws extend from {ends[0]:.6g} to {ends[1]:.6g}"
-            problem = f"{getattr(error, 'problem', str(error)).rpartition('] ')[2]}; add truncate = [low, high]"
-            raise section_error(run.path, number.section, number.key, f"{reaches}: {problem}") from error
+            problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
+            if any(_refuses(run, medians | {number.name: end}) for end in ends.tolist()):
+                problem = f"draws extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}; add truncate = [low, high]"
+            problem = f"{number.name}: {problem}"
+            raise section_error(run.path, number.section, number.key, problem) from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
         _check_motions(run, values, " in every draw: truncate so that it is")
+
+
+def _refuses(run: Run, values: dict[str, Any]) -> bool:
+    """Return whether one motion with these ``values``, input -> number, would be refused; ``run``: the run."""
+    try:
+        _begin_motions(run, values)
+    except (ParameterError, FileError):
+        return True
+    return False
 
 
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:

@@ -32,7 +32,6 @@ import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
-from ..rows.cover import is_cover
 from .collocation import NODE_FRACTIONS, N
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
 from .law import added_inertia, low_speed_limits, rest_limits
@@ -212,7 +211,7 @@ def _energies_of_decay(rate, inertia, torque_difference, work):
     half_space, cylinder, force, torque = low_speed_limits(work)
     delta_0, force_work, torque_work = rest_limits(work.scene)[1], force / rate, torque / rate
     omega_over_V = 1.0 + delta_0
-    if is_cover(by_value(work.scene.law).cover_rows):
+    if by_value(work.scene.law).cover_rows is not None:
         slip, rolling = delta_0 * torque_difference / (inertia * rate), (half_space + cylinder * omega_over_V) / rate
         return slip, rolling, force_work, torque_work * omega_over_V, 0.0
     return 0.0, 1.0 + work.scene.j + force_work + torque_work, force_work, torque_work, 0.0

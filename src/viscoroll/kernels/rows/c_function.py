@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from ..compile.intrinsics import floats_at, function_address, integers_at, record_at, record_type
 from ..compile.jit import inline_kernel, kernel
-from .contact import Q_slopes, signed_traction
+from .contact import Q_slopes, signed_creep, signed_traction, stick_argument
 from .contact_states import State
-from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE, free_creep_value
+from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE, free_creep_at
 from .evaluate import body_moments, length_and_moment, locate_row, moment_factor
 from .record import PARTS_PER_ROW, ROW_SIZE, Law
 
@@ -77,8 +77,10 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
-    free_creep = free_creep_value(position, u, cover_rows)
-    out[0] = signed_traction(u, functions.L, free_creep, state, law)
+    free_creep = free_creep_at(position, u, cover_rows)[0]
+    D = signed_creep(functions.L, free_creep, state, law)
+    v = stick_argument(u, functions.L, abs(D))
+    out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
     out[1] = factor * functions.m
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um
@@ -87,7 +89,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         out[2] = factor * half_space
         out[3] = factor * cylinder
     if scene.slopes:
-        out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, free_creep, state, law)
+        out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, D, state, law)
         out[4] = out[4] * scene.Q / scene.V
         out[5] = out[5] * scene.Q / scene.omega
         for n in range(6, RESULTS):

@@ -10,12 +10,14 @@ All quantities are dimensionless (docs/symbols.md); an argument of which no shap
 
 import numpy as np
 
+from ..compile.intrinsics import bits_to_float, float_to_bits
 from ..compile.jit import inline_kernel, kernel
-from .contact_states import read_state, slip_and_creepage, write_field
-from .cover import free_creep_value, sliding_creep, slope_over_speed
+from .contact_states import TOGETHER, State, read_state, slip_and_creepage, write_field
+from .cover import free_creep_at, sliding_creep, slope_over_speed
 from .evaluate import (
     H_over_F2,
     H_over_F2_secants,
+    RowPosition,
     body_moments,
     eta_over_F,
     free_creep_and_slopes,
@@ -30,11 +32,33 @@ from .record import select_material
 #: send states with creep of 0.1 delta_star to the mean slopes, which take half as long again.
 SMALL_CREEP = 0.0625
 
+#: Places in the scratch of :func:`contact_loop`, each with a number for every state of a block: kappa, mu, V, and the
+#: creepage or omega of the states; u = kappa |V|; L; 2 kappa delta_0 of free rolling; D
+#: (:func:`signed_creep`); v (:func:`stick_argument`); and the rows of the positions of u
+#: and v, each followed by t and dt/dx.
+_KAPPA, _MU, _V, _CREEP, _U, _L, _FREE_CREEP, _D, _STICK, _POSITION, _STICK_POSITION = (
+    np.uint64(n * TOGETHER) for n in (*range(10), 12)
+)
+#: Distances of t and of dt/dx from the row of a position.
+_T, _DT_DX = _MU, _V
+
 
 @inline_kernel
-def traction_over_mu(u, L, D, law):
+def stick_argument(u, L, D):
+    """Return v = 2 u/(L - D), the argument of the functions of the stick zone; of no meaning in full slip.
+
+    u : kappa |V|, dimensionless speed.
+    L : 2 kappa delta_star/mu.
+    D : 2 kappa |delta|/mu; infinite in full slip.
+    """
+    return 2.0 * u / (L - D)
+
+
+@inline_kernel
+def traction_over_mu(position, v, u, L, D, law):
     """Return |Q|/mu, the fraction of the friction that is used, in [0, 1].
 
+    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
     u : kappa |V|, dimensionless speed.
     L : 2 kappa delta_star/mu.
     D : 2 kappa |delta|/mu; infinite in full slip.
@@ -43,8 +67,6 @@ def traction_over_mu(u, L, D, law):
     w = L - D
     if not w > 0.0:  # also where rounding puts delta_star above D
         return 1.0
-    v = 2.0 * u / w
-    position = locate_row(v, law)
     if D >= SMALL_CREEP * L:
         value, _ = H_over_F2(position, v, law)
         traction = 1.0 - w * w * value
@@ -68,26 +90,23 @@ def _cancels(traction, D, L):
 
 
 @inline_kernel
-def friction_reserve(u, L, D, law):
+def friction_reserve(position, v, L, D, law):
     """Return the friction reserve 1 - |Q|/mu, in [0, 1], with all its digits where it is small.
 
-    u : kappa |V|, dimensionless speed.
+    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
     L : 2 kappa delta_star/mu.
     D : 2 kappa |delta|/mu; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
-    if not w > 0.0:
-        return 0.0
-    v = 2.0 * u / w
-    return min(w * w * H_over_F2(locate_row(v, law), v, law)[0], 1.0)
+    return min(w * w * H_over_F2(position, v, law)[0], 1.0) if w > 0.0 else 0.0
 
 
 @inline_kernel
-def stick_fraction(u, lam, L, D, law):
+def stick_fraction(position, v, lam, L, D, law):
     """Return beta, the length of the stick zone divided by the contact length, in [0, 1].
 
-    u : kappa |V|, dimensionless speed.
+    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
     lam : length of the contact divided by l0.
     L : 2 kappa delta_star/mu.
     D : 2 kappa |delta|/mu; infinite in full slip.
@@ -96,8 +115,7 @@ def stick_fraction(u, lam, L, D, law):
     w = L - D
     if not w > 0.0:
         return 0.0
-    v = 2.0 * u / w
-    return min(eta_over_F(locate_row(v, law), v, law) * w / lam, 1.0) if D > 0.0 else 1.0
+    return min(eta_over_F(position, v, law) * w / lam, 1.0) if D > 0.0 else 1.0
 
 
 @inline_kernel
@@ -132,55 +150,51 @@ def traction_slopes(u, L, dL, D, law):
 
 
 @inline_kernel
-def _split_creep(L, free_creep, state, law):
-    """Split the creepage into that of free rolling and the rest, which causes the traction Q.
+def signed_creep(L, free_creep, state, law):
+    """Return 2 kappa |delta - delta_0|/mu with the sign of the traction; infinite in full slip.
 
     L : 2 kappa delta_star/mu.
     free_creep : 2 kappa delta_0, from the creepage of free rolling.
     state : :class:`State`: V, kappa, mu, and delta or omega.
     law : :class:`Law` of the material: polynomials of each octave.
-
-    Returns (slip, creepage, D): a number with the sign of Q; delta - delta_0; 2 kappa |delta - delta_0|/mu, or
-    infinity in full slip.
     """
     slip, delta = slip_and_creepage(state)
     slip, delta = sliding_creep(slip, delta, free_creep, state, law.cover_rows)
     full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
-    return slip, delta, np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta)
+    return np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
 
 
 @inline_kernel
-def signed_traction(u, L, free_creep, state, law):
+def signed_traction(position, v, u, L, D, mu, law):
     """Return the traction Q, Eq. (15), divided by the load, with the sign of delta - delta_0.
 
+    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
     u : kappa |V|.
     L : 2 kappa delta_star/mu.
-    free_creep : 2 kappa delta_0, from the creepage of free rolling.
-    state : :class:`State`: V, kappa, mu, and delta or omega.
+    D : :func:`signed_creep`.
+    mu : coefficient of friction.
     law : :class:`Law` of the material: polynomials of each octave.
     """
-    slip, _, D = _split_creep(L, free_creep, state, law)
-    return np.copysign(state.mu * traction_over_mu(u, L, D, law), slip)
+    return np.copysign(mu * traction_over_mu(position, v, u, L, abs(D), law), D)
 
 
 @inline_kernel
-def Q_slopes(u, L, dL, free_creep, state, law):
+def Q_slopes(u, L, dL, D, state, law):
     """Return the slopes of the traction Q.
 
     u : kappa |V|.
     L, dL : 2 kappa delta_star/mu and its slope with respect to u.
-    free_creep : 2 kappa delta_0, from the creepage of free rolling.
+    D : :func:`signed_creep`.
     state : :class:`State`: V, kappa, mu, and delta or omega.
     law : :class:`Law` of the material: polynomials of each octave.
     Returns (dQ/dV, dQ/ddelta, dQ/domega), dimensionless; the first at fixed delta or omega, whichever ``state`` has.
     """
-    _, delta, D = _split_creep(L, free_creep, state, law)
-    if D == np.inf:
+    if abs(D) == np.inf:
         return 0.0, 0.0, 0.0
-    over_u, over_D = traction_slopes(u, L, dL, D, law)
+    over_u, over_D = traction_slopes(u, L, dL, abs(D), law)
     over_delta = 2.0 * state.kappa * over_D
     over_omega = over_delta / abs(state.V)
-    over_V = np.sign(delta) * state.mu * state.kappa * over_u
+    over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
     over_V = slope_over_speed(over_V, over_delta, free_creep_and_slopes(u, law)[1], law.cover_rows)
     if state.creep_is_omega:
         over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
@@ -188,55 +202,82 @@ def Q_slopes(u, L, dL, free_creep, state, law):
 
 
 @inline_kernel
-def _next_state(k, request):
-    """Return the state at a place in the order of evaluation, with its index and its dimensionless speed.
+def _index(k, request):
+    """Return the index of the state at place ``k`` in the order of evaluation of a :class:`Request`."""
+    return request.order[np.uint64(k)] if request.order.size > 0 else k
 
-    k : int, place in that order.
-    request : :class:`Request` of states and quantities, with the output array.
-    Returns (state, n, u): the :class:`State`; its index, hence its column of the output; kappa |V|, dimensionless.
+
+@inline_kernel
+def _state(c, scratch, request):
+    """Return the :class:`State` in column ``c`` of the scratch."""
+    return State(
+        scratch[_KAPPA + c], scratch[_MU + c], scratch[_V + c], scratch[_CREEP + c], request.states.creep_is_omega
+    )  # fmt: skip
+
+
+@inline_kernel
+def _locate(x, to, begin, end, laws, scratch):
+    """Write the positions in the rows of the arguments of some states.
+
+    x : place of the arguments in ``scratch``, for column 0.
+    to : place of the positions, for column 0.
+    begin, end : first column, and the one behind the last.
+    laws, scratch : of :func:`contact_loop`.
     """
-    n = request.order[np.uint64(k)] if request.order.size > 0 else k
-    state = read_state(request.states, n)
-    return state, n, state.kappa * abs(state.V)
+    for k in range(begin, end):
+        c = np.uint64(k)
+        position = locate_row(scratch[x + c], laws[k % len(laws)])
+        scratch[to + c] = bits_to_float(position.row)
+        scratch[to + _T + c] = position.t
+        scratch[to + _DT_DX + c] = position.dt_dx
 
 
 @inline_kernel
-def _requests_Q_slopes(to):
-    """Return whether slopes of Q are among the :class:`Fields` ``to``."""
-    return max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
+def _position(of, c, scratch):
+    """Return the :class:`RowPosition` of column ``c`` that :func:`_locate` has written at the place ``of``."""
+    return RowPosition(float_to_bits(scratch[of + c]), scratch[of + _T + c], scratch[of + _DT_DX + c])
 
 
 @inline_kernel
-def _write_functions_of_speed(k, column, buffer, law, request):
-    """Write the requested quantities that depend on the speed alone: M, its parts and slopes, lam, zeta, epsilon.
+def _write_others(n, c, law, scratch, request):
+    """Write the requested quantities of a state except Q and M.
 
-    k : position of the state in the order of ``request``.
-    column : column of ``buffer`` for this state.
-    buffer : (4, states), in whose column L, lam, dL/du and 2 kappa delta_0 are kept for
-        :func:`_write_functions_of_creep`.
+    n : index of the state.
+    c : its column in ``scratch``.
     law : :class:`Law` of the material: polynomials of each octave.
+    scratch : of :func:`contact_loop`, after all its stages.
     request : :class:`Request` of states and quantities, with the output array, written.
     """
     to = request.to
-    state, n, u = _next_state(k, request)
-    position = locate_row(u, law)
-    functions = length_and_moment(position, u, law)
-    factor = moment_factor(position, u, functions.scale, state)
-    buffer[0, column] = functions.L
-    buffer[3, column] = free_creep_value(position, u, law.cover_rows)
-    write_field(to.M, factor * functions.m, n, request)
-    if to.dM_dV >= 0 or _requests_Q_slopes(to):
-        # evaluated again: otherwise the compiler would compute slopes that are not requested
-        slopes = length_and_moment(position, u, law)
-        buffer[2, column] = slopes.dL
-        write_field(to.dM_dV, slopes.d_um, n, request)
+    state = _state(c, scratch, request)
+    u = scratch[_U + c]
+    L = scratch[_L + c]
+    D = scratch[_D + c]
+    v = scratch[_STICK + c]
+    position = _position(_POSITION, c, scratch)
+    stick_position = _position(_STICK_POSITION, c, scratch)
+    write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, request)
+    write_field(to.delta, slip_and_creepage(state)[1], n, request)
+    write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
+    write_field(to.full_slip, 1.0 if abs(D) == np.inf else 0.0, n, request)
+    if to.grip >= 0:
+        write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
     if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
         lam, epsilon = lam_and_epsilon(position, u, law)
-        buffer[1, column] = lam
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon, n, request)
+        write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
+    if max(to.dM_dV, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0:
+        slopes = length_and_moment(position, u, law)
+        write_field(to.dM_dV, slopes.d_um, n, request)
+        if max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0:
+            over_V, over_delta, over_omega = Q_slopes(u, L, slopes.dL, D, state, law)
+            write_field(to.dQ_dV, over_V, n, request)
+            write_field(to.dQ_ddelta, over_delta, n, request)
+            write_field(to.dQ_domega, over_omega, n, request)
     if max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0:
+        factor = moment_factor(position, u, length_and_moment(position, u, law).scale, state)
         half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
         write_field(to.M_half_space, factor * half_space, n, request)
         write_field(to.M_cylinder, factor * cylinder, n, request)
@@ -244,53 +285,65 @@ def _write_functions_of_speed(k, column, buffer, law, request):
         write_field(to.dM_cylinder_dV, cylinder_slope, n, request)
 
 
-@inline_kernel
-def _write_functions_of_creep(k, column, buffer, law, request):
-    """Write the requested quantities that depend on the creepage: Q and its slopes, beta, grip, delta_star and
-    others.
-
-    k : position of the state in the order of ``request``.
-    column : column of ``buffer`` for this state.
-    buffer : (4, states), whose column holds L, lam, dL/du and 2 kappa delta_0 at the speed of this state.
-    law : :class:`Law` of the material: polynomials of each octave.
-    request : :class:`Request` of states and quantities, with the output array, written.
-    """
-    to = request.to
-    state, n, u = _next_state(k, request)
-    L = buffer[0, column]
-    free_creep = buffer[3, column]
-    _, _, D = _split_creep(L, free_creep, state, law)
-    if to.Q >= 0:
-        write_field(to.Q, signed_traction(u, L, free_creep, state, law), n, request)
-    if to.beta >= 0:
-        write_field(to.beta, stick_fraction(u, buffer[1, column], L, D, law), n, request)
-    if to.grip >= 0:
-        write_field(to.grip, friction_reserve(u, L, D, law), n, request)
-    write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, request)
-    write_field(to.delta, slip_and_creepage(state)[1], n, request)
-    write_field(to.delta_0, 0.5 * free_creep / state.kappa, n, request)
-    write_field(to.full_slip, 1.0 if D == np.inf else 0.0, n, request)
-    if _requests_Q_slopes(to):
-        over_V, over_delta, over_omega = Q_slopes(u, L, buffer[2, column], free_creep, state, law)
-        write_field(to.dQ_dV, over_V, n, request)
-        write_field(to.dQ_ddelta, over_delta, n, request)
-        write_field(to.dQ_domega, over_omega, n, request)
-
-
 @kernel
-def contact_loop(law, request, buffer, count):
+def contact_loop(laws, request, scratch, count):
     """Evaluate the law at ``count`` states and write what is requested.
 
-    law : :class:`Law` of the material: polynomials of each octave.
+    laws : tuple of :class:`Law`: one of all states; or of states that have a law of their own, as many records as are
+        evaluated together, each with one material selected at a time.
     request : :class:`Request` of states and quantities, with the output array, written.
-    buffer : (4, states), scratch.  Some states are evaluated together, so that the processor works on several at once.
-        (4, 1) where each state has a law of its own, of which one is selected at a time.
+    scratch : (SCRATCH_SIZE,), written.
     count : int, number of states.
+
+    The states pass through the stages in blocks: their numbers are copied; then come the positions in the rows, the
+    polynomials of the speed, creepage and position of v, and the polynomials of the traction.  Each stage is a short
+    loop over the states of a block.  So the processor works on several states at once, stages without polynomials are
+    compiled to vector instructions, and what is requested is tested once for a block.
     """
-    for begin in range(0, count, buffer.shape[1]):
-        end = min(begin + buffer.shape[1], count)
-        select_material(law, _next_state(begin, request)[1])
-        for k in range(begin, end):
-            _write_functions_of_speed(k, np.uint64(k - begin), buffer, law, request)
-        for k in range(begin, end):
-            _write_functions_of_creep(k, np.uint64(k - begin), buffer, law, request)
+    to = request.to
+    others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)
+    for first in range(0, count, TOGETHER):
+        size = min(TOGETHER, count - first)
+        for k in range(size):
+            c = np.uint64(k)
+            state = read_state(request.states, _index(first + k, request))
+            scratch[_KAPPA + c] = state.kappa
+            scratch[_MU + c] = state.mu
+            scratch[_V + c] = state.V
+            scratch[_CREEP + c] = state.creep
+            scratch[_U + c] = state.kappa * abs(state.V)
+        together = size if laws[0].selector == 0 else len(laws)
+        for begin in range(0, size, together):
+            end = min(begin + together, size)
+            for k in range(begin, end):
+                select_material(laws[k % len(laws)], _index(first + k, request))
+            _locate(_U, _POSITION, begin, end, laws, scratch)
+            for k in range(begin, end):
+                law = laws[k % len(laws)]
+                c = np.uint64(k)
+                u = scratch[_U + c]
+                position = _position(_POSITION, c, scratch)
+                functions = length_and_moment(position, u, law)
+                scratch[_L + c] = functions.L
+                scratch[_FREE_CREEP + c] = free_creep_at(position, u, law.cover_rows)[0]
+                factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
+                write_field(to.M, factor * functions.m, _index(first + k, request), request)
+            for k in range(begin, end):
+                c = np.uint64(k)
+                L = scratch[_L + c]
+                D = signed_creep(L, scratch[_FREE_CREEP + c], _state(c, scratch, request), laws[0])
+                scratch[_D + c] = D
+                scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
+            _locate(_STICK, _STICK_POSITION, begin, end, laws, scratch)
+            if to.Q >= 0:
+                for k in range(begin, end):
+                    c = np.uint64(k)
+                    Q = signed_traction(
+                        _position(_STICK_POSITION, c, scratch), scratch[_STICK + c], scratch[_U + c], scratch[_L + c],
+                        scratch[_D + c], scratch[_MU + c], laws[k % len(laws)],
+                    )  # fmt: skip
+                    write_field(to.Q, Q, _index(first + k, request), request)
+            if others:
+                for k in range(begin, end):
+                    n = _index(first + k, request)
+                    _write_others(n, np.uint64(k), laws[k % len(laws)], scratch, request)

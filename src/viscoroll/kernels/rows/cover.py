@@ -2,8 +2,7 @@
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
 nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law
-2 kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`): as one polynomial, and twice as a pair, which has the
-second derivative.
+2 kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -13,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compile.jit import inline_kernel
-from .simd_polynomial import TERMS, evaluate_pair, evaluate_single
+from .simd_polynomial import TERMS, evaluate_pair
 
 #: Index in the head: lam as u -> infinity; behind it the coefficient of 1/u.
 _LAM = 0
@@ -28,7 +27,7 @@ _SHARE = 6
 #: Numbers of the head.
 COVER_FRONT_SIZE = 8
 #: Numbers of a row.
-COVER_ROW_SIZE = 3 * TERMS
+COVER_ROW_SIZE = 2 * TERMS
 
 
 class FreeCreep(NamedTuple):
@@ -42,12 +41,6 @@ class FreeCreep(NamedTuple):
     creep: float
     aside: float
     bend: float
-
-
-@inline_kernel
-def is_cover(cover_rows):
-    """Return whether the law is that of a cover."""
-    return cover_rows is not None
 
 
 @inline_kernel
@@ -104,24 +97,9 @@ def free_creep_at(position, u, cover_rows):
     if position.row < 0:
         change = cover_rows[_FREE + 1] / u
         return cover_rows[_FREE] + change, -change / u, 2.0 * change / (u * u)
-    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + TERMS
+    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row
     value, _, slope, _, second_derivative, _ = evaluate_pair(cover_rows, start, position.t)
     return value, slope * position.dt_dx, second_derivative * position.dt_dx * position.dt_dx
-
-
-@inline_kernel
-def free_creep_value(position, u, cover_rows):
-    """Return 2 kappa delta_0 without derivatives, with delta_0 the creepage of free rolling; 0 for half-spaces.
-
-    position : :class:`.evaluate.RowPosition` of u in the rows of the law.
-    u : kappa |V|, dimensionless.
-    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
-    """
-    if cover_rows is None:
-        return 0.0
-    if position.row < 0:
-        return cover_rows[_FREE] + cover_rows[_FREE + 1] / u
-    return evaluate_single(cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row, position.t)[0]
 
 
 @inline_kernel

@@ -21,11 +21,6 @@ from .record import (
     select_index,
 )  # fmt: skip
 
-#: Laws of an octave of thickness, at Chebyshev nodes; of a rubber with three modes the error then is 1e-12.
-NODES = 14
-#: Laws over Poisson's ratio in [0, 1/2] at each of them, at Chebyshev nodes of ln(3 - 4 nu), where the kernel of the
-#: layer has no singularity nearby; the error then is 1e-10 of covers down to h/l0 = 0.25, and 5e-9 down to 0.13.
-NU_NODES = 12
 #: What these kernels read.  Addresses: rows, marks and cover rows of the law; the index of the cover of each state;
 #: the weights of each cover; for each cover the address of the laws of its octave and their number of rows.
 #: state_count: length of the indices, 1 or one for each state.  cover_count: number of covers.  law_count: laws of an

@@ -24,7 +24,7 @@ def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
     x: positions divided by a, from the middle of the contact, positive along V, any shape; outside [-1, 1] the pressure
         is 0.
     """
-    from numpy.polynomial.chebyshev import chebval
+    from numpy.polynomial.chebyshev import chebder, chebval
 
     if z == np.inf:
         modes, z = modes.elastic(modes.share), 1.0
@@ -32,13 +32,10 @@ def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
     # I_n/I_0 is below rounding from n = 9 sqrt(alpha) on
     width = math.sqrt(min(z * modes.series.a.max(initial=0.0), LARGE_ALPHA))
     terms = _pressure_terms(modes, z, state, max(state.q.size, math.ceil(9.0 * width)) + 40)
-    # sum terms_n U_n in Chebyshev polynomials of the first kind: U_n = 2 (T_n + T_(n-2) + ...), with T_0 once
-    sums = np.empty(terms.size)
-    for parity in (0, 1):
-        sums[parity::2] = 2.0 * np.cumsum(terms[parity::2][::-1])[::-1]
-    sums[0] *= 0.5
+    # U_(m-1) is the derivative of T_m/m
+    series = chebder(np.append(0.0, terms / np.arange(1, terms.size + 1)))
     inside = np.clip(x, -1.0, 1.0)
-    return np.sqrt((1.0 - inside) * (1.0 + inside)) * chebval(inside, sums) / state.q[0]
+    return np.sqrt((1.0 - inside) * (1.0 + inside)) * chebval(inside, series) / state.q[0]
 
 
 def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) -> Floats:

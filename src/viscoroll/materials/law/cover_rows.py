@@ -4,12 +4,14 @@ A scene fixes l0/h, so that theta = lam l0/(2 h) follows from the half contact l
 quantities are then smooth functions of u alone.  They are computed at twelve nodes an octave, from slow to fast, each
 from a start that is extrapolated from the nodes before.  Octaves are interpolated between these nodes.  Below the first
 octave there is a polynomial of u, beyond the last one a polynomial of 1/u, both with the limits of elastic layers.
+Beside a half-space that relaxes too, that of 1/u has a second one times ln u: long waves then have a memory of their
+own, which the core does not cut off.
 """
 
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from ...core.array_types import Floats
 from ...core.errors import ParameterError
 from ..cover import Cover
 from .cover_pressure import local_strain
-from .cover_solve import LARGEST_THETA, CoverModes, modes_of_cover, solve
+from .cover_solve import LARGEST_THETA, CoverModes, solve
 from .pack import CoverRows, constant_rows, steady_table
 from .rows import NODES, Rows, row_range
 
@@ -26,6 +28,8 @@ from .rows import NODES, Rows, row_range
 PER_OCTAVE = 12
 #: nodes on either side of an octave that take part in its polynomial; with 18 it is accurate to rounding
 _ASIDE = 18
+#: imaginary step for derivatives, relative or of log2 u; its square is far below rounding, dimensionless
+_TINY = 1e-30
 #: index of lam among the quantities that are computed at the nodes
 _LAM = 0
 #: index of L = 2 kappa delta_star/mu
@@ -45,6 +49,12 @@ _BEYOND = 42
 _END_NODES = 52
 #: degree of these polynomials
 _END_DEGREE = 12
+#: degree of that of delta_0, which for nu < 1/2 has a term u^2 ln u at low speed, from the memory of the pressure near
+#: the edges: with 12 delta_0 jumped by 2e-10 of delta_star/mu where the first octave begins, with 18 by 3e-13
+_STRAIN_DEGREE = 18
+#: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too: without them M was
+#: wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9; more terms amplify the noise of the solve
+_LOG_TERMS = 2
 #: the secant method ends where the product of the last two relative errors of the load is below this: the next step
 #: then leaves an error below rounding
 _LOAD_ERRORS = 1e-14
@@ -54,8 +64,8 @@ _LEAST_STEP = 1e-8
 _MOST_STEPS = 40
 #: thickness divided by l0 below which the half contact is longer than six thicknesses for any nu, and nothing is solved
 _THINNEST = 0.01
-#: nodes from which the start for the next one is extrapolated
-_EXTRAPOLATED = 8
+#: factors of ln z at the last eight nodes in its extrapolation to the next one, the start of the secant method there
+_EXTRAPOLATION = np.array([(-1.0) ** (k + 1) * math.comb(8, k) for k in range(8, 0, -1)])
 
 
 def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
@@ -67,8 +77,8 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
     """
     # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder
-    modes, thickness, side = modes_of_cover(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
-    slow_limit = _solve_elastic(modes, thickness, 1.0) if thickness > _THINNEST else None
+    modes, thickness, side = CoverModes(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
+    slow_limit = _solve_elastic(modes, modes.share, 1.0) if thickness > _THINNEST else None
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
         allowed = f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
         raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
@@ -76,21 +86,26 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
         lam, L, free = slow_limit[_LAM], slow_limit[_LIMIT], side * slow_limit[_FREE]
         table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
         return CoverRows(0, table, constant_rows(L, free), np.array([L, lam, free, *np.zeros(5)]))
-    fast_limit = _solve_elastic(modes, thickness, modes.alpha)
+    fast_limit = _solve_elastic(modes, min(modes.layer_instant * modes.alpha, 1.0), modes.alpha)
+    slow_limit[_MOMENT] = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
     # the solve loses digits of delta_0: its limits are extrapolated, to join the values at the nodes
     slow_limit[_FREE] = fast_limit[_FREE] = math.nan
     e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
     last = math.frexp(modes.series.a[-1] * max(1.0, thickest or thickness))[1] + _FAST_OCTAVES
     first_node = e0 * PER_OCTAVE - _END_NODES + 1
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
-    values = _solve_nodes(modes, thickness, u, slow_limit[_LAM])
+    values = _solve_nodes(modes, u)
     values[_FREE] *= side
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
-    slow, slow_limit = _fit_slow_row(u[:_END_NODES], values[:, :_END_NODES], slow_limit, rows)
+    y = np.ldexp(u[:_END_NODES], -e0)
+    slow_limit, _, slow = _fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0])
     inside = _interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
     x = rows.x[last - e0 + 1 :]
-    fast, limits = _fit_fast_rows(u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last))
-    powers = rows.fit_slopes(*np.concatenate([slow, inside, fast], axis=2))
+    log_terms = _LOG_TERMS if cover.other.alpha > 1.0 else 0
+    fast, limits = _fit_fast_rows(
+        u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last), log_terms
+    )
+    powers = rows.fit_slopes(*np.concatenate([slow[:, :, None], inside, fast], axis=2))
     powers[:, 0, 0] = slow_limit
     share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
     nothing = np.zeros_like(press)
@@ -107,32 +122,31 @@ def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floa
     orders: terms of the pressure; default: as many as rows are made with.
     Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V.
     """
-    modes, thickness = modes_of_cover(cover), cover.thickness
-    z = 0.5 / u / math.sqrt(1.0 + (modes.alpha - 1.0) * u / (u + 1.0)) / (1.0 + 0.2 / thickness)
-    return _solve_node(modes, thickness, u, math.log(z), 2.0, orders)[0]
+    return _solve_node(CoverModes(cover), u, orders=orders)[0]
 
 
 def _solve_node(
     modes: CoverModes,
-    thickness: float,
     u: float,
-    start: float,
-    slope: float,
+    start: float | None = None,
+    slope: float = 2.0,
     orders: int | None = None,
     stiffness: float = 1.0,
 ) -> tuple[Floats, float, float]:
     """Solve for the half contact length that carries the load, ln H = -ln(4 stiffness u^2), by the secant method.
 
     modes: of the cover.
-    thickness: divided by l0.
     u: kappa |V|.
-    start: first approximation of ln z.
+    start: first approximation of ln z; None: by a half-space of the stiffness between slow and fast, which is softer.
     slope: first approximation of d ln H/d ln z.
     orders: terms of the pressure; None: the default of the solve.
     stiffness: stiffness of the bodies divided by their long-time stiffness.
     Returns (lam, L, 2 kappa delta_0, epsilon and M/V as an array; ln z; d ln H/d ln z).
     """
-    y, goal, previous = start, -math.log(4.0 * stiffness * u * u), None
+    goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
+    if start is None:
+        start = 0.5 * goal - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0)) - math.log1p(0.2 / thickness)
+    y = start
     for _ in range(_MOST_STEPS):
         z = math.exp(y)
         state = solve(modes, z, z * u / thickness, orders)
@@ -154,127 +168,104 @@ def _solve_node(
     raise ParameterError("thickness/l0", f"{thickness:g}", "larger: no contact length with this load was found")
 
 
-def _solve_nodes(modes: CoverModes, thickness: float, u: Floats, lam: float) -> Floats:
+def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
     """Solve the states of a cover at increasing speeds.
 
     modes: of the cover.
-    thickness: divided by l0.
     u: kappa |V|, shape (n,).
-    lam: contact length at rest divided by l0.
     Returns the five quantities at each node, (5, n).
     """
     values, logs, slope = np.empty((5, u.size)), np.empty(u.size), 2.0
     for n, speed in enumerate(u.tolist()):
-        last = logs[max(n - _EXTRAPOLATED, 0) : n][::-1]
-        binomials = [math.comb(last.size, k) for k in range(1, last.size + 1)]
-        start = float(sum((-1.0) ** np.arange(last.size) * binomials * last)) if n else math.log(0.5 * lam / speed)
-        values[:, n], logs[n], slope = _solve_node(modes, thickness, speed, start, slope)
+        start = float(_EXTRAPOLATION @ logs[n - _EXTRAPOLATION.size : n]) if n >= _EXTRAPOLATION.size else None
+        values[:, n], logs[n], slope = _solve_node(modes, speed, start, slope)
     return values
 
 
-def _solve_elastic(modes: CoverModes, thickness: float, alpha: float) -> Floats:
+def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     """Solve the cover as an elastic layer; slopes and creep depend on the shape of the contact alone.
 
     modes: of the cover.
-    thickness: divided by l0.
-    alpha: 1 for its long-time stiffness; its alpha for the instantaneous stiffness.
-    Returns the five quantities: epsilon 0; M/V is 0 at once, and at long times T_mean, or NaN (not known) beside a body
-    that deforms too.
+    share: the layer's part of the compliance.
+    stiffness: stiffness of the bodies divided by their long-time stiffness.
+    Returns the five quantities, with epsilon and M/V 0.
     """
-    instant = alpha != 1.0
-    elastic = modes.elastic(modes.layer_instant * modes.alpha if instant else modes.share)
-    start = math.log(0.5 / (1.0 + 0.2 / thickness) / math.sqrt(alpha))
-    values = _solve_node(elastic, thickness, 0.5, start, 2.0, stiffness=alpha)[0]
-    T_mean = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
-    values[_EPSILON], values[_MOMENT] = 0.0, 0.0 if instant else T_mean
+    values = _solve_node(modes.elastic(share), 0.5, stiffness=stiffness)[0]
+    values[[_EPSILON, _MOMENT]] = 0.0
     return values
 
 
-def _fit_slow_row(u: Floats, values: Floats, limits: Floats, rows: Rows) -> tuple[Floats, Floats]:
-    """Fit the row [0, 2^e0), where all quantities are polynomials of u.
-
-    u, values: nodes in that row, (n,), and the quantities there, (5, n).
-    limits: for u -> 0, (5,); NaN: not known.
-    rows: of the cover.
-    Returns (values and slopes over ln u at the nodes of the row, (2, 5, 1, nodes); all limits, (5,)).
-    """
-    limits, _, fitted = _fit_end(u / math.ldexp(1.0, rows.e0), values, limits, rows.t[0])
-    return fitted[:, :, None], limits
-
-
-def _fit_fast_rows(u: Floats, values: Floats, limits: Floats, x: Floats, begin: float) -> tuple[Floats, Floats]:
+def _fit_fast_rows(
+    u: Floats, values: Floats, limits: Floats, x: Floats, begin: float, log_terms: int
+) -> tuple[Floats, Floats]:
     """Fit the rows beyond the last octave, where limits, epsilon u and M u^2/V are polynomials of 1/u.
 
     u, values: last nodes, (n,), and the quantities there, (5, n).
     limits: for u -> infinity, (5,); NaN: not known.
     x: nodes of these rows, (rows, nodes).
     begin: where they begin.
+    log_terms: as of :func:`_fit_end`.
     Returns (values and slopes over ln u at x, (2, 5, rows, nodes); :attr:`.pack.CoverRows.limits`).
     """
     y, x_inverse = begin / u, (begin / x).ravel()
     values = values.copy()
     values[_MOMENT] /= y
-    limits, factors, (fitted, slopes) = _fit_end(y, values, limits, x_inverse)
+    limits, first, (fitted, slopes) = _fit_end(y, values, limits, x_inverse, log_terms)
     fitted[_MOMENT], slopes[_MOMENT] = fitted[_MOMENT] * x_inverse, (slopes[_MOMENT] + fitted[_MOMENT]) * x_inverse
-    first = np.array([_value_at_0(y, factor) for factor in factors]) * begin
+    first *= begin
     first[_MOMENT] *= begin
     order = [_LIMIT, _LAM, _FREE]
     packed = np.array([*limits[order], *first[order], *first[[_EPSILON, _MOMENT]]])
     return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
 
 
-def _fit_end(y: Floats, values: Floats, limits: Floats, wanted: Floats) -> tuple[Floats, Floats, Floats]:
-    """Fit values = limit + y P(y) with a polynomial P of degree 12, by least squares.
+def _fit_end(
+    y: Floats, values: Floats, limits: Floats, wanted: Floats, log_terms: int = 0
+) -> tuple[Floats, Floats, Floats]:
+    """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares.
 
     y: nodes in [0.05, 1], (n,).
     values: at the nodes, (5, n).
-    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial of degree 12 is taken.
-    wanted: points in [0, 1], (m,).
-    Returns (limits, (5,); (values - limit)/y at the nodes, (5, n); values and derivatives with respect to ln y at
-    the points, (2, 5, m)).
+    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
+    wanted: points in (0, 1], (m,).
+    log_terms: terms of R.
+    Returns (limits, (5,); P + R ln y at the last point, (5,); values and derivatives with respect to ln y at the
+    points, (2, 5, m)).
     """
-    from numpy.polynomial.chebyshev import chebder, chebfit, chebval
+    from numpy.polynomial.chebyshev import chebvander
 
-    given = zip(values, limits, strict=True)
-    limits = np.array([_value_at_0(y, row) if np.isnan(limit) else limit for row, limit in given])
-    factors = (values - limits[:, None]) / y
-    terms = chebfit(2.0 * y - 1.0, factors.T, _END_DEGREE)
-    P, slope = chebval(2.0 * wanted - 1.0, terms), 2.0 * chebval(2.0 * wanted - 1.0, chebder(terms))
-    return limits, factors, np.stack([wanted * P + limits[:, None], wanted * (P + wanted * slope)])
+    def basis(y: Any, n: int, log_terms: int) -> Any:
+        terms = chebvander(2.0 * y - 1.0, _STRAIN_DEGREE if n == _FREE else _END_DEGREE)
+        return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
+    def fit(values: Floats, at: Any, log_terms: int) -> Any:
+        fits = (np.linalg.lstsq(basis(y, n, log_terms), row, rcond=None)[0] for n, row in enumerate(values))
+        return np.array([basis(at, n, log_terms) @ terms for n, terms in enumerate(fits)])
 
-def _value_at_0(y: Floats, values: Floats) -> float:
-    """Return the value at 0 of the polynomial of degree 12 that fits ``values`` at nodes ``y`` in [0.05, 1]."""
-    return float(np.polynomial.chebyshev.Chebyshev.fit(y, values, _END_DEGREE, [0.0, 1.0])(0.0))
+    limits = np.where(np.isnan(limits), fit(values, np.array([_TINY]), 0)[:, 0], limits)[:, None]
+    # slopes by a step in the imaginary direction, which cancels no digits
+    P = fit((values - limits) / y, wanted * (1.0 + 1j * _TINY), log_terms)
+    value, slope = P.real, P.imag / _TINY
+    return limits[:, 0], value[:, -1], np.stack([wanted * value + limits, wanted * (value + slope)])
 
 
 def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
-    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes.
+    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes, barycentric.
 
     values: at the nodes of the solve, (5, n).
     begin: index of the node where the first octave begins.
     count: number of octaves.
     Returns values and slopes over ln u at the nodes of the octaves, (2, 5, octaves, nodes).
     """
-    windows = np.lib.stride_tricks.sliding_window_view(values, PER_OCTAVE + 2 * _ASIDE + 1, axis=1)
-    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
-    return np.stack([around @ matrix for matrix in _interpolation_matrices()])
-
-
-@lru_cache(maxsize=1)
-def _interpolation_matrices() -> tuple[Floats, Floats]:
-    """Return the matrices from values at the 49 nodes around an octave to its row, by the barycentric formula.
-
-    Returns (matrix to values, matrix to slopes over ln u) at the 24 nodes of the row, (49, 24) each.
-    """
-    count = PER_OCTAVE + 2 * _ASIDE + 1
-    nodes = (np.arange(count) - _ASIDE) / PER_OCTAVE
-    weights = np.array([(-1.0) ** k * math.comb(count - 1, k) for k in range(count)])
-    inverse = 1.0 / (np.log2(0.5 * (NODES + 3.0)) - nodes[:, None])
-    terms = weights[:, None] * inverse
+    points = PER_OCTAVE + 2 * _ASIDE + 1
+    nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
+    weights = np.array([(-1.0) ** k * math.comb(points - 1, k) for k in range(points)])
+    # slopes by a step in the imaginary direction, which cancels no digits
+    terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _TINY - nodes[:, None])
     basis = terms / terms.sum(axis=0)
-    slopes = basis * ((terms * inverse).sum(axis=0) / terms.sum(axis=0) - inverse)
-    return basis, slopes / math.log(2.0)
+    windows = np.lib.stride_tricks.sliding_window_view(values, points, axis=1)
+    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
+    return np.stack([around @ basis.real, around @ basis.imag / (_TINY * math.log(2.0))])
 
 
 def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
@@ -289,27 +280,15 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     Returns two arrays (2, rows, nodes).
     """
     v = rows.x.ravel()
-    u = v.copy()
+    u, end = v.copy(), math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
     for _ in range(60):
-        (L, lam), (d_L, d_lam) = _read_lengths(rows, powers, limits, u)
-        step = np.log(v * L / (2.0 * u)) / (1.0 - d_L / L)
-        u *= np.exp(step)
+        values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
+        first = limits[3:5, None] / u
+        (L, lam), (d_L, d_lam) = np.where(u > end, [limits[:2, None] + first, -first], [values, slopes])
+        dlnu_dlnv, share, press = 1.0 / (1.0 - d_L / L), lam / L, 1.0 / (L * L)
+        step = np.log(v * L / (2.0 * u)) * dlnu_dlnv
         if np.abs(step).max() < 1e-15:
             break
-    (L, lam), (d_L, d_lam) = _read_lengths(rows, powers, limits, u)
-    dlnu_dlnv, share, press = 1.0 / (1.0 - d_L / L), lam / L, 1.0 / (L * L)
+        u *= np.exp(step)
     slopes = dlnu_dlnv * np.stack([share * (d_lam / lam - d_L / L), -2.0 * press * d_L / L])
     return np.stack([share, press]).reshape(2, *rows.x.shape), slopes.reshape(2, *rows.x.shape)
-
-
-def _read_lengths(rows: Rows, powers: Floats, limits: Floats, u: Floats) -> tuple[Floats, Floats]:
-    """Return L and lam at u and their derivatives with respect to ln u, by the rows and, beyond these, by the limits.
-
-    rows, powers, limits: as of :func:`_stick_functions`.
-    u: kappa |V|, (n,).
-    Returns two arrays (2, n).
-    """
-    end = math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
-    values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
-    first = limits[3:5, None] / u
-    return np.where(u > end, limits[:2, None] + first, values), np.where(u > end, -first, slopes)

@@ -28,7 +28,6 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ..cover import Cover
-from ..prony import Prony
 from .evaluate import modes_record
 
 #: terms of the pressure for theta -> 0
@@ -63,17 +62,15 @@ class LayerNodes(NamedTuple):
     """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on Poisson's ratio alone.
 
     u : nodes, wave number times thickness, (n,).
-    du : weights of the rule.
     L : (L - 1)/u times the weights.
-    T : (T - 1)/u times the weights.
-    C : C less its limit for short waves.
+    shear : (T - L)/u times the weights.
+    C : C less its limit for short waves, times the weights.
     local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu).
     """
 
     u: Floats
-    du: Floats
     L: Floats
-    T: Floats
+    shear: Floats
     C: Floats
     local: float
 
@@ -101,59 +98,32 @@ class CoverState(NamedTuple):
 
 
 class CoverModes:
-    """The series of a cover in the form that the solve uses.
-
-    layer : series of the layer.
-    total : series of both bodies together; the layer's own if the other body is rigid.
-    share : the layer's part of the long-time compliance, in (0, 1].
-    nu, other_nu : Poisson's ratios of the layer and of the other body.
-    other : series of the other body; default: elastic.
+    """The series of a ``cover``, which is one, in the form that the solve uses; compliances as parts of the long-time
+    compliance of both bodies.
     """
 
-    def __init__(
-        self, layer: Prony, total: Prony, share: float, nu: float, other_nu: float, other: Prony | None = None
-    ) -> None:
-        self.series, self.J, self.alpha = modes_record(total.modes), total.modes.J, float(total.alpha)
-        self.share, self.nodes, self.nus = share, layer_nodes(nu), (nu, other_nu)
-        self.layer_J, self.layer_b = share * layer.J, 1.0 / layer.T
-        self.layer_instant = share / float(layer.alpha)
-        self.other = Prony.elastic() if other is None else other
-        self.other_local = (1.0 - share) * _half_space_coupling(other_nu)
+    def __init__(self, cover: Cover) -> None:
+        modes, layer = cover.total.modes, cover.layer
+        self.series, self.J, self.alpha = modes_record(modes), modes.J, float(cover.total.alpha)
+        self.cover, self.share, self.nodes = cover, cover.part, layer_nodes(cover.nu)
+        self.layer_J, self.layer_b = self.share * layer.J, 1.0 / layer.T
+        self.layer_instant = self.share / float(layer.alpha)
+        self.other_local = (1.0 - self.share) * _half_space_coupling(cover.other_nu)
 
     def elastic(self, share: float) -> CoverModes:
         """Return the same bodies without relaxation; ``share``: the layer's part of the compliance."""
-        return CoverModes(Prony.elastic(), Prony.elastic(), share, *self.nus)
-
-    def compliance(self, k: Floats) -> Any:
-        """Return the complex compliance of both bodies for exp(i k Y), (n,); ``k`` in units of 1/(V T_ref), (n,)."""
-        return _compliance(self.alpha, self.J, self.series.b, k)
-
-    def layer_part(self, k: Floats) -> Any:
-        """Return the layer's complex part of that compliance, (n,); ``k`` as there."""
-        if self.share == 1.0:
-            return np.ones(k.size, np.complex128)
-        other = _compliance(self.other.alpha, self.other.J, 1.0 / self.other.T, k)
-        return 1.0 - (1.0 - self.share) * other / self.compliance(k)
-
-    def layer_storage(self, k: Floats) -> Any:
-        """Return the real part of the layer's share of that compliance, (n,); ``k`` as there."""
-        b = self.layer_b
-        return self.layer_instant + (self.layer_J * (b**2 / (b**2 + k[:, None] ** 2))).sum(axis=1)
+        cover = self.cover
+        return CoverModes(Cover(1.0, nu=cover.nu, thickness=cover.thickness, part=share, other_nu=cover.other_nu))
 
 
-def _compliance(alpha: float, J: Floats, b: Floats, k: Floats) -> Any:
+def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
     """Return the complex compliance of a series for exp(i k Y), (n,).
 
-    alpha: instantaneous divided by long-time modulus.
+    instant: instantaneous compliance.
     J, b: strengths and rates of creep, (modes,).
     k: wave numbers in units of 1/(V T_ref), (n,).
     """
-    return 1.0 / alpha + (J * b / (b - 1j * k[:, None])).sum(axis=1)
-
-
-def modes_of_cover(cover: Cover) -> CoverModes:
-    """Return the series of a ``cover`` in the form that the solve uses."""
-    return CoverModes(cover.layer, cover.total, cover.part, cover.nu, cover.other_nu, cover.other)
+    return instant + (J * b / (b - 1j * k[:, None])).sum(axis=1)
 
 
 def _half_space_coupling(nu: float) -> float:
@@ -183,11 +153,11 @@ def layer_nodes(nu: float) -> LayerNodes:
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
     denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
-    rest = (2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap) * e
-    local = (kap - 1.0) / (kap + 1.0)
+    local = _half_space_coupling(nu)
     coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / ((kap + 1.0) * denominator) - local
-    weights = du / (u * denominator)
-    return LayerNodes(u, du, -weights * (rest + 4.0 * u * e), -weights * (rest - 4.0 * u * e), coupling, local)
+    rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
+    shear = du * e / denominator
+    return LayerNodes(u, -shear * rest / u, 8.0 * shear, du * coupling, local)
 
 
 def bessel(v: Floats, order: int) -> Floats:
@@ -305,8 +275,9 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     """
     nodes, N = modes.nodes, orders or _term_count(theta)
     v = nodes.u * theta
-    A, J = bessel(v, N), modes.compliance(v / z)
-    part = modes.layer_part(v / z)
+    A, J = bessel(v, N), _compliance(1.0 / modes.alpha, modes.J, modes.series.b, v / z)
+    own = _compliance(modes.layer_instant, modes.layer_J, modes.layer_b, v / z)
+    part = own / J
     ratio, root, k, x, sigma = _exponentials(modes, z, N)
     _, b, e, t, _, Q = modes.series
     X0, Xi = e / root * x[:, 0], (e / root)[:, None] * x[:, 1:] * sigma
@@ -322,8 +293,8 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     # transform of the pressure divided by pi z, times v: its even and odd terms
     mq = np.arange(1, N + 1) * q
     odd, even = mq[::2] @ A[1::2], mq[1::2] @ A[2::2]
-    source = (nodes.T - nodes.L) * part * (even - 1j * odd)
+    source = nodes.shear * part * (even - 1j * odd)
     limit = z + shift + np.sum((source * np.exp(1j * v) * J).real)
     power = (even**2 + odd**2) / v**2
-    strain = -2.0 * theta * np.sum(nodes.du * nodes.C * modes.layer_storage(v / z) * power) / q[0]
-    return CoverState(float(z * q[0]), float(shift), float(moment), float(limit), float(strain), q, X0 - Xi @ (c @ q))
+    strain = -2.0 * theta * np.sum(nodes.C * own.real * power) / q[0]
+    return CoverState(z * q[0], shift, moment, limit, strain, q, X0 - Xi @ (c @ q))

@@ -243,8 +243,7 @@ def _pack_cover(cover: CoverRows) -> Floats:
     L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
     share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
     front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
-    creep = cover.creep[1]
-    return np.append(front, np.concatenate([creep, interleave_pairs(creep, creep)], axis=1))
+    return np.append(front, interleave_pairs(cover.creep[1], cover.creep[1]))
 
 
 class AxisRows(NamedTuple):
