@@ -46,5 +46,5 @@ def figure_7() -> Figure:
         axes.set_xlabel("$x/l_0$")
     for axes in panels[:, 0]:
         axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
-    panels[0, 0].legend(frameon=False, loc="upper left")
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     return figure
