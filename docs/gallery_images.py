@@ -22,7 +22,7 @@ def shown(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]) 
     for figure, path in zip(new, block_vars["image_path_iterator"], strict=False):
         if not all(axes.has_data() for axes in figure.axes):
             raise RuntimeError(f"{path}: a panel is empty when its block ends: draw all of a figure in one block")
-        figure.savefig(path, dpi=150)
+        figure.savefig(path, dpi=200)
         _SHOWN.add(id(figure))
         _KEPT.append(figure)
         paths.append(path)

@@ -101,7 +101,7 @@ def ways(
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Time against error of motions, and size against error of the tables."""
-    figure, (left, right) = new_figure("Time and error of motions; size and error of the tables", 1, 2, (9.6, 4.6))
+    figure, (left, right) = new_figure("Time and error of motions; size and error of the tables", 1, 2, 4.0)
     names = dict.fromkeys(row["law by"] for row in rows)
     for marker, name in zip("osd^vP*X", names, strict=False):
         own = [row for row in rows if row["law by"] == name]
@@ -111,7 +111,7 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
         right.loglog(own[0]["kB"], own[0]["error of Q"], marker)
     left.set(xlabel="largest error of V and ω / initial speed", ylabel="time of a motion, ms")
     right.set(xlabel="size of the file, kB", ylabel="largest error of Q / load")
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     save(figure, path)
 
 

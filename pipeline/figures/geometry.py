@@ -26,12 +26,12 @@ _SPAN = {"arrowstyle": "<|-|>", "color": "black", "shrinkA": 0, "shrinkB": 0, "l
 
 
 def geometry() -> Figure:
-    """Left: the cylinder on the half-space; right: its contact with lam, epsilon, beta, pressure and shear."""
-    figure, (left, right) = new_figure(
-        "Cylinder and half-space, and the contact between them, enlarged", 1, 2, (9.4, 4.1), width_ratios=(1.0, 1.35)
+    """Above: the cylinder on the half-space; below: its contact with lam, epsilon, beta, pressure and shear."""
+    figure, (top, bottom) = new_figure(
+        "Cylinder and half-space, and the contact between them, enlarged", 2, 1, 6.0, height_ratios=(1.0, 1.1)
     )
-    _body(left)
-    _contact(right, _SCENE, _V, _SHARE * contact(_SCENE, _V, delta=0.0).delta_star)
+    _body(top)
+    _contact(bottom, _SCENE, _V, _SHARE * contact(_SCENE, _V, delta=0.0).delta_star)
     return figure
 
 

@@ -42,7 +42,7 @@ def figure_3() -> Figure:
     """(a) traction Q over delta at some speeds; (b) moment M over V at some alphas."""
     scene = PAPER_FIGURES_2_3
     title = f"Traction and rolling resistance, Eqs. (17), (18), for {describe(scene, 'mu', 'kappa')}"
-    figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
+    figure, (left, right) = new_figure(title, 1, 2, 3.6)
     delta, V = np.linspace(-_MOST_CREEP, _MOST_CREEP, 801), np.linspace(-_MOST_SPEED, _MOST_SPEED, 801)
     for speed, line in zip((0.1, 0.2, 0.4), LINES, strict=False):
         Q = contact(scene, speed, delta=delta, fields="Q").Q
@@ -61,7 +61,7 @@ def figure_3() -> Figure:
 
 def grid(table: xr.Dataset) -> Figure:
     """Q over V and delta as ``make tables`` wrote it, at three alphas: the surface whose slices are Fig. 3a."""
-    figure, panels = new_figure("Creep force of the grid; dashed: critical creepage", 1, 3, (9.6, 3.6), sharey=True)
+    figure, panels = new_figure("Creep force of the grid; dashed: critical creepage", 1, 3, 3.2, sharey=True)
     for axes, alpha in zip(panels, _GRID_ALPHAS, strict=True):
         plane = table.sel(alpha=alpha)
         filled = axes.contourf(plane.V, plane.delta, plane.Q.transpose("delta", "V"), _LEVELS, cmap="cividis")

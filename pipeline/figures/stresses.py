@@ -27,7 +27,7 @@ def figure_7() -> Figure:
     """Shear stress and mu p along the contact at four times of the paper's first motion."""
     scene, start = PAPER_SECTION_5, PAPER_STARTS["IC1"]
     figure, panels = new_figure(
-        f"Stresses during IC1, Eqs. (11)-(13), {describe(scene, *_SCENE)}", 2, 2, (8.4, 6.0), sharex=True, sharey=True
+        f"Stresses during IC1, Eqs. (11)-(13), {describe(scene, *_SCENE)}", 2, 2, 5.4, sharex=True, sharey=True
     )
     motion = roll(scene, *start, PAPER_TIMES)
     state = motion.contact(("lam", "epsilon", "beta"))
@@ -40,10 +40,11 @@ def figure_7() -> Figure:
         axes.axvline(front - state.lam[n] * state.beta[n], **THIN, label="slip | stick")
         axes.axvline(0.0, color="0.7", linewidth=0.6, linestyle=":")
         text = f"{axis_label('delta')} = ${number(motion.delta[n], 2)}$, {axis_label('beta')} = {state.beta[n]:.3f}"
-        axes.set_title(rf"{axis_label('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
+        time = rf"{axis_label('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$"
+        axes.set_title(f"{time}:\n{text}", fontsize="medium")
     for axes in panels[1]:
         axes.set_xlabel("$x/l_0$")
     for axes in panels[:, 0]:
         axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
-    panels[0, 0].legend(frameon=False, loc="upper left")
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     return figure

@@ -160,7 +160,7 @@ class Cylinder(Methods):
         if self.base is not None:
             raise described_error("base", "is given", "left out: the law already contains both bodies")
         if self.plane != law.pair.plane and not law.pair.like:
-            raise ParameterError("plane", repr(self.plane), f"{law.pair.plane!r}, as of the law")
+            raise ParameterError("plane", repr(self.plane), f"{law.pair.plane!r}, for which the law was computed")
         return Pair(law.pair.cylinder, law.pair.base, self.plane)
 
     @property

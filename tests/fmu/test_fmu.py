@@ -374,7 +374,7 @@ def test_program(tmp_path, capsys):
     scene.write_text("[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n")
     capsys.readouterr()
     assert main(["fmu", str(scene), "-o", str(roller)]) == 0
-    assert "of a dimensionless scene it takes the law, not kappa" in capsys.readouterr().err
+    assert "kappa, mu, gamma and j of the dimensionless scene are not used" in capsys.readouterr().err
     toml = "docs/examples/rubber.toml"
     assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement"]) == 0
     assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"

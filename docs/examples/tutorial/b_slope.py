@@ -41,7 +41,7 @@ for V, stable in zip(s.V, s.stable, strict=True):
 # rotation, and then approaches its terminal speed slowly.
 t = np.unique(np.concatenate([np.linspace(0.0, 0.3, 151), np.linspace(0.3, 120.0, 240)]))
 m = roller.roll(V0=2.0, omega0=0.0, t=t, slope=slope)
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
 for axes, end in ((left, 0.3), (right, 120.0)):
     axes.plot(m.t, m.V, label="$V$")
     axes.plot(m.t, roller.R * m.omega, "--", label=r"$\omega R$")

@@ -37,7 +37,7 @@ e = rollers.ensemble(
 )
 sliding, late = e.onset_time, e.V[:, -1]  # s, m/s
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
 left.plot(draw["mu"][:3000], sliding[:3000], ".", markersize=2)
 left.set(xlabel=r"coefficient of friction $\mu$", ylabel="duration of sliding, s")
 right.plot(draw["slope"][:3000], late[:3000], ".", markersize=2)

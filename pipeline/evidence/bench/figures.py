@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from viscoroll.core.plots.style import log_ticks, new_figure, save
+from viscoroll.core.plots.style import log_ticks, new_panels, save
 
 from ...stage import ROOT, make_folder, told
 from ..document.blocks import finished, paper_rows
@@ -24,19 +24,20 @@ _ERRORS = {"max": "largest error", "p99": "99th percentile of the errors"}
 def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]], str]]) -> Any:
     """Error over time of each panel's rows by a key, a line for each method."""
     title = "Relative error of V and ω and computing time, for speeds above 1e-3"
-    figure, drawn = new_figure(title, 1, len(shown), (4 * len(shown), 4.2), sharey=True)
+    figure, drawn = new_panels(title, len(shown), 2, 2.6, sharey=True)
     for axes, (title, (rows, key)) in zip(drawn, shown.items(), strict=True):
         for name, label in methods.items():
             points = [(r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r)]
             if points:
                 axes.loglog(*zip(*points), _STYLES[name], label=label, ms=5, lw=1.2)
         axes.grid(True, which="major", color="0.9")
-        axes.set(xlabel="computing time of a motion, µs, one core", ylim=(1e-12, 10.0))
-        axes.set_title(title, fontsize="small")
+        axes.set(xlabel="time of a motion, µs, one core", ylim=(1e-12, 10.0))
+        axes.set_title(title.replace(": ", ":\n"), fontsize="small")
         log_ticks(axes.xaxis)
-    drawn[0].set_ylabel("relative error of V and ω")
+    for axes in drawn[::2]:
+        axes.set_ylabel("relative error")
     legend = drawn[0].get_legend_handles_labels()
-    figure.legend(*legend, loc="outside lower center", ncols=4, fontsize="small", frameon=False)
+    figure.legend(*legend, loc="outside lower center", ncols=2, fontsize="small", frameon=False)
     return figure
 
 

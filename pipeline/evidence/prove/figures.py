@@ -29,7 +29,7 @@ def motion_errors(results: Results) -> Any:
     """Tolerance against achieved error: worst and mean over the motions, with the bound and rtol itself."""
     rows = results["proofs motion"]["rows"]
     title = "Relative error of random motions against the tolerance rtol"
-    figure, panels = new_figure(title, 1, len(PANELS), (9.6, 3.8), sharey=True)
+    figure, panels = new_figure(title, 1, len(PANELS), 3.6, sharey=True)
     for axes, (begin, title) in zip(panels, PANELS.items(), strict=True):
         own = [row for row in rows if row["claim"].startswith(f"{begin}, rtol 1e-")]
         rtol = np.array([float(row["claim"].split("rtol ")[1].split(",")[0]) for row in own])
@@ -41,14 +41,14 @@ def motion_errors(results: Results) -> Any:
         axes.set(title=title, xlabel="rtol")
         axes.invert_xaxis()
     panels[0].set_ylabel("relative error")
-    panels[0].legend(fontsize="x-small", frameon=False)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
     return figure
 
 
 def transient(results: Results) -> Any:
     """The size of e over the unsteadiness, by the law and with N."""
     title = "Relative error of V of free motions, against a transient solver"
-    figure, panels = new_figure(title, 1, 2, (9.6, 4.2), sharey=True)
+    figure, panels = new_figure(title, 1, 2, 4.2, sharey=True)
     words = {"steady": "after a steady contact", "rest": "after a long standstill"}
     colours = {1: LINES[0], 2: LINES[1], 4: LINES[2]}
     for axes, (start, name) in zip(panels, words.items(), strict=True):
@@ -63,7 +63,7 @@ def transient(results: Results) -> Any:
         panels[0].plot([], [], **(line | {"linestyle": "-"}), label=f"{modes} relaxation time{'s' * (modes > 1)}")
     panels[0].plot([], [], color="black", linestyle=":", label="with the correction N")
     panels[0].set_ylabel("relative error of V")
-    panels[0].legend(fontsize="small", frameon=False, loc="lower right")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     return figure
 
 

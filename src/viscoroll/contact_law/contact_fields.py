@@ -73,7 +73,7 @@ def field_names(
             )
         for name in (UNSTEADY, GRIP, FREE_CREEP):
             if name in names:
-                raise ParameterError("fields", repr(name), "computed by method='table' alone: it is not in the paper")
+                raise ParameterError("fields", repr(name), "left out, or computed with method='table'")
     if not cover:
         return names
     if not split:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import ParameterError, describe_value
+from .errors import ParameterError, describe_value, described_error
 from .units import conversion_factor, pint_spelling
 
 #: Types without a unit.
@@ -191,7 +191,7 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     if any(isinstance(number, bool | np.bool_) for number, _ in parts):
         raise ParameterError(name, f"{values!r:.60}", "numbers, no truth values")
     if len(units) > 1 and None in units:
-        raise ParameterError(name, "numbers, some with units and some without", "alike")
+        raise described_error(name, "has numbers with a unit and numbers without", "all with a unit, or all without")
     unit = units[0] if units else None
     return [number if own == unit else convert(name, number, str(own), str(unit)) for number, own in parts], unit
 

@@ -249,7 +249,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     """
     forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
     if len(forms) > 1:
-        raise section_error(path, name, "creep", "prony and creep: must be one of the two")
+        raise section_error(path, name, "creep", "prony and creep are both given: give one of the two")
     for key, lists in forms.items():
         columns = {
             column: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
@@ -268,5 +268,5 @@ def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | N
     path, name: path of the file and name of the section, for errors.
     """
     if section.wlf is not None and section.arrhenius is not None:
-        raise section_error(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
+        raise section_error(path, name, "arrhenius", "wlf and arrhenius are both given: give one of the two")
     return section.wlf or section.arrhenius

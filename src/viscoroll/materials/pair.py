@@ -142,7 +142,7 @@ class Pair:
         """
         if self.covered is not None:
             allowed = "left out, or in a Cylinder: the law of a layer depends on its load and radius"
-            raise ParameterError("thickness", f"of the {self.covered}", allowed)
+            raise described_error(f"thickness of the {self.covered}", "is given", allowed)
         if self.like:
             return self.cylinder.prony
         one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space))

@@ -11,7 +11,7 @@ import numpy as np
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array
 from ..core.drive import Feedback, slope_tan_cos
-from ..core.errors import ParameterError, exactly_one_error
+from ..core.errors import ParameterError, described_error, exactly_one_error
 from ..kernels.motion.records import (
     COL_COEFFICIENTS,
     N_DRIVE_FUNCTIONS,
@@ -234,7 +234,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     Raises ParameterError where ``stated`` is another start, or where the speed jumps.
     """
     if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
-        raise ParameterError(name, "an empty array", "a number, an array with one for each motion, or a function of t")
+        raise described_error(name, "is empty", "a number, an array with one for each motion, or a function of t")
     start, scale = functions.speed_at_start(name)
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])

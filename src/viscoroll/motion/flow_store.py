@@ -132,9 +132,9 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
         raise ValueError("its bytes differ from the SHA-256 at their end")
     with np.load(io.BytesIO(content)) as data:
         if not np.array_equal(data["parameters"], _numbers(parameters)):
-            raise ValueError("its parameters are others")
+            raise ValueError("it belongs to another scene")
         if data["table"].shape != (SIZE,):
-            raise ValueError("its table has another size")
+            raise ValueError("the size of its table is wrong")
         errors = tuple(data["errors"].tolist())
         return FlowMap(parameters, int(data["first"]), data["table"], errors, str(data["problem"]))
 

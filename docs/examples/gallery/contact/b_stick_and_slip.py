@@ -15,7 +15,7 @@ import viscoroll as vr
 scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3)
 limit = vr.contact(scene, V=0.05, delta=0.0).delta_star
 figure, panels = plt.subplots(
-    1, 3, figsize=(9.6, 3.8), sharex=True, sharey=True, layout="constrained"
+    1, 3, figsize=(6.4, 3.4), sharex=True, sharey=True, layout="constrained"
 )
 for axes, share in zip(panels, (0.2, 0.6, 1.0), strict=True):
     c = vr.contact(scene, V=0.05, delta=share * limit)

@@ -30,7 +30,7 @@ SYMBOLS = {
     "delta_star": r"$\kappa\delta^*/\mu$",
     "M": r"$\kappa M$",
 }
-figure, panels = plt.subplots(2, 2, figsize=(9.0, 6.4), sharex=True, layout="constrained")
+figure, panels = plt.subplots(2, 2, figsize=(6.4, 5.5), sharex=True, layout="constrained")
 for (name, material), style in zip(materials.items(), ("k-", "--", "-.", ":"), strict=True):
     c = vr.contact(vr.Scene(material=material, kappa=1.0, mu=1.0), V, delta=0.0)
     for axes, field in zip(panels.flat, SYMBOLS, strict=True):
@@ -47,7 +47,7 @@ panels[0, 1].legend(frameon=False, fontsize="small")
 # Stresses of the material with ten relaxation times over ten decades, at four speeds and half the
 # critical creepage, divided by the largest static pressure:
 scene = vr.Scene(material=materials["10 modes, 10 decades"], kappa=1.0, mu=1.0)
-stresses, (pressure, shear) = plt.subplots(1, 2, figsize=(9.0, 4.0), layout="constrained")
+stresses, (pressure, shear) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
 for speed, style in zip((1e-2, 1.0, 1e3, 1e7), ("k-", "--", "-.", ":"), strict=True):
     c = vr.contact(scene, speed, delta=0.0)
     x = 0.5 * c.lam * (c.epsilon - np.cos(np.linspace(0.0, np.pi, 801)))

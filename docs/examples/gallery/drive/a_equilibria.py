@@ -17,7 +17,7 @@ import viscoroll as vr
 times = 100.0 ** -np.arange(5.0)
 rubber = vr.Scene(material=vr.Prony(2.0 ** np.arange(5), times), kappa=10.0, mu=0.2)
 
-figure, panels = plt.subplots(1, 2, figsize=(9.5, 4.2), layout="constrained")
+figure, panels = plt.subplots(1, 2, figsize=(6.4, 3.6), layout="constrained")
 for axes, scene, title, unit in zip(
     panels,
     (vr.presets.PAPER_SECTION_5, rubber),
@@ -39,7 +39,7 @@ for axes, scene, title, unit in zip(
             transform=axes.get_yaxis_transform(),
             ha="right",
             va="bottom",
-            fontsize=8,
+            fontsize="small",
         )
         axes.plot(s.V[s.stable], s.M[s.stable], "o", color="C0")
         axes.plot(s.V[~s.stable], s.M[~s.stable], "o", color="C0", mfc="white")

@@ -19,7 +19,7 @@ t = np.unique(np.concatenate([np.linspace(0.0, 16.0 / scene.gamma, 801), times])
 m = vr.roll(scene, 0.0, 0.0, t, torque=vr.Schedule(times, torque))
 
 figure, (top, bottom) = plt.subplots(
-    2, 1, figsize=(7.2, 5.6), sharex=True, layout="constrained"
+    2, 1, figsize=(6.4, 4.8), sharex=True, layout="constrained"
 )
 top.plot(t, m.V, "k", label="$V$")
 top.plot(t, m.omega, "--", label=r"$\omega$")
@@ -27,7 +27,7 @@ bottom.plot(t, m.contact("Q").Q, "k", label="traction $Q/P$")
 bottom.plot(t, m.torque, "--", label="torque$/(PR)$")
 for limit, name in ((scene.mu, r"$\mu$"), (grip, r"$(1 + j)\,\mu$")):
     bottom.axhline(limit, color="0.7", linewidth=0.6)
-    bottom.text(t[-1], limit, name, ha="right", va="bottom")
+    bottom.text(0.99 * t[-1], limit, name, ha="right", va="bottom")
 ends = [*(switch.t for switch in m.switches[1:]), t[-1]]
 for switch, end in zip(m.switches, ends, strict=True):
     if switch.regime == "full slip":

@@ -20,7 +20,7 @@ t = np.unique(np.concatenate([turn - apart, turn + apart, np.linspace(0.0, end, 
 m = vr.roll(scene, V0, V0, t, torque=torque)
 Q = m.contact("Q").Q
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.6), layout="constrained")
 left.plot(t, m.V, "k", label="$V$")
 left.plot(t, m.omega, "--", label=r"$\omega$")
 left.axvline(turn, color="0.7", linewidth=0.6)
@@ -32,12 +32,13 @@ left.set(
 )
 left.legend(frameon=False)
 inset = right.inset_axes((0.5, 0.5, 0.46, 0.44))
+inset.set_xticks([turn], ["$V = 0$"])
 near = np.abs(t - turn) < 0.06 * turn
 for axes, shown in ((right, t > 0.0), (inset, near)):
     for side in (t < turn, t > turn):
         axes.plot(t[side & shown], Q[side & shown], "k")
 right.axhline(-scene.mu, color="0.7", linewidth=0.6)
-right.text(0.0, -scene.mu, r"$-\mu$", va="bottom", fontsize=8)
+right.text(0.0, -scene.mu, r"$-\mu$", va="bottom", fontsize="small")
 right.set(
     xlabel=r"$t/T_\varepsilon$",
     ylabel="traction $Q/P$",

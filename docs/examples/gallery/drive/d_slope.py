@@ -44,7 +44,7 @@ starts = [(V0, omega0) for V0 in np.linspace(*plane, 11)[1:-1] for omega0 in pla
 starts += [(share * saddle, share * s.omega[1]) for share in (0.999, 1.001)]
 motions = [vr.roll(scene, *start, end, rtol=1e-6, slope=slope).course for start in starts]
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 5.0), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.7), layout="constrained")
 for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
     axes.set_facecolor("0.87")
     axes.fill_between(V, tilt * V - unit * band, tilt * V + unit * band, color="white")

@@ -23,7 +23,7 @@ steel = vr.Material.rigid()
 roller = vr.Cylinder(R=0.05, m=9.0, material=rubber, base=steel, mu=0.6, load=2000.0)
 speed = np.geomspace(1e-3, 1e3, 300)  # m/s
 figure, (left, right) = plt.subplots(
-    1, 2, figsize=(9.6, 4.0), sharex=True, layout="constrained"
+    1, 2, figsize=(6.4, 3.4), sharex=True, layout="constrained"
 )
 styles = {None: "-", 10e-3: "--", 5e-3: "-.", 2.5e-3: ":"}  # thickness in m
 for thickness, style in styles.items():

@@ -20,7 +20,7 @@ t = np.unique(
     np.concatenate([np.linspace(0.0, 0.5, 201), np.linspace(0.5, 60.0, 201)])
 )  # s
 m = roller.roll(V0=2.0, omega0=0.0, t=t)
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
 for axes, end in ((left, 0.5), (right, 60.0)):
     axes.plot(m.t, m.V, label="$V$")
     axes.plot(m.t, roller.R * m.omega, "--", label=r"$\omega R$")

@@ -14,7 +14,7 @@ import viscoroll as vr
 
 scene = vr.presets.PAPER_SECTION_5
 t = np.linspace(0.0, 4e-3, 2001)  # in units of T_epsilon
-figure, axes = plt.subplots(figsize=(7.6, 4.6), layout="constrained")
+figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 for n, (name, start) in enumerate(vr.presets.PAPER_STARTS.items()):
     m = vr.roll(scene, *start, t)
     axes.plot(1e4 * t, m.V, f"C{n}", label="$V$" if n == 0 else None)
@@ -44,7 +44,7 @@ SYMBOLS = {
     "beta": r"$\beta$",
 }
 contact, (near, whole) = plt.subplots(
-    1, 2, figsize=(9.6, 4.2), sharey=True, width_ratios=(1.0, 1.6), layout="constrained"
+    1, 2, figsize=(6.4, 3.6), sharey=True, width_ratios=(1.0, 1.6), layout="constrained"
 )
 for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
     for n, name in enumerate(SYMBOLS):

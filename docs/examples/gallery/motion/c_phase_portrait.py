@@ -22,7 +22,7 @@ late = rolling.t > 0.05 / scene.gamma  # the first step approaches the manifold
 
 V = np.linspace(-2.5, 2.5, 801)
 band = vr.contact(scene, V, delta=0.0).delta_star * np.abs(V)
-figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 5.0), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.7), layout="constrained")
 for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
     axes.set_facecolor("0.87")
     axes.fill_between(V, tilt * V - unit * band, tilt * V + unit * band, color="white")

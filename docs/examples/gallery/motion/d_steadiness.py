@@ -23,7 +23,7 @@ c = vr.contact(scene, V / roller.scale["V"], delta=0.0, fields=("M", "N"))
 unsteady = scene.gamma * c.N / (1.0 + scene.j)
 bound = 0.084 * (1.0 - 1.0 / scene.alpha) * roller.g * roller.l0**2 / (roller.R * 1.5)
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
 (line,) = left.loglog(V, abs(unsteady), label=f"longest time {rubber.T_ref:.0f} s")
 cold = roller.replace(material=rubber.at(0.0, lambda temperature: 1e3))
 colder = cold.validity(V).steady

@@ -19,7 +19,7 @@ draw = vr.sampling.sample(
 rollers = roller.replace(mu=draw["mu"])  # one for each draw
 e = rollers.ensemble(draw["V0"], 0.0, [0.1, 10.0], rtol=1e-6, fields="V")
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
 left.hist(e.onset_time, bins=60, color="0.6")
 left.set(xlabel="time of the onset of stick, s", ylabel="motions")
 right.plot(draw["mu"][:2000], e.V[:2000, -1], ".", markersize=2)

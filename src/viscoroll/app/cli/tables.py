@@ -151,6 +151,6 @@ def fmu(arguments: Namespace) -> None:
         source = read_roller(path) if "cylinder" in content else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
-        text = "an FMU is in SI units: of a dimensionless scene it takes the law, not kappa, mu, gamma and j; set R, "
+        text = "an FMU is in SI units: kappa, mu, gamma and j of the dimensionless scene are not used; set R, "
         warnings.warn(f"{text}E_prime, T_ref, mu, load and mass in the tool", vr.ModelWarning, stacklevel=2)
     _print_size(arguments.output)

@@ -124,7 +124,7 @@ def fit_prony(
         omega, storage, loss, mode = record.omega, record.storage, record.loss, _mode(record.mode)
         temperature, source = record.temperature if temperature is None else temperature, source or record.source
     elif storage is None or loss is None:
-        raise ParameterError("storage and loss", None, "given: columns beside omega, or only a record of read_dma")
+        raise ParameterError("storage and loss", None, "given with omega, or replaced by a record of read_dma")
     check_choice("on", on, "both", "storage")
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:

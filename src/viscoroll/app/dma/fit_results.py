@@ -13,7 +13,7 @@ from ...contact_law.contact import contact
 from ...contact_law.validity.assumptions import Assumption, assess_measured_band, transit_frequency
 from ...core.array_types import Booleans, Floats, Numbers
 from ...core.checks import check_array
-from ...core.errors import ParameterError
+from ...core.errors import described_error
 from ...core.plots.measurements import series_fit
 from ...core.results import Result, SummaryRow
 from ...materials.importers import check_poisson
@@ -201,7 +201,7 @@ class SeriesFit(Result):
         bodies = cylinder.pair.cylinder, cylinder.pair.half_space
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
-            raise ParameterError("cylinder", "another", "one whose material or base is material() of this fit")
+            raise described_error("cylinder", "has other materials", "one with the material() of this fit")
         speed = check_array("V", V, unit="m s-1")
         lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
         seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)

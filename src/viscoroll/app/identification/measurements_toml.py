@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from ...core.errors import FileError, ModelWarning, ParameterError, caller_level
+from ...core.errors import FileError, ModelWarning, ParameterError, caller_level, described_error
 from ...core.sections import as_struct, check_keys, read_toml, section_error
 from ...cylinder import Cylinder
 from ...io.config import read_roller
@@ -120,7 +120,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
     if others and not set(present) & set(kind.QUANTITIES):
         problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
-        raise FileError(path, f"{problem} (a record without values, for a plan, has no other columns)")
+        raise FileError(path, f"{problem} (a record of a planned test has no values and no other columns)")
     if others:
         text = f"{path.name}: unused columns: {', '.join(others)}"
         warnings.warn(text, ModelWarning, stacklevel=caller_level())
@@ -131,5 +131,5 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
             found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
             per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
-            raise ParameterError(name, f"in {error.value}", f"in a unit of {unit}{per}") from error
+            raise described_error(name, f"is in {error.value}", f"in a unit of the dimension of {unit}{per}") from error
     return found

@@ -65,8 +65,7 @@ def distributions(data: xr.Dataset) -> Figure:
     design = f", {about['design']}, seed {about['seed']}" if "design" in about else ""
     columns = 2 if ensemble or any(f"{name}_histogram" in data for name in names) else 1
     count, rows = data.sizes["motion"] if ensemble else about["motions"], max(len(names), 1)
-    size = 3.2 + 3.2 * columns, 2.8 * rows
-    figure, grid = new_figure(f"{count:,} motions{design}", rows, columns, size, squeeze=False)
+    figure, grid = new_figure(f"{count:,} motions{design}", rows, columns, 2.4 * rows, squeeze=False)
     for name, (left, *right) in zip(names, grid, strict=False):
         variable = data[name if ensemble else f"{name}_quantiles"]
         label = axis_label(name, variable.attrs["units"], variable.attrs.get("symbol", ""))
@@ -109,7 +108,7 @@ def _ensemble_histogram(axes: Any, values: NDArray) -> None:
     values: values of a quantity, (motions,).
     """
     finite = values[np.isfinite(values)]
-    axes.set_ylabel(f"number of motions, of {values.size:,}")
+    axes.set_ylabel(f"motions, of {values.size:,}")
     if finite.size >= _MIN_MOTIONS and np.ptp(finite) > _MIN_RANGE * np.abs(finite).max():
         counts, _, _ = axes.hist(finite, bins=_ENSEMBLE_BARS, color="0.6")
         if counts.max() > _ONE_BAR * finite.size:  # as at rest: the other bars would not be visible
@@ -127,7 +126,7 @@ def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """
     counts = data[f"{name}_histogram"].values
     counts = counts[:, -1] if counts.ndim == 2 else counts
-    axes.set_ylabel(f"number of motions, of {counts.sum():,}")
+    axes.set_ylabel(f"motions, of {counts.sum():,}")
     if not counts.any():
         axes.set_title("no values", fontsize="small")
         return
@@ -168,7 +167,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     inputs = [_INITIAL_SYMBOLS.get(name) or axis_label(name) for name in indices["input"].values[order]]
     percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
     title = f"Sobol indices of {indices.attrs['motions']:,} motions, with {percent} confidence intervals"
-    figure, panels = new_panels(title, len(shown), 3, (3.2, 2.6), sharey=True)
+    figure, panels = new_panels(title, len(shown), 2, 2.1, sharey=True)
     x = np.arange(order.size)
     for axes, (text, values) in zip(panels, shown, strict=True):
         for key, (kind, grey, shift) in _SOBOL.items():

@@ -31,7 +31,7 @@ def master_curve(material: Any) -> Figure:
     t = np.logspace(*ends, _POINTS)
     omega = 1.0 / t[::-1]
     title = (material.name or "Material") + ("; dashed: outside the measured band" if material.measured else "")
-    figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
+    figure, (left, right) = new_figure(title, 1, 2, 3.4)
     band = material.measured and (material.measured.low, material.measured.high)
     lines = plot_measured_range(left, omega, material.storage(omega), band, **LINES[0], label="E'")[:1]
     left.set(xscale="log", yscale="log")
@@ -71,7 +71,7 @@ def identification(fit: Any) -> Figure:
     """
     shown = fit._problem.columns
     figure, grid = new_figure(
-        f"Identification of {', '.join(fit.values)}", 2, len(shown), (3.6 * len(shown) + 1.2, 4.8), squeeze=False,
+        f"Identification of {', '.join(fit.values)}", 2, len(shown), 4.4, squeeze=False,
         sharex="col", height_ratios=(2.5, 1.0),
     )  # fmt: skip
     for column, (top, bottom) in zip(shown, grid.T, strict=True):

@@ -60,7 +60,7 @@ def field_curves(data: xr.Dataset) -> Figure:
         title += f"{', ' if n else ', at '}{_value_label(data, name, middle)}"
         data = data.isel({name: middle})
     names = [name for name in _shown_fields(data) if first in data[name].dims][:_MAX_PANELS]
-    figure, panels = new_panels(title, len(names), 2, (4.8, 2.6), sharex=True)
+    figure, panels = new_panels(title, len(names), 2, 2.2, sharex=True)
     x, second = data[first].values, others[:1]
     indices = np.linspace(0, data.sizes[second[0]] - 1, len(LINES)).astype(int) if second else [0]
     for name, axes in zip(names, panels, strict=True):
@@ -120,8 +120,7 @@ def motion(data: xr.Dataset) -> Figure:
     if data["V"].attrs.get("units", "1") != "1":  # quantities of different units have an axis each
         rows = [[name] for row in rows for name in row]
     status = f": {data.attrs['status']}; full slip is grey" if "status" in data.attrs else ""
-    size = 7.2, 1.0 + 1.9 * len(rows)
-    figure, grid = new_figure(f"Motion{status}", len(rows), 1, size, sharex=True, squeeze=False)
+    figure, grid = new_figure(f"Motion{status}", len(rows), 1, 1.0 + 1.7 * len(rows), sharex=True, squeeze=False)
     t, slips = data["t"].values, np.concatenate(([0], data["regime"].values == _FULL_SLIP, [0]))
     ends = np.flatnonzero(np.diff(slips)).reshape(-1, 2)
     for axes, names in zip(grid.flat, rows, strict=True):

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...core.array_types import Floats
 from ...core.blocks import run_blocks
 from ...core.checks import check_bool, check_integer
-from ...core.errors import MotionStatus, ParameterError
+from ...core.errors import MotionStatus, ParameterError, described_error
 from ...core.results import column_name, unit_of
 from ...motion.export import column_attributes, provenance
 from ...motion.summaries import QUANTITIES
@@ -117,7 +117,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
             attrs = {"long_name": f"{text} of: {meaning}", "units": "1"}
             data[f"{name}_{key}"] = (*over, "input"), rows if over else rows[0], attrs
     if not data:
-        raise ParameterError("summaries", "; ".join(refused), "quantities that vary and that every motion has")
+        raise ParameterError("summaries", "; ".join(refused), "quantities that each motion has and that differ")
     coordinates = {
         "t": ("t", run.t, column_attributes("t", run.si)),
         "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
@@ -136,7 +136,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
     """Return the names of the uncertain inputs; raise ParameterError if there are none or they are not independent."""
     if not inputs.uncertain:
-        raise ParameterError("run file", "no uncertain input", "one with a distribution")
+        raise described_error("the run file", "has no uncertain input", "one in which an input has a distribution")
     if inputs.correlated:
         allowed = "left out: Sobol indices are defined for independent inputs only"
         raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)

@@ -117,7 +117,7 @@ class Interpolant:
 
         (name,) = check_names("field", field, schema.fields_of(self._table), "a field of this table")
         if self._table.attrs[schema.KIND] == "atlas":
-            raise ParameterError("field", name, "of a grid over V and delta")
+            raise ParameterError("field", name, "a field of a grid over V and delta; this grid has other axes")
         dims, found = self._spline(name)
         logs = () if self._linear else ("V", "alpha")
         return spline_at, pack_spline(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))

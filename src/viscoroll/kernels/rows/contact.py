@@ -32,15 +32,32 @@ from .record import select_material
 #: send states with creep of 0.1 delta_star to the mean slopes, which take half as long again.
 SMALL_CREEP = 0.0625
 
-#: Places in the scratch of :func:`contact_loop`, each with a number for every state of a block: kappa, mu, V, and the
-#: creepage or omega of the states; u = kappa |V|; L; 2 kappa delta_0 of free rolling; D
-#: (:func:`signed_creep`); v (:func:`stick_argument`); and the rows of the positions of u
-#: and v, each followed by t and dt/dx.
-_KAPPA, _MU, _V, _CREEP, _U, _L, _FREE_CREEP, _D, _STICK, _POSITION, _STICK_POSITION = (
-    np.uint64(n * TOGETHER) for n in (*range(10), 12)
-)
-#: Distances of t and of dt/dx from the row of a position.
-_T, _DT_DX = _MU, _V
+#: Place in the scratch of :func:`contact_loop` of kappa of the states.
+_KAPPA = np.uint64(0)
+#: Place in the scratch of :func:`contact_loop` of mu.
+_MU = np.uint64(TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of V, dimensionless.
+_V = np.uint64(2 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of the creepage or omega, whichever is given.
+_CREEP = np.uint64(3 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of u = kappa |V|.
+_U = np.uint64(4 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of L = 2 kappa delta_star/mu.
+_L = np.uint64(5 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of 2 kappa delta_0, from the creepage of free rolling.
+_FREE_CREEP = np.uint64(6 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of D with a sign (:func:`signed_creep`).
+_D = np.uint64(7 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of v (:func:`stick_argument`).
+_STICK = np.uint64(8 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of rows of the positions of u; t and dt/dx follow.
+_POSITION = np.uint64(9 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of rows of the positions of v; t and dt/dx follow.
+_STICK_POSITION = np.uint64(12 * TOGETHER)
+#: Distance of t from the row of a position in the scratch.
+_T = np.uint64(TOGETHER)
+#: Distance of dt/dx from that row.
+_DT_DX = np.uint64(2 * TOGETHER)
 
 
 @inline_kernel
@@ -216,30 +233,30 @@ def _state(c, scratch, request):
 
 
 @inline_kernel
-def _locate(x, to, begin, end, laws, scratch):
+def _write_positions(arguments, positions, begin, end, laws, scratch):
     """Write the positions in the rows of the arguments of some states.
 
-    x : place of the arguments in ``scratch``, for column 0.
-    to : place of the positions, for column 0.
+    arguments : place of the arguments in ``scratch``.
+    positions : place of the positions in ``scratch``.
     begin, end : first column, and the one behind the last.
     laws, scratch : of :func:`contact_loop`.
     """
     for k in range(begin, end):
         c = np.uint64(k)
-        position = locate_row(scratch[x + c], laws[k % len(laws)])
-        scratch[to + c] = bits_to_float(position.row)
-        scratch[to + _T + c] = position.t
-        scratch[to + _DT_DX + c] = position.dt_dx
+        position = locate_row(scratch[arguments + c], laws[k % len(laws)])
+        scratch[positions + c] = bits_to_float(position.row)
+        scratch[positions + _T + c] = position.t
+        scratch[positions + _DT_DX + c] = position.dt_dx
 
 
 @inline_kernel
-def _position(of, c, scratch):
-    """Return the :class:`RowPosition` of column ``c`` that :func:`_locate` has written at the place ``of``."""
-    return RowPosition(float_to_bits(scratch[of + c]), scratch[of + _T + c], scratch[of + _DT_DX + c])
+def _position(place, c, scratch):
+    """Return the :class:`RowPosition` of column ``c`` that :func:`_write_positions` has written at ``place``."""
+    return RowPosition(float_to_bits(scratch[place + c]), scratch[place + _T + c], scratch[place + _DT_DX + c])
 
 
 @inline_kernel
-def _write_others(n, c, law, scratch, request):
+def _write_other_fields(n, c, law, scratch, request):
     """Write the requested quantities of a state except Q and M.
 
     n : index of the state.
@@ -317,7 +334,7 @@ def contact_loop(laws, request, scratch, count):
             end = min(begin + together, size)
             for k in range(begin, end):
                 select_material(laws[k % len(laws)], _index(first + k, request))
-            _locate(_U, _POSITION, begin, end, laws, scratch)
+            _write_positions(_U, _POSITION, begin, end, laws, scratch)
             for k in range(begin, end):
                 law = laws[k % len(laws)]
                 c = np.uint64(k)
@@ -334,7 +351,7 @@ def contact_loop(laws, request, scratch, count):
                 D = signed_creep(L, scratch[_FREE_CREEP + c], _state(c, scratch, request), laws[0])
                 scratch[_D + c] = D
                 scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
-            _locate(_STICK, _STICK_POSITION, begin, end, laws, scratch)
+            _write_positions(_STICK, _STICK_POSITION, begin, end, laws, scratch)
             if to.Q >= 0:
                 for k in range(begin, end):
                     c = np.uint64(k)
@@ -346,4 +363,4 @@ def contact_loop(laws, request, scratch, count):
             if others:
                 for k in range(begin, end):
                     n = _index(first + k, request)
-                    _write_others(n, np.uint64(k), laws[k % len(laws)], scratch, request)
+                    _write_other_fields(n, np.uint64(k), laws[k % len(laws)], scratch, request)

@@ -23,7 +23,7 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
     fastest: fastest rate of relaxation, in units of 1/T_ref.
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
-        allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} of their unit"
+        allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref"
         raise ParameterError("times", f"{1.0 / fastest:g} to {1.0 / slowest:g}", allowed)
 
 

@@ -132,7 +132,7 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
         return table
     low, high = table["alpha"].values[[0, -1]]
     if alpha is None or not low <= check_number("alpha", alpha) <= high:
-        raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds")
+        raise ParameterError("alpha", alpha, f"in [{low:g}, {high:g}], the range of {path}")
     if low == high:
         return table.squeeze("alpha")
     method: Any = _METHODS[min(table.sizes["alpha"], len(_METHODS)) - 1]
@@ -151,7 +151,8 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
         try:
             by = conversion_factor(unit, wanted)[0]
         except ParameterError as error:
-            raise ParameterError(f"units of {name}", unit, f"of {wanted}, as those of V") from error
+            allowed = "1, since V has no unit" if wanted == "1" else f"a unit of {wanted}, since V has a unit"
+            raise ParameterError(f"unit of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(np.float64) * by})
     return table.assign_attrs(R=1.0) if given["V"] == "1" else table
 

@@ -134,8 +134,8 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     axis = parse_axis(content, path)
     low, high = axis.alpha
     if alpha is None or not low <= check_number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
-        wider = "`viscoroll tables law --alpha LOW:HIGH` writes others"
-        raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds ({wider})")
+        wider = "`viscoroll tables law --alpha LOW:HIGH` writes another range"
+        raise ParameterError("alpha", alpha, f"in [{low:g}, {high:g}], the range of {path} ({wider})")
     return axis.at(alpha)
 
 
