@@ -82,3 +82,7 @@ def test_old_names_work_with_a_warning_that_names_the_new_ones():
         assert scene.humps().V == old.V
     with pytest.warns(DeprecationWarning, match="is_maximum"):
         assert old.top == old.is_maximum
+    steady = vr.presets.PAPER_SECTION_5.validity(1e-4).steady
+    for part in (steady.ten_percent, steady.start):
+        with pytest.warns(DeprecationWarning, match="distance"):
+            assert part.way == part.distance

@@ -49,8 +49,8 @@ def test_by_quadrature_of_N_and_M(scene, V):
         speed = brentq(lambda V, level=level: law(scene, V)[0] - level, top, 1.01 * top, rtol=1e-14)
         assert close(reach.speed, speed, tol.STEADINESS)
         assert close(reach.time, over(scene, speed, V, lambda V, brake: 1.0 / brake), tol.STEADINESS)
-        assert close(reach.way, over(scene, speed, V, lambda V, brake: V / brake), tol.STEADINESS)
-        assert close(reach.way + reach.left, rest, tol.STEADINESS)
+        assert close(reach.distance, over(scene, speed, V, lambda V, brake: V / brake), tol.STEADINESS)
+        assert close(reach.distance + reach.left, rest, tol.STEADINESS)
     assert close(found.share, found.ten_percent.left / rest, tol.STEADINESS)
 
 
@@ -63,7 +63,7 @@ def test_a_start_from_rest_costs_an_energy(V):
     W = (0.25 * J * np.log(1.0 + (0.681 * L) ** 2)).sum() - np.log(DMA.alpha) / (8.0 * DMA.alpha)
     left = np.sqrt(V * V - 0.5 * g * W / ROLLER.kappa**2)
     assert close(found.start.speed, V - left, tol.STEADINESS)
-    assert close(found.start.way, found.whole - ROLLER.validity(left).steady.whole, tol.STEADINESS)
+    assert close(found.start.distance, found.whole - ROLLER.validity(left).steady.whole, tol.STEADINESS)
 
 
 def test_no_relaxation_time_bounds_it():

@@ -75,7 +75,7 @@ def compared(motion: dict[str, Any]) -> dict[str, Any]:
     steady, whole = scene.validity(u0).steady, Laws(scene, u0)
     row = {
         "modes": len(motion["E"]), "u": u0, "g": motion["g"], "unsteadiness": float(steady.value),
-        "way": float(steady.whole), "start": float(steady.start.way),
+        "way": float(steady.whole), "start": float(steady.start.distance),
     }  # fmt: skip
     for start in ("steady", "rest"):
         t, u = (np.array(motion[start][name]) for name in ("t", "u"))

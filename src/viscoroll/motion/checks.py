@@ -112,7 +112,7 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     return V, omega
 
 
-def in_words(error: ParameterError, scale: Scale) -> ParameterError:
+def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
     """Return the refusal of a dimensionless number with the units that it was divided by.
 
     error: the refusal.

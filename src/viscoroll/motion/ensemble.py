@@ -16,7 +16,7 @@ from ..core.checks import broadcast_shape, check_bool, check_choice, check_numbe
 from ..core.drive import Feedback, Schedule, make_dimensionless
 from ..core.errors import ParameterError, check_names, shape_error
 from .batch import Batch, Solution, solve_batch
-from .checks import in_words, output_times
+from .checks import output_times, with_scales
 from .drive import ACTING, ROWS, Drive, strip_units
 from .ensemble_result import Ensemble
 from .problem import MotionProblem, SolverOptions, make_problem
@@ -131,7 +131,7 @@ def ensemble(
     try:
         solution = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
     except ParameterError as error:
-        raise in_words(error, scale) from error
+        raise with_scales(error, scale) from error
     columns: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
     columns |= _in_units(batch, solution)
     result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **columns)

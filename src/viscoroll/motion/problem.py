@@ -19,7 +19,7 @@ from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError, described_error
 from ..core.scale import HasUnits
 from ..materials.law.table import law_table
-from .checks import controls, in_words, refuse_end, require_single
+from .checks import controls, refuse_end, require_single, with_scales
 from .drive import LOSSES, ROWS, STATES, Drive
 from .drive_functions import DriveFunctions, DrivenStart, KernelDrive, prepare_drive, refuse_rest, undriven
 
@@ -119,7 +119,7 @@ def make_problem(
         refuse_rest(limits[1], functions)
         V0, omega0, immobile = _apply_standstill(prepared, scene, _standstill_time(rested, scale) / scale["t"])
     except ParameterError as error:
-        raise in_words(error, scale) from error
+        raise with_scales(error, scale) from error
     many = 1 if functions is None else max(functions.counts)
     if single and many > 1:
         allowed = "the drive of one motion: for many use ensemble"

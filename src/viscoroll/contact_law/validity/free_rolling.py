@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.array_types import Floats, Integers
+from ...core.renamed import warn_renamed
 from ...core.scale import Scale
 from ...materials.bodies import total_series
 from ...materials.law.table import law_table
@@ -57,15 +58,21 @@ class Reach(NamedTuple):
     ----------
     speed : the part ends at this speed; 0: at rest.  Where the error is above the level already at V, the next higher
         speed from which on it is below.
-    time, way : time and distance from V to there; an infinite time: to rest.  0 where the error is above the level
+    time, distance : time and distance from V to there; an infinite time: to rest.  0 where the error is above the level
         at V.
     left : distance from there to rest.
     """
 
     speed: Any
     time: Any
-    way: Any
+    distance: Any
     left: Any
+
+    @property
+    def way(self) -> Any:
+        """Old name of ``distance``."""
+        warn_renamed("way", "distance")
+        return self.distance
 
 
 class Start(NamedTuple):
@@ -73,11 +80,17 @@ class Start(NamedTuple):
 
     Attributes
     ----------
-    speed, way : lost speed and lost distance; all of V where the cylinder stays in its indentation.
+    speed, distance : lost speed and lost distance; all of V where the cylinder stays in its indentation.
     """
 
     speed: Any
-    way: Any
+    distance: Any
+
+    @property
+    def way(self) -> Any:
+        """Old name of ``distance``."""
+        warn_renamed("way", "distance")
+        return self.distance
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,11 +224,11 @@ class FreeRolling:
                 end[part], below[part] = curve.limit_speed(u[part], level / value)
             start, left = np.where(below, end, u), curve.distance(np.where(below, end, u))
             time = np.where(start > 0.0, curve.time(u) - curve.time(start), np.inf)
-            way = np.where(below, curve.distance(u) - left, 0.0)
-            return [end, np.where(below, time, 0.0) / g, way / g, left / g]
+            distance = np.where(below, curve.distance(u) - left, 0.0)
+            return [end, np.where(below, time, 0.0) / g, distance / g, left / g]
 
-        end, time, way, left = self._evaluate(evaluate, [0.0, np.inf, np.inf, 0.0])
-        return Reach(end * self.speed, time * self.time, way * self.length, left * self.length)
+        end, time, distance, left = self._evaluate(evaluate, [0.0, np.inf, np.inf, 0.0])
+        return Reach(end * self.speed, time * self.time, distance * self.length, left * self.length)
 
     def start(self, rested: float = math.inf) -> Start:
         """Return the losses of a start after a standstill, as :class:`Start`.
@@ -224,12 +237,12 @@ class FreeRolling:
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
-            way = curve.distance(u)
-            W = curve.work(u, way / g, rested)
+            distance = curve.distance(u)
+            W = curve.work(u, distance / g, rested)
             part = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)
             kept = np.sqrt(1.0 - part)
-            lost = np.where(part > _SMALL_LOSS, (way - curve.distance(u * kept)) / g, 0.25 * W / curve.M(u))
+            lost = np.where(part > _SMALL_LOSS, (distance - curve.distance(u * kept)) / g, 0.25 * W / curve.M(u))
             return [u * part / (1.0 + kept), np.where(u > 0.0, lost, 0.0)]
 
-        speed, way = self._evaluate(evaluate, [0.0, 0.0], rested / self.time)
-        return Start(speed * self.speed, way * self.length)
+        speed, distance = self._evaluate(evaluate, [0.0, 0.0], rested / self.time)
+        return Start(speed * self.speed, distance * self.length)

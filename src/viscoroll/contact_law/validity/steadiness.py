@@ -150,7 +150,7 @@ def _describe_free(free: FreeRolling) -> str:
         text += f"10 % {end if most.speed else 'to the end'}"
     if start.speed > LARGEST_LOSS * float(free.u * free.speed):
         return text + "; after a long standstill the cylinder would not leave its indentation"
-    loss = f"{start.speed:.2g}{speed} of speed and {start.way:.2g}{length} of distance"
+    loss = f"{start.speed:.2g}{speed} of speed and {start.distance:.2g}{length} of distance"
     return f"{text}; a start after a long standstill costs {loss}"
 
 
