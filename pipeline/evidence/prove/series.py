@@ -169,7 +169,7 @@ AXIS_CLAIMS = {
     "dQ_ddelta": ("relative, divided by the condition of beta", 1e-14),
     "dQ_domega": ("relative, divided by the condition of beta", 1e-14),
     "dQ_dV": ("divided by mu/V and by the condition of beta", 2e-14),
-    "dM_dV": ("divided by M/V", 1.5e-13),
+    "dM_dV": ("divided by M/V", 2e-13),
 }
 
 
