@@ -198,7 +198,11 @@ class Cylinder(Methods):
         return {name: value for name, value in values.items() if value is not None}
 
     def on_slope(self, slope: Any) -> Cylinder:
-        """Return the same cylinder under the load P cos(slope); ``slope`` in rad.
+        """Return the same cylinder under the load P cos(slope).
+
+        Parameters
+        ----------
+        slope : angle in rad, a number or (n,), in (-pi/2, pi/2).
 
         Examples
         --------

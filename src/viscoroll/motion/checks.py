@@ -74,8 +74,8 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     """Check the limits of an integration.
 
     rtol: relative tolerance.
+    rest: threshold of max(|V|, |omega|) below which a motion ends, dimensionless; None: none.
     max_steps: largest number of steps of a motion.
-    rest: rest threshold, the speed below which a motion ends, dimensionless; None: none.
     Returns (rtol, threshold of rest or 0, step limit).
     Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """

@@ -161,11 +161,12 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    start: start speeds and drive, dimensionless.
+    start: start speeds, numbers or (n,), and drive, dimensionless.
     scene: dimensionless parameters of the roller.
-    rested: time of the standstill, in T_ref.
-    Returns (V0, omega0, whether the cylinder stays in its indentation); the speeds are dimensionless.
-    Raises ParameterError for a prescribed speed, or a start in full slip, whose cost is not known.
+    rested: time of the standstill, in T_ref; infinite for a long one.
+    Returns (V0, omega0, whether the cylinder stays in its indentation, in the shape of the speeds, or one False if
+    ``rested`` is 0); the speeds are dimensionless.
+    Raises ParameterError for a prescribed speed, a start in full slip or a cover, whose cost is not known.
     """
     if rested == 0.0:
         return start.V0, start.omega0, False

@@ -145,8 +145,8 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
 
     curves : one for each temperature, the coldest first.
     temperatures : temperatures of the curves, degrees Celsius.
-    Returns (ln a_T of each curve relative to the coldest, (curves,); mean square mismatch of each pair of neighbours,
-    (curves - 1,); decades by which the shift of each pair may vary, (curves - 1,)).
+    Returns (ln a_T of each curve relative to the coldest, (curves,); root mean square difference of each pair of
+    neighbours, (curves - 1,); decades by which the shift of each pair may vary, (curves - 1,)).
     Raises ParameterError for neighbours that do not overlap.
     """
     found = [_align(*pair) for pair in pairwise(curves)]

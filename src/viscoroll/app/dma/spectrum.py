@@ -68,8 +68,8 @@ def _residuals(data: Data, values: Floats) -> Floats:
     """Return the relative errors of all moduli, one row after the other.
 
     data : the curve.
-    values : long-time modulus, strengths, times; shape (1 + 2 modes,).
-    Returns shape (rows n,), dimensionless.
+    values : long-time modulus and strengths in the unit of the data, times in s; shape (1 + 2 modes,).
+    Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,): ``rows`` moduli at n points.
     """
     count = values.size // 2
     return _relative_columns(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0

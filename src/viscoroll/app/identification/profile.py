@@ -313,11 +313,11 @@ class ProfileWalk:
         return end, found[min(found, key=lambda d: abs(d - end))]
 
     def search_beyond(self, d: float, reach: float) -> list[Minimum]:
-        """Search other branches of the fit at an end of the interval and behind it.
+        """Search other minima of chi2 that continue the interval between one of its ends and the bound of the ranges.
 
-        d : distance of the combination at the end from that at the best minimum.
-        reach : distance of the combination at the bound of the ranges.
-        Returns the minima where chi2 is below the bound, the farthest last.
+        d : signed distance of the combination at the end of the interval from that at the best minimum.
+        reach : the same at the bound of the ranges.
+        Returns the minima whose rise of chi2 is below _LOWER delta_chi2, the farthest last; an empty list if none.
         """
         found, problem = [], self.problem
         starts = [(u, _BEYOND) for u in self.likelihood.others] + [(u, _BEYOND[:1]) for u in self.likelihood.ends]

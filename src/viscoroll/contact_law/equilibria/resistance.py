@@ -218,7 +218,7 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
 
     function : vectorised function of one variable.
     nodes : ascending, (n,).
-    noise : rounding error of the function at the nodes; nodes with smaller values have no sign.
+    noise : rounding error of the function at the nodes, a number or (n,); nodes with smaller values have no sign.
 
     Returns the zeros, ascending, bisected to the rounding of the nodes.  A pair of zeros is found where |function|
     has a minimum at a node.

@@ -159,7 +159,8 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 
     Quantities over time are shown at the last time with indices.  Inputs have one order, the largest total index first.
 
-    indices: indices of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file.
+    indices: indices of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file: of each
+        quantity NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or (input,), dimensionless.
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
     shown = [_last_indices(indices, name) for name in names]

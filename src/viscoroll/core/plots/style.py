@@ -39,7 +39,7 @@ def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2,
     rows, columns: numbers of rows and columns of axes.
     height: of the figure, inches; its width is ``WIDTH``.
     options: keyword arguments of ``Figure.subplots``.
-    Returns (figure, its axes: one, or an array of them).
+    Returns (figure, its axes as of ``Figure.subplots``: one, a vector, or (rows, columns)).
     """
     from matplotlib.figure import Figure
 

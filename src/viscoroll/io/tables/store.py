@@ -111,6 +111,11 @@ def info(path: str | PathLike[str]) -> str:
     ----------
     path : file of a law or a grid.
 
+    Returns
+    -------
+    str
+        Lines to print.  Errors of a law are relative; those of a grid are its attributes, absolute.
+
     Raises
     ------
     FileError

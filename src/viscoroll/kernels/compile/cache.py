@@ -121,7 +121,7 @@ class DiskCache:
     def save_overload(self, signature, compiled: CompileResult) -> None:
         """Store machine code, unless it contains addresses of this process; warn if that fails.
 
-        signature : types of the arguments.
+        signature : numba's types of the arguments of the kernel; their text is part of the name of the file.
         compiled : numba's result.
         """
         if compiled.library.has_dynamic_globals:

@@ -75,7 +75,7 @@ def write_column(column, speeds, code, forces, work):
 
     column: int, index of the output time.
     speeds: (V, omega, delta), dimensionless, in fixed directions, not in those of the regime.
-    code: int, regime in the outputs.
+    code: int, regime in the outputs: FULL_SLIP, PARTIAL_SLIP, AT_REST, OMEGA_LOCKED or HELD_AT_REST (:mod:`.records`).
     forces: (force, torque), dimensionless, in fixed directions too.
     work: Workspace, whose outputs are written.
     """

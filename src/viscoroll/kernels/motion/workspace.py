@@ -155,10 +155,10 @@ def dense_position(tau, step):
 
 @inline_kernel
 def set_step_length(h, n_trials, step_state):
-    """Return the StepState with another length of the next trial step.
+    """Return the StepState with another length of the next trial step and a new count of trial steps.
 
     h: float, that length in tau; 0 if it is not chosen yet.
-    n_trials: int, number of trial steps by which the count of steps grows.
+    n_trials: int, number added to the count: 1 after a trial step, 0 where only the length changes.
     step_state: StepState, the present one.
     """
     tau, next_output, segment, n_steps, n_accepted, _ = step_state

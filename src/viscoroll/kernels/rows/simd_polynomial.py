@@ -32,11 +32,12 @@ def _make_sums(count: int, orders: int):
     orders : number of values that the kernel returns: the polynomial, its first derivative, and so on.
 
     The kernel takes (table, start, x): vector of coefficients, position of the first, argument.
-    Returns the kernel; its value is a tuple of ``orders`` vectors.
+    Returns the kernel, an intrinsic of numba; its value is a tuple of ``orders`` vectors of four doubles, with
+    derivatives with respect to x.
     """
 
     def lower(context, builder, signature, arguments):
-        """Return the instructions of the kernel by Horner's scheme, as numba calls for them.
+        """Return the instructions of the kernel by Estrin's scheme, as numba calls for them.
 
         context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
         Returns a value of LLVM: the tuple of the kernel.

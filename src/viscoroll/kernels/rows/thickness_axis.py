@@ -54,10 +54,11 @@ def _interpolate(source, marks, first, to, out, count):
 
 @kernel(allocates=True)
 def select_cover(n, source):
-    """Select the cover of a state: write the heads of the law, and the numbers that only a cover has.
+    """Make the cover of a state the selected one: interpolate the numbers in front of its rows, and its cover rows.
 
     n : index of the state.
-    source : pointer to a SOURCE record.
+    source : pointer to a SOURCE record, whose rows, marks and cover rows are written; not if that cover is selected
+        already.
     """
     source = record_at(source)
     marks = integers_at(source.marks, PARTS_PER_ROW)

@@ -66,11 +66,12 @@ def _grid_law(V, omega, pointer, grids):
 
 
 def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Jitted:
-    """Return the law of a grid as a function for jitted code.
+    """Return the law of a grid, tables of Q and M over V and delta, as a function for jitted code.
 
-    splines : vectors of the splines of Q, M_half_space and M_cylinder, which the law keeps alive.
-    numbers : fields slips, slowest, low, high, R of :data:`GRID`, in the units of the grid.
-    Returns the :class:`Jitted` law, called with (V, omega).
+    splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline (:mod:`.spline`), which the law keeps alive.
+    numbers : fields of :data:`GRID` by name, in the units of the grid: slips (0 or 1), slowest (V), low and high
+        (delta), R.
+    Returns the :class:`Jitted` law: (V, omega) -> loads and slopes, in the units of the grid, NaN outside it.
     """
     grids = np.zeros(2, GRID)
     grids["slopes"] = 0, 1

@@ -46,10 +46,10 @@ def record_of_alphas(alpha: Floats) -> Any:
 
 
 def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
-    """Return some records as that of :func:`record_of_alphas`, each of which holds the law of one element at a time.
+    """Return ``count`` records as of :func:`record_of_alphas`, so that so many elements are evaluated together.
 
-    alpha: one value for each element, or one for all, >= 1.
-    count: number of records.
+    alpha: one value for each element, (n,), or one for all, (1,), dimensionless, >= 1.
+    count: number of records, each of which holds the law of one element at a time.
     Returns a tuple of :class:`...kernels.rows.record.Law`.
     """
     from ...kernels.rows import alpha_axis
