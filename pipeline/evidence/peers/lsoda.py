@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.compile.intrinsics import floats_at, integers_at
-from viscoroll.kernels.rows.contact import signed_creep, signed_traction
+from viscoroll.kernels.rows.contact import signed_creep, signed_traction, stick_argument
 from viscoroll.kernels.rows.contact_states import State
 from viscoroll.kernels.rows.evaluate import length_and_moment, locate_row, moment_factor
 from viscoroll.kernels.rows.record import Law
@@ -46,14 +46,14 @@ def _compiled():
         """At the force par[4] and the torque par[5]; addresses and sizes of rows and marks behind."""
         y, found, par = numba.carray(u, 2), numba.carray(du, 2), numba.carray(p, 10)
         rows, marks = floats_at(int(par[6]), int(par[7])), integers_at(int(par[8]), int(par[9]))
-        law, state = Law(rows, marks, rows[:0], 0, 0, 0), State(par[0], par[1], y[0], y[1], True)
+        law, state = Law(rows, marks, rows[:0], 0, 0, 0, None), State(par[0], par[1], y[0], y[1], True)
         u = state.kappa * abs(y[0])
         at = locate_row(u, law)
         of = length_and_moment(at, u, law)
-        Q, M = (
-            signed_traction(u, of.L, signed_creep(of.L, 0.0, state, law), state.mu, law),
-            moment_factor(at, u, of.scale, state) * of.m,
-        )
+        D = signed_creep(of.L, 0.0, state, law)
+        v = stick_argument(u, of.L, abs(D))
+        Q = signed_traction(locate_row(v, law), v, u, of.L, D, state.mu, law)
+        M = moment_factor(at, u, of.scale, state) * of.m
         found[0] = par[2] * (Q - 0.5 * M + par[4])
         found[1] = par[2] / par[3] * (par[5] - Q - 0.5 * M)
 

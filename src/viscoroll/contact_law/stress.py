@@ -103,7 +103,11 @@ def stress(
     run_blocks(work, p.size, _BLOCK)
     unit = scale["p"]
     rows = {"p": p} if scene.cover is not None else {"p": p, "tau": tau}
-    found = {name: unit * (row.reshape(shape) if shape else row.item()) for name, row in rows.items()}
+    found: dict[str, Any] = {}
+    for name, row in rows.items():
+        values = row.reshape(shape)
+        values *= unit  # in place: a copy would double the memory of a large call
+        found[name] = values if shape else values.item()
     return Values(found, given, si=scale.si, title="Stresses", labels=labels)
 
 
