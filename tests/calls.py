@@ -16,6 +16,7 @@ import xarray as xr
 from drives import DMA as DMA_SERIES
 from drives import ON_DMA as DMA_ROLLER
 from drives import ROLLER as DRIVEN
+from refusals import refused
 from run_files import FILES
 from scipy import stats
 

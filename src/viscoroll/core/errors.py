@@ -60,6 +60,9 @@ class ParameterError(ViscorollError, ValueError):
     alpha 0.5
     """
 
+    #: Whether the sentence states dimensionless numbers, to which a call with a cylinder adds its scales.
+    is_dimensionless = False
+
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name, self.value, self.allowed = name, value, allowed
         super().__init__(" ".join((sentence or f"{name} = {value!s}: must be {allowed}").split("\n")))
@@ -98,6 +101,16 @@ def described_error(name: str, found: str, allowed: str) -> ParameterError:
     name: of the parameter.  found: verb and property, as "is empty".  allowed: words that follow "must be".
     """
     return ParameterError(name, found, allowed, f"{name} {found}: must be {allowed}")
+
+
+def dimensionless_error(name: str, value: Any, allowed: str, sentence: str | None = None) -> ParameterError:
+    """Return the error of a dimensionless number, which a cylinder may have been given in SI units.
+
+    name, value, allowed, sentence: as for :class:`ParameterError`.
+    """
+    error = ParameterError(name, value, allowed, sentence)
+    error.is_dimensionless = True
+    return error
 
 
 def shape_error(name: str, shape: tuple[int, ...], allowed: str) -> ParameterError:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array, check_integer, check_number, extent
-from ..core.errors import ParameterError, shape_error
+from ..core.errors import ParameterError, dimensionless_error, shape_error
 from ..core.scale import Scale, Units
 
 #: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no longer proportional.
@@ -70,19 +70,20 @@ def _shape(value: Any) -> tuple[int, ...]:
         return ()
 
 
-def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:
+def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> tuple[float, float, int]:
     """Check the limits of an integration.
 
     rtol: relative tolerance.
-    rest: threshold of max(|V|, |omega|) below which a motion ends, dimensionless; None: none.
+    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: none.
     max_steps: largest number of steps of a motion.
-    Returns (rtol, threshold of rest or 0, step limit).
+    scale: scale of the roller.
+    Returns (rtol, threshold of rest or 0, dimensionless, step limit).
     Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = 0.0 if rest is None else check_number("rest", rest, above=0.0)
+    threshold = 0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"]
     return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
@@ -102,23 +103,23 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0
         if abs(fastest) > high:
-            raise ParameterError(name, fastest, f"at most {high:g} in magnitude")
+            raise dimensionless_error(name, fastest, f"at most {high:g} in magnitude")
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer((V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16):
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
         tiny = larger[(larger > 0.0) & (larger < low)]
         if tiny.size:
-            raise ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {low:g}")
+            raise dimensionless_error("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {low:g}")
     return V, omega
 
 
 def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
-    """Return the refusal of a dimensionless number with the units that it was divided by.
+    """Return an error, where it states dimensionless numbers of a cylinder with the units that they were divided by.
 
-    error: the refusal.
-    scale: scale of the roller; for a scene, and for a message without a number, the error itself is returned.
+    error: the error.
+    scale: scale of the roller.
     """
-    if not scale.si or not any(map(str.isdigit, str(error.value))):
+    if not (scale.si and error.is_dimensionless):
         return error
     about = "dimensionless"
     if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):

@@ -23,8 +23,8 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from ..core.array_types import Floats
-from ..core.checks import check_array, check_number
-from ..core.errors import ParameterError, shape_error
+from ..core.checks import check_array
+from ..core.errors import dimensionless_error, shape_error
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.
@@ -205,16 +205,15 @@ def fit_callable(
     low: smallest value allowed.
     resolve: largest spacing of the samples, in T_ref; None: ``end`` divided by :data:`SAMPLES`.
     Returns (starts of the pieces (k,), terms (k, TERMS), largest difference seen).
-    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that is not above 0 or
+    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that
     requires more than :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough.
     """
     samples = SAMPLES
     if resolve is not None:
-        spacing = check_number("resolve", resolve, above=0.0)
-        if spacing * MOST < end:
+        if resolve * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
-            raise ParameterError("resolve", spacing, allowed)
-        samples = max(math.ceil(end / spacing), SAMPLES)
+            raise dimensionless_error("resolve", resolve, allowed)
+        samples = max(math.ceil(end / resolve), SAMPLES)
     sampled = _Sampled(name, function, end, rtol, low, samples)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
     starts = np.array([piece.start for piece in pieces])
@@ -250,7 +249,8 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
                 f"a function that piecewise polynomials cannot approximate near t = {start:.6g} "
                 f"({sampled.taken} values of it were taken)"
             )
-            raise ParameterError(sampled.name, found, "smooth except for jumps and corners; give it as a Schedule")
+            allowed = "smooth except for jumps and corners; give it as a Schedule"
+            raise dimensionless_error(sampled.name, found, allowed)
         left, right = cut or (0.5 * (start + stop),) * 2
         open_intervals += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
     return pieces

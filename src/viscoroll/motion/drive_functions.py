@@ -11,7 +11,7 @@ import numpy as np
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array
 from ..core.drive import Feedback, slope_tan_cos
-from ..core.errors import ParameterError, described_error, exactly_one_error
+from ..core.errors import ParameterError, described_error, dimensionless_error, exactly_one_error
 from ..kernels.motion.records import (
     COL_COEFFICIENTS,
     N_DRIVE_FUNCTIONS,
@@ -184,12 +184,9 @@ def prepare_drive(
     rtol: relative tolerance of the motion.
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what follows
-    from them given as well; a start that is not the prescribed one; ``resolve`` without a callable.
+    from them given as well; a start that is not the prescribed one.
     Returns the :class:`DrivenStart`.
     """
-    if resolve is not None and not drive.has_callable:
-        sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
-        raise ParameterError("resolve", resolve, "left out", sentence)
     if not drive.acts:
         return DrivenStart(None, *start_speeds(V0, omega0))
     tangent = np.asarray(slope_tan_cos(drive.slope)[0])
@@ -239,7 +236,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
     if stated is not None and not (np.abs(check_array(f"{name}0", stated) - start) <= _START * scale).all():
-        raise ParameterError(f"{name}0", stated, f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0")
+        raise dimensionless_error(f"{name}0", stated, f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0")
     if start.size > 1:
         return start
     return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])
@@ -254,13 +251,13 @@ def _gains(drive: Drive) -> Floats:
     return np.array([np.broadcast_to(row, count) for row in rows])
 
 
-def refuse_rest(rest: float, functions: DriveFunctions | None) -> None:
+def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: rest threshold, the speed below which the motion ends, dimensionless; 0 for none.
+    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.
     functions: functions of the drive, or None.
     """
-    if rest > 0.0 and functions is not None and functions.acts_at_end:
-        sentence = f"rest = {rest:g} is given, but a load or a prescribed speed acts at the end of the motion: "
+    if functions is not None and functions.acts_at_end:
+        sentence = f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of the motion: "
         sentence += "leave it out (a brake stops the motion in finite time: see switches)"
         raise ParameterError("rest", rest, "None", sentence)

@@ -14,10 +14,10 @@ from ..contact_law.validity.free_rolling import FreeRolling
 from ..contact_law.validity.steadiness import LARGEST_LOSS
 from ..core.array_types import Floats, Integers
 from ..core.blocks import broadcast_vector, run_blocks
-from ..core.checks import check_array, check_bool
+from ..core.checks import check_array, check_bool, check_number
 from ..core.drive import make_dimensionless
 from ..core.errors import MotionStatus, ParameterError, described_error
-from ..core.scale import HasUnits
+from ..core.scale import HasUnits, Scale
 from ..materials.law.table import law_table
 from .checks import controls, refuse_end, require_single, with_scales
 from .drive import LOSSES, ROWS, STATES, Drive
@@ -108,15 +108,16 @@ def make_problem(
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     try:
-        limits, last = controls(rtol, make_dimensionless("rest", rest, scale), max_steps), float(end) / scale["t"]
+        limits, last = controls(rtol, rest, max_steps, scale), float(end) / scale["t"]
         refuse_end(float(end), scale["t"])
         V0, omega0 = make_dimensionless("V0", start[0], scale), make_dimensionless("omega0", start[1], scale)
-        spacing = None if resolve is None else make_dimensionless("resolve", resolve, scale)
+        spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
         prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + functions.corners)
-        refuse_rest(limits[1], functions)
+        if rest is not None:
+            refuse_rest(rest, functions)
         V0, omega0, immobile = _apply_standstill(prepared, scene, _standstill_time(rested, scale) / scale["t"])
     except ParameterError as error:
         raise with_scales(error, scale) from error
@@ -126,6 +127,20 @@ def make_problem(
         raise described_error("drive", f"has values for {many} motions", allowed)
     driven = unsteady or (acts and drive.acts)
     return MotionProblem(roller, scene, drive, functions, V0, omega0, immobile, last, limits, unsteady, driven)
+
+
+def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
+    """Return the largest spacing of the samples of a callable, in T_ref.
+
+    resolve: the spacing in the unit of the roller.
+    drive: drive of the motions.
+    scale: scale of the roller.
+    Raises ParameterError unless ``resolve`` is a number above 0 and the drive has a callable.
+    """
+    if not drive.has_callable:
+        sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
+        raise ParameterError("resolve", resolve, "left out", sentence)
+    return check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
 
 
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
