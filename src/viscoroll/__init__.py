@@ -30,7 +30,10 @@ __all__ = ["__version__", *_MODULES]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
-    """Import the public name ``name`` at its first use; an old name warns."""
+    """Import the public name ``name`` at its first use; an old name warns.
+
+    Returns the public object.
+    """
     if name not in _MODULES:
         from .core.renamed import RENAMED, warn_renamed
 

@@ -260,7 +260,10 @@ class Cylinder(Methods):
 
     @cached_property
     def _scene(self) -> Scene:
-        """Compute the scene, once; raises ParameterError for a law of another load."""
+        """Compute the scene, once; raises ParameterError for a law of another load.
+
+        Returns the dimensionless :class:`viscoroll.Scene`.
+        """
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and law.cover is not None:
             self._refuse_other_load(law)

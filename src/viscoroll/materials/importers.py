@@ -57,6 +57,10 @@ class FromPrograms:
             nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.
         more : ``name``, ``density``, ``thickness``, ``measured``, ``temperature`` of the material.
 
+        Returns
+        -------
+        Material
+
         Raises
         ------
         ParameterError
@@ -95,6 +99,10 @@ class FromPrograms:
             where one of the two has none.  As of :meth:`abaqus`.
         more : as of :meth:`abaqus`.
 
+        Returns
+        -------
+        Material
+
         Raises
         ------
         ParameterError
@@ -120,6 +128,10 @@ class FromPrograms:
         K : bulk moduli of the branches, Pa, >= 0, at the same times; zeros where only deviatoric strains are
             viscoelastic.
         more : as of :meth:`abaqus`.
+
+        Returns
+        -------
+        Material
 
         Raises
         ------
@@ -162,6 +174,10 @@ class FromPrograms:
         G_inf : long-time shear modulus, Pa.
         K : K_i, Pa, >= 0, at the same beta; that with beta = 0 is the long-time one, in place of ``nu`` and ``bulk``.
         more : as of :meth:`abaqus`.
+
+        Returns
+        -------
+        Material
 
         Raises
         ------
@@ -231,6 +247,7 @@ class FromPrograms:
         more: keywords of the material.
         K_inf: bulk modulus of long times; default: by nu.
         E: Young's modulus of long times, Pa; default: 2 (1 + nu) G_inf.
+        Returns the material, of the class ``cls``.
         """
         E = 2.0 * (1.0 + nu) * G_inf if E is None else E
         prony = Prony(G / G_inf, tau)

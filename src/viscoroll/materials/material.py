@@ -105,6 +105,10 @@ class Material(FromPrograms):
         T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.
         more : ``name``, ``density`` and ``thickness``.
 
+        Returns
+        -------
+        Material
+
         Raises
         ------
         ParameterError
@@ -133,6 +137,10 @@ class Material(FromPrograms):
         nu : Poisson's ratio.
         more : ``name``, ``density`` and ``thickness``.
 
+        Returns
+        -------
+        Material
+
         Raises
         ------
         ParameterError
@@ -149,6 +157,10 @@ class Material(FromPrograms):
     @classmethod
     def rigid(cls, **more: Any) -> Material:
         """Make a body that does not deform, with infinite E; ``more``: ``name`` and ``density``.
+
+        Returns
+        -------
+        Material
 
         Examples
         --------
@@ -374,6 +386,10 @@ class Material(FromPrograms):
         Parameters
         ----------
         path : file; its SHA-256 is compared before anything is parsed.
+
+        Returns
+        -------
+        Material
 
         Raises
         ------

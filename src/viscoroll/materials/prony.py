@@ -132,6 +132,10 @@ class Prony(OneOrMany):
             difference loses digits where the sum is near 1: a value given here replaces it, and must agree with it to
             rounding of J.
 
+        Returns
+        -------
+        Prony
+
         Raises
         ------
         ParameterError
@@ -163,6 +167,10 @@ class Prony(OneOrMany):
     @classmethod
     def elastic(cls) -> Prony:
         """Make a material without modes: alpha = 1.
+
+        Returns
+        -------
+        Prony
 
         Examples
         --------

@@ -55,6 +55,7 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     E: strengths, (..., modes).
     tau: times, descending, (..., modes).
     alpha: 1 + sum E, a number or (...).
+    Returns the :class:`Modes`, whose arrays have the shape of ``E``.
     """
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
@@ -71,6 +72,7 @@ def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     J: strengths, (..., modes).
     T: times, descending, (..., modes).
     alpha: 1/(1 - sum J), a number or (...).
+    Returns the :class:`Modes`, whose arrays have the shape of ``J``.
     """
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))

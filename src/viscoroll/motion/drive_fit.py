@@ -226,6 +226,7 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 
     sampled: the callable.
     end: last time, in T_ref.
+    Returns the pieces in the order of time.
     Raises ParameterError where polynomials do not follow the callable.
     """
     pieces: list[Piece] = []

@@ -47,6 +47,7 @@ class Histogram(msgspec.Struct):
 
         values: numbers, (n,); those that are not finite are left out.
         exact: whether to keep the values, for exact quantiles.
+        Returns the :class:`Histogram`.
         """
         kept = values[np.isfinite(values)]
         bits = (kept + 0.0).view(np.int64)  # -0 becomes 0

@@ -70,6 +70,7 @@ class RollResult(Result):
         rolls: where the motions are not in full slip, (times, ...).
         x: distances travelled, (times, ...); NaN where they are not known.
         ends: whether the unsteadiness is that of each motion as a whole, else at each time.
+        Returns the report with that entry.
         """
         free = FreeRolling.of_scene(roller.scene(), V / roller.scale["V"]).scaled(roller.scale)
         return report._replace(steady=Steadiness.along(free, rolls, x, ends=ends))

@@ -79,6 +79,7 @@ def _convert_argument(kind: type, words: str, text: str) -> Any:
     kind: type of the value.
     words: the type in words, for the error.
     text: the argument.
+    Returns the value, of the type ``kind``.
     """
     try:
         return kind(text)

@@ -308,6 +308,7 @@ class Coastdown(Record):
 
         cylinder : the cylinder with the present values of the unknowns.
         values : name -> value of brake and drag, and of V0, omega0 and t0 in place of those of the record.
+        Returns arrays over the times, by name: "V" in m/s, "omega" in rad/s, "x" in m, "slips" as booleans.
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

@@ -56,6 +56,7 @@ def distributions(data: xr.Dataset) -> Figure:
     """Draw a row for each quantity: its quantiles over time, and its histogram at the last time.
 
     data: an ensemble, its summary, which has no histograms, or the summaries of a run.
+    Returns the figure.
     """
     ensemble, about = "motion" in data.dims, data.attrs
     if ensemble:
@@ -161,6 +162,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 
     indices: indices of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file: of each
         quantity NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or (input,), dimensionless.
+    Returns the figure.
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
     shown = [_last_indices(indices, name) for name in names]

@@ -22,6 +22,7 @@ def master_curve(material: Any) -> Figure:
     """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right.
 
     material: a :class:`Material`.
+    Returns the figure.
     Raises ParameterError for a rigid body, which has no curves.
     """
     if material.is_rigid:
@@ -51,6 +52,7 @@ def series_fit(fit: Any) -> Figure:
     """Draw measured moduli and the curves of the series that was fitted to them.
 
     fit: a :class:`viscoroll.Fit` or a :class:`viscoroll.RelaxationFit`.
+    Returns the figure.
     """
     x, *columns = fit.data
     fine = np.geomspace(x[0], x[-1], _POINTS)
@@ -68,6 +70,7 @@ def identification(fit: Any) -> Figure:
     """Draw a column for each quantity of a record: data and prediction band on top, normalized residuals below.
 
     fit: a :class:`viscoroll.app.identification.fit.Identification`.
+    Returns the figure.
     """
     shown = fit._problem.columns
     figure, grid = new_figure(

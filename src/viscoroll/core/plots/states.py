@@ -50,6 +50,8 @@ def field_curves(data: xr.Dataset) -> Figure:
     """Draw each field of ``data`` over the first axis, with a curve for some values of the second.
 
     Other axes are at their middle, which the title states.
+
+    Returns the figure.
     """
     first, *others = varied_axes(data)
     title, band = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
@@ -82,7 +84,10 @@ def field_curves(data: xr.Dataset) -> Figure:
 
 
 def stresses(data: xr.Dataset) -> Figure:
-    """Draw pressure and shear stress of the first state of ``data`` along the contact."""
+    """Draw pressure and shear stress of the first state of ``data`` along the contact.
+
+    Returns the figure.
+    """
     figure, axes = new_figure("Pressure and shear stress along the contact")
     data = data.isel(dict.fromkeys(set(data.dims) - {data["x"].dims[0]}, 0))
     for name, line in zip(("p", "tau"), LINES, strict=False):
@@ -95,7 +100,10 @@ def stresses(data: xr.Dataset) -> Figure:
 
 
 def equilibria(data: xr.Dataset) -> Figure:
-    """Draw the speeds of all equilibria of ``data`` over the first load that varies, stable (filled) or not (open)."""
+    """Draw the speeds of all equilibria of ``data`` over the first load that varies, stable (filled) or not (open).
+
+    Returns the figure.
+    """
     loads = (name for name in ("slope", "force", "torque") if name in data and np.ptp(_finite(data[name])) > 0.0)
     load = next(loads, "force")
     figure, axes = new_figure("Steady rolling: stable (filled) and not (open)")
@@ -114,7 +122,10 @@ def equilibria(data: xr.Dataset) -> Figure:
 
 
 def motion(data: xr.Dataset) -> Figure:
-    """Draw V and omega, the path, and the loads of the motion ``data`` over time; full slip is shaded."""
+    """Draw V and omega, the path, and the loads of the motion ``data`` over time; full slip is shaded.
+
+    Returns the figure.
+    """
     loads = [name for name in ("force", "torque") if name in data and data[name].values.any()]
     rows = [["V", "omega"], ["x"], *([loads] if loads else [])]
     if data["V"].attrs.get("units", "1") != "1":  # quantities of different units have an axis each

@@ -74,6 +74,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     cover: one cover.
     thickest: thickness divided by l0 that determines the number of rows, for several covers to have as many; default:
         that of the cover.
+    Returns the rows and limits, as :class:`CoverRows`.
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
     """
     # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder

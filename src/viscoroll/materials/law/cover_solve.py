@@ -226,6 +226,7 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
     modes: of the cover.
     z: half contact length divided by V T_ref.
     N: highest order of the terms of the pressure.
+    Returns their integrals over the contact, as :class:`_Exponentials`.
     """
     from scipy.special import ive, k0e, k1e
 
@@ -272,6 +273,7 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     z: half contact length divided by V T_ref, > 0.
     theta: half contact length divided by the thickness, in (0, 6].
     orders: terms of the pressure; default: 14 + 6 theta.
+    Returns half contact lengths, moments and creepage, as :class:`CoverState`.
     """
     nodes, N = modes.nodes, orders or _term_count(theta)
     v = nodes.u * theta
