@@ -68,9 +68,7 @@ def field_names(
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct":
         if set(names) & set(SLOPES + SLOPES_OF_BODIES):
-            raise ParameterError(
-                "slopes", True, "False with method='direct': the equations of the paper give no slopes"
-            )
+            raise ParameterError("method", "'direct'", "'table' for slopes: the equations of the paper give none")
         for name in (UNSTEADY, GRIP, FREE_CREEP):
             if name in names:
                 raise ParameterError("fields", repr(name), "left out, or computed with method='table'")
@@ -81,7 +79,7 @@ def field_names(
         if fields is None or known == names:
             return known
         unknown = next(name for name in names if name not in known)
-        allowed = f"one of {', '.join(_BEFORE_THE_SPLIT)}, since the body in contact with the layer is viscoelastic"
+        allowed = f"one of {', '.join(_BEFORE_THE_SPLIT)}: others are not available if both bodies are viscoelastic"
         raise ParameterError("fields", repr(unknown), allowed)
     if UNSTEADY in names:
         allowed = "left out for a cover: N of a layer of finite thickness is not available"

@@ -54,9 +54,8 @@ def roll(
         proportional to it; that of V and omega too, multiplied by t |V'|/|V|, by which a late
         speed magnifies any earlier error.  Errors are mostly below rtol, at most 30 rtol for the scenes
         of ``tests/motion/test_motion.py``; rare motions elsewhere may exceed that a little.
-    force : force on the axis along V, divided by P: of one of the kinds that ``torque``
-        lists.
-    torque : torque on the cylinder along omega, divided by P R; one of
+    force : force on the axis along V, divided by P; kinds as for ``torque``.
+    torque : torque on the cylinder along omega, divided by P R: a number or a function of time.
 
         - a number;
         - ``vr.Schedule(times, values)``: linear between the times, constant outside; a time given twice is a jump;

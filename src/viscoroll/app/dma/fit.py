@@ -117,7 +117,7 @@ def fit_prony(
         record = omega
         for name, given in (("storage", storage), ("loss", loss)):
             if given is not None:
-                allowed = "left out: the result of read_dma contains it (the number of modes is modes=)"
+                allowed = "left out: the result of read_dma contains it; write modes=5 for a number of modes"
                 raise described_error(name, "is given", allowed)
         if mode not in (None, record.mode):
             raise ParameterError("mode", repr(mode), f"{record.mode!r}, the mode of {record.source or 'the data'}")

@@ -117,7 +117,11 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
             attrs = {"long_name": f"{text} of: {meaning}", "units": "1"}
             data[f"{name}_{key}"] = (*over, "input"), rows if over else rows[0], attrs
     if not data:
-        raise ParameterError("summaries", "; ".join(refused), "quantities that each motion has and that differ")
+        raise ParameterError(
+            "summaries",
+            "; ".join(refused),
+            "quantities that each motion has and that differ: choose others, or a later t",
+        )
     coordinates = {
         "t": ("t", run.t, column_attributes("t", run.si)),
         "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
