@@ -44,7 +44,8 @@ def field_names(
 ) -> tuple[str, ...]:
     """Return the names of the fields that a call of :func:`.contact.contact` has to return, in their order.
 
-    Parameters ----------
+    Parameters
+    ----------
     fields : names of fields; None: the default fields of such a roller.
     slopes : whether the slopes are added to these fields.
     method : "table", which has every field, or "direct" (the printed equations), which has no slopes, N, grip and

@@ -99,7 +99,8 @@ def evaluate_law(
 ) -> Floats:
     """Return fields of the contact, a row each, at states of one or many laws.
 
-    Parameters ----------
+    Parameters
+    ----------
     material : the rows of one law, for all states; or many materials, of which each state names one; or None: each
     state has
         a law of one relaxation time, by its alpha.

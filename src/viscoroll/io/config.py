@@ -87,7 +87,8 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
     more : further sections that the file may have.
 
     Returns
-    ------- Scene or Cylinder
+    -------
+    Scene or Cylinder
 
     Raises
     ------
@@ -172,7 +173,8 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     path : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
 
     Returns
-    ------- Pair, Prony, Bodies, float or Cylinder
+    -------
+    Pair, Prony, Bodies, float or Cylinder
 
     Raises
     ------

@@ -32,7 +32,8 @@ class Loss:
 
     Powers are divided by P R/T_ref, of a Cylinder in W per m of length.
 
-    Attributes ----------
+    Attributes
+    ----------
     slip : power lost in slip, (omega - V) Q of a scene, (omega R - V) Q of a Cylinder.
     half_space, cylinder : power lost in rolling in either body, V M_half_space and omega M_cylinder (of a Cylinder
     the first
@@ -117,7 +118,8 @@ class Steady(Values):
     The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); shorter lists are padded
     with NaN (``stable``: False).  The axes before it are those of the loads; of one load there are none.
 
-    Attributes ----------
+    Attributes
+    ----------
     V, omega, delta : speeds and creepage (omega - V)/V, infinite for a cylinder that spins at V = 0.
     Q, M : creep force and rolling resistance moment, divided by P and P R; M_half_space, M_cylinder : the parts of
     M.

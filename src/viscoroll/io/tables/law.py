@@ -100,7 +100,8 @@ def measured_errors(
     seed : seed of the points.
 
     Returns
-    ------- dict of str to float
+    -------
+    dict of str to float
         Function -> largest relative error, dimensionless.
     """
     random = np.random.default_rng(seed)

@@ -34,7 +34,8 @@ class LawGrid:
     """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes a function of V and
     omega of it.
 
-    Attributes ----------
+    Attributes
+    ----------
     splines : Q, M_half_space and M_cylinder, as :func:`viscoroll.materials.law.splines.pack_spline` writes them; Q
     divided by the load and M divided by load times radius, or in N/m and N.
     V : slowest and fastest speed; dimensionless, or m/s.
