@@ -4,26 +4,19 @@ All quantities are dimensionless (docs/symbols.md); an argument of which no shap
 
 Terms of this file (records in :mod:`.records`):
 
-- Flow: the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``, the
-  exponent from
+- Flow: the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``, the exponent from
   which kappa V at onset is tabulated; ``slow_rate``.
-- Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma times the
-  angle, until
+- Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma times the angle, until
   :func:`look_up_motions` divides them by gamma.
 - Level: SPEEDS (0): V and omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
-- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5, slip loss 6, rolling
-  loss 7.
-- Mirrored frame: the signs of V and omega are changed (frame -1) or not (frame 1), so that omega >= V in full
-  slip and
+- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5, slip loss 6, rolling loss 7.
+- Mirrored frame: the signs of V and omega are changed (frame -1) or not (frame 1), so that omega >= V in full slip and
   V > 0 in partial slip.
-- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then
-  keep; the slow
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep; the slow
   logarithm is a coordinate along it that falls linearly in tau.
-- StickOnset: the onset of partial slip: frame, family (PLUS if omega > V there, MINUS if omega < V), v =
-  kappa V, tau,
+- StickOnset: the onset of partial slip: frame, family (PLUS if omega > V there, MINUS if omega < V), v = kappa V, tau,
   distance, angle and slip loss.
-- Asymptote: the motion on the slow manifold that a motion approaches behind its onset: slow logarithm at the
-  onset,
+- Asymptote: the motion on the slow manifold that a motion approaches behind its onset: slow logarithm at the onset,
   relaxation rate k0, split of the boundary layer, excess of distance, angle and slip loss.
 """
 
@@ -81,8 +74,7 @@ ROWS = 8
 
 @inline_kernel
 def _write_output(out, column, state):
-    """Write one output state; ``out``: (ROWS, times), of which column ``column`` is written, all rows but
-    ROLLING_LOSS;
+    """Write one output state; ``out``: (ROWS, times), of which column ``column`` is written, all rows but ROLLING_LOSS;
     ``state``: :class:`.records.Output`.
     """
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
@@ -92,8 +84,7 @@ def _write_output(out, column, state):
 
 @inline_kernel
 def _write_rest(at, x, angle, loss, out):
-    """Write outputs at rest, V = omega = delta = 0, into the columns of ``out``, (ROWS, times), from ``at`` on;
-    ``x``,
+    """Write outputs at rest, V = omega = delta = 0, into the columns of ``out``, (ROWS, times), from ``at`` on; ``x``,
     ``angle``, ``loss``: distance and angle times gamma, and slip loss, of all of them.
     """
     for column in range(at, out.shape[1]):
@@ -110,8 +101,7 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns (:class:`FullSlipStart`, :class:`StickOnset` at a time tau >= 0, whether the map covers the motion:
-    its V at
+    Returns (:class:`FullSlipStart`, :class:`StickOnset` at a time tau >= 0, whether the map covers the motion: its V at
     onset is tabulated and the initial speeds are at most 4096 times that).  Distance and loss need level PATH.
     """
     mu, (T, X) = flow.mu, start
@@ -136,8 +126,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns (:class:`StickOnset` at a time tau <= 0, its :class:`Asymptote`, whether the map covers the motion).
-    A start
+    Returns (:class:`StickOnset` at a time tau <= 0, its :class:`Asymptote`, whether the map covers the motion). A start
     on the slow manifold has its onset at practically tau = 0 and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
@@ -235,10 +224,8 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     flow : Flow, of the scene.
     out : outputs (ROWS, times), written in the frame of the caller.
 
-    Returns (status, time tau at which the motion comes to rest, NaN if it does not).  The status is COMPLETED (0)
-    or
-    CAME_TO_REST (1), or NOT_COVERED (-1), and nothing is written, where rest is reached within the boundary
-    layer.
+    Returns (status, time tau at which the motion comes to rest, NaN if it does not).  The status is COMPLETED (0) or
+    CAME_TO_REST (1), or NOT_COVERED (-1), and nothing is written, where rest is reached within the boundary layer.
     """
     layer_end = stick.tau + LAYER_END / asymptote.rate
     rest_time, end = np.inf, tau_out[tau_out.size - 1]
@@ -271,8 +258,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS; not whole if the status is NOT_COVERED.
 
     Returns (status, time of the onset of partial slip, time of coming to rest).  The status is COMPLETED (0),
-    CAME_TO_REST (1) or NOT_COVERED (-1); times are tau, NaN where there is none: the onset of a start in partial
-    slip,
+    CAME_TO_REST (1) or NOT_COVERED (-1); times are tau, NaN where there is none: the onset of a start in partial slip,
     or of one below the rest threshold, whose time of rest is 0.
     """
     kappa, level = flow.kappa, request.level
@@ -309,23 +295,18 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
 
 @kernel(allocates=True)
 def look_up_motions(flow, motions, result, start, stop):
-    """Look up some motions in the flow map and write their outputs; motions outside the map get the status
-    NOT_COVERED.
+    """Look up some motions in the flow map and write their outputs; motions outside the map get the status NOT_COVERED.
 
     flow : Flow, of the scene.
-    motions : :class:`.records.Motions` of all n motions: gamma; rest threshold, 0 for none; initial speeds V0,
-        omega0, of
-        length 1 or n; output times t, ascending, (times,); requested rows of an output, int, (q,).
-    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these motions are
-        written: out,
-        (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1); onset and rest, (n,),
-        times t of
-        the onset of partial slip and of coming to rest, NaN where there is none; switches, (n,), 1 with an onset,
-        else 0.
+    motions : :class:`.records.Motions` of all n motions: gamma; rest threshold, 0 for none; initial speeds V0, omega0,
+        of length 1 or n; output times t, ascending, (times,); requested rows of an output, int, (q,).
+    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these motions are written:
+        out, (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1); onset and rest, (n,),
+        times t of the onset of partial slip and of coming to rest, NaN where there is none; switches, (n,), 1 with an
+        onset, else 0.
     start, stop : int, index of the first motion and of the one behind the last.
 
-    Distance and angle are written as x and angle, divided by gamma.  Entries of ``out`` of a motion that is not
-    covered
+    Distance and angle are written as x and angle, divided by gamma.  Entries of ``out`` of a motion that is not covered
     have no meaning.
     """
     gamma, rest, V0, omega0, t, rows = motions
