@@ -1,31 +1,24 @@
 """Values from a flow map: polynomials instead of integration.
 
 In full slip, mirrored so that omega > V, I = V - j omega - 2 mu T(V) is constant and determines the onset of
-partial
-slip.  Behind the onset the boundary layer is a table over (V at onset, E); then the motion follows the slow
-manifold, a function of the slow logarithm.
+partial slip.  Behind the onset the boundary layer is a table over (V at onset, E); then the motion follows the
+slow manifold, a function of the slow logarithm.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 
 Terms of this file:
 
 - Flow: record of the flow map of one scene: ``table``, the vector of all its tables, of layout.SIZE numbers;
-  kappa,
-  mu, j; ``first``, the exponent from which kappa V at onset is tabulated; ``slow_rate``.
-- Times are tau = gamma t.  Distances and angles are integrals over tau: gamma times x and gamma times the
-  angle.
+  kappa, mu, j; ``first``, the exponent from which kappa V at onset is tabulated; ``slow_rate``.
+- Times are tau = gamma t.  Distances and angles are integrals over tau: gamma times x and gamma times the angle.
 - Level: SPEEDS (0): V and delta or omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
-- Mirrored frame: the signs of V and omega are changed where needed, so that omega > V in full slip and V > 0
-  in
+- Mirrored frame: the signs of V and omega are changed where needed, so that omega > V in full slip and V > 0 in
   partial slip.
 - T: time of full slip from V = 0 to V, with the sign of V; X: distance of full slip between rest and V, >= 0.
-- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then
-  keep.
-- Slow logarithm: coordinate along it, which falls linearly in tau; close to ln V plus a constant at low
-  speed.
-- Boundary layer: the time behind the onset of partial slip in which delta approaches the manifold.  E = k0
-  (tau -
-  tau_onset) is its stiff time, k0 the relaxation rate at onset, u the layer coordinate
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep.
+- Slow logarithm: coordinate along it, which falls linearly in tau; close to ln V plus a constant at low speed.
+- Boundary layer: the time behind the onset of partial slip in which delta approaches the manifold.  E, k0 times the tau
+  since that onset, is its stiff time, k0 the relaxation rate at the onset, u the layer coordinate
   (:func:`layer_coordinate`).
 - Family: PLUS (0) if omega > V at the onset of partial slip, MINUS (1) if omega < V.
 """
@@ -110,8 +103,7 @@ def full_slip_integrals(V, level, flow):
 @inline_kernel
 def speed_at_slide_time(T, flow):
     """Return V in full slip at the time T = gamma t after (T > 0) or before (T < 0) V = 0, in the mirrored frame;
-    ``flow``:
-    Flow, of the scene.  V has the sign of T.
+    ``flow``: Flow, of the scene.  V has the sign of T.
     """
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
@@ -124,14 +116,12 @@ def speed_at_slide_time(T, flow):
 def slide_distance(start, tau, flow):
     """Return the distance of sliding during a time from a given state of full slip.
 
-    start : (T, X) at the beginning, as :func:`full_slip_integrals` returns them: time and distance between rest
-        and the
-        speed there, in the mirrored frame.
+    start : (T, X) at the beginning, as :func:`full_slip_integrals` returns them: time and distance between rest and
+        the speed there, in the mirrored frame.
     tau : time gamma t of sliding, > 0.
     flow : Flow, of the scene.
 
-    Returns gamma times the distance, with the sign of the motion in the mirrored frame: the difference of X, or,
-        for
+    Returns gamma times the distance, with the sign of the motion in the mirrored frame: the difference of X, or, for
     tau up to 0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
     """
     T, X = start
@@ -147,15 +137,12 @@ def slide_distance(start, tau, flow):
 def read_onset(I, level, flow):
     """Return the state at the onset of partial slip of a sliding motion, in the mirrored frame (omega > V).
 
-    I : V - j omega - 2 mu T, constant while sliding, with T the time that :func:`full_slip_integrals` gives for
-        V.
+    I : V - j omega - 2 mu T, constant while sliding, with T the time that :func:`full_slip_integrals` gives for V.
     level : SPEEDS, PATH or LOSS: X is computed from PATH on.
     flow : Flow, of the scene.
 
-    Returns (V, T, X): speed at the onset, with the sign opposite to that of I; time tau and distance times gamma
-    of
-    full slip between rest and that speed; X = 0 at level SPEEDS.  All are 0 where the onset is outside the
-    tables.
+    Returns (V, T, X): speed at the onset, with the sign opposite to that of I; time tau and distance times gamma of
+    full slip between rest and that speed; X = 0 at level SPEEDS.  All are 0 where the onset is outside the tables.
     """
     x = flow.kappa * abs(I) / (1.0 + flow.j)
     if not LOWEST <= x < HIGHEST:
@@ -173,11 +160,9 @@ def _locate_on_manifold(slow_log):
 
     slow_log : slow logarithm of V, the coordinate along the slow manifold; any number up to the end of the table.
 
-    Returns (position, t, factor): index in the map's vector at which the row begins, int; argument in [-1, 1] of
-    its
-    polynomials; factor of V, delta and the remaining path: 1 inside the table, below it the exp(slow_log -
-    lowest) by
-    which they fall.
+    Returns (position, t, factor): index in the map's vector at which the row begins, int; argument in [-1, 1] of its
+    polynomials; factor of V, delta and the remaining path: 1 inside the table, below it the exp(slow_log - lowest)
+    by which they fall.
     """
     if slow_log >= 0.0:
         row, t, _ = locate_octave(1.0 + slow_log, 0)
@@ -219,9 +204,8 @@ def manifold_path(start, span, rate, table):
     rate : decrease of the slow logarithm in unit time tau = gamma t, > 0: ``slow_rate`` of Flow.
     table : vector with all tables of the map, ``table`` of Flow.
 
-    Returns (distance, angle), each times gamma and >= 0 for V > 0: the difference of the remaining path, or,
-    where that
-    difference cancels, the integral of V by a five-point Gauss rule.
+    Returns (distance, angle), each times gamma and >= 0 for V > 0: the difference of the remaining path, or, where
+    that difference cancels, the integral of V by a five-point Gauss rule.
     """
     end = start - span
     if span > 0.25 * max(1.0 + end, 1.0):
@@ -239,8 +223,7 @@ def manifold_path(start, span, rate, table):
 @kernel
 def remaining_slip_loss(slow_log, table):
     """Return the slip loss that remains to rest on the slow manifold, divided by m (R/T_epsilon)^2; it falls as V^3
-    as
-    V -> 0.  ``slow_log``: slow logarithm; ``table``: vector of all tables, of Flow.
+    as V -> 0.  ``slow_log``: slow logarithm; ``table``: vector of all tables, of Flow.
     """
     at, t, share = _locate_on_manifold(slow_log)
     return share**3 * evaluate_single(table, at + layout.SLOW_LOSS, t)[0]
@@ -249,8 +232,7 @@ def remaining_slip_loss(slow_log, table):
 @kernel
 def manifold_at_speed(v, table):
     """Return (slow logarithm, delta) on the slow manifold; ``v``: kappa V, from LOWEST to the end of the tables;
-    ``table``:
-    vector of all tables, of Flow.
+    ``table``: vector of all tables, of Flow.
     """
     row, t, _ = locate_octave(v, layout.LOW)
     return evaluate_pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
@@ -258,8 +240,8 @@ def manifold_at_speed(v, table):
 
 @kernel
 def asymptote_on_manifold(slow_log):
-    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow logarithm
-    ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
+    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow
+    logarithm ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
     """
     return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
 
@@ -267,18 +249,16 @@ def asymptote_on_manifold(slow_log):
 @inline_kernel
 def read_asymptote(family, v, level, flow):
     """Return the motion on the slow manifold that a motion approaches after the onset of partial slip: its
-        asymptote.
+    asymptote.
 
     family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
     v : kappa V at the onset, in the octaves of the table, from 2^first on.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns an :class:`.records.Asymptote`: slow_log, that of the asymptote at the time of the onset; rate, the k0
-    of
-    the stiff time E; split, the E that divides the layer; x, angle (both times gamma; 0 below level PATH) and
-    loss (0
-    below level LOSS), by which the motion exceeds the asymptote from the onset to rest.
+    Returns an :class:`.records.Asymptote`: slow_log, that of the asymptote at the time of the onset; rate, the k0 of
+    the stiff time E; split, the E that divides the layer; x, angle (both times gamma; 0 below level PATH) and loss
+    (0 below level LOSS), by which the motion exceeds the asymptote from the onset to rest.
     """
     table = flow.table
     row, t, _ = locate_octave(v, flow.first)
@@ -294,8 +274,8 @@ def read_asymptote(family, v, level, flow):
 
 @inline_kernel
 def layer_coordinate(E, split):
-    """Return the layer coordinate u, 2^LAYER_LOW at the onset and 1 at the split; ``E``: stiff time since the onset,
-    >= 0; ``split``: the E at which the layer is divided.
+    """Return the layer coordinate u, 2^LAYER_LOW at the onset and 1 at the split; ``E``: stiff time since the
+    onset, >= 0; ``split``: the E at which the layer is divided.
     """
     return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
 
@@ -310,8 +290,7 @@ def locate_in_layer(family, v, u, flow):
     flow : Flow, of the scene.
 
     Returns (position, t, s): index in the map's vector at which the polynomials of column 0 begin, int; their
-    arguments
-    in [-1, 1] over v and over u, each linear within an octave.
+    arguments in [-1, 1] over v and over u, each linear within an octave.
     """
     row, t, _ = locate_octave(v, flow.first)
     part, s, _ = locate_octave(u, layout.LAYER_LOW)
@@ -334,8 +313,7 @@ def layer_value_and_slopes(table, column, at, t, s):
     """Return value and slopes of one quantity of the boundary layer behind the onset of partial slip.
 
     table : vector with all tables of the map, ``table`` of Flow.
-    column : the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE (distance and angle
-        beyond
+    column : the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE (distance and angle beyond
         those at constant V0, in units of V0/k0), LAYER_LOSS (slip loss divided by V0^2); V0 is V at the onset.
     at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and over u.
 
@@ -373,8 +351,7 @@ def layer_state(stick, asymptote, elapsed, level, flow):
     flow : Flow, of the scene.
 
     Returns (V, delta, distance, angle, slip loss): speed > 0; creepage; distance and angle since the onset, times
-    gamma,
-    0 below level PATH; slip loss since the onset, divided by m (R/T_epsilon)^2, 0 below level LOSS.
+    gamma, 0 below level PATH; slip loss since the onset, divided by m (R/T_epsilon)^2, 0 below level LOSS.
     """
     table, E = flow.table, elapsed * asymptote.rate
     at, t, s = locate_in_layer(stick.family, stick.v, layer_coordinate(E, asymptote.split), flow)

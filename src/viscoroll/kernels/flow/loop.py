@@ -4,27 +4,21 @@ All quantities are dimensionless (docs/symbols.md); an argument of which no shap
 
 Terms of this file (records in :mod:`.records`):
 
-- Flow: the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``, the
-  exponent from
-  which kappa V at onset is tabulated; ``slow_rate``.
-- Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma times the
-  angle, until
-  :func:`look_up_motions` divides them by gamma.
+- Flow: the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``, the exponent
+  from which kappa V at onset is tabulated; ``slow_rate``.
+- Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma times the angle,
+  until :func:`look_up_motions` divides them by gamma.
 - Level: SPEEDS (0): V and omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
-- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5, slip loss 6, rolling
-  loss 7.
+- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5, slip loss 6, rolling loss
+  7.
 - Mirrored frame: the signs of V and omega are changed (frame -1) or not (frame 1), so that omega >= V in full
-  slip and
-  V > 0 in partial slip.
-- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then
-  keep; the slow
-  logarithm is a coordinate along it that falls linearly in tau.
-- StickOnset: the onset of partial slip: frame, family (PLUS if omega > V there, MINUS if omega < V), v =
-  kappa V, tau,
-  distance, angle and slip loss.
+  slip and V > 0 in partial slip.
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep;
+  the slow logarithm is a coordinate along it that falls linearly in tau.
+- StickOnset: the onset of partial slip: frame, family (PLUS if omega > V there, MINUS if omega < V), v = kappa
+  V, tau, distance, angle and slip loss.
 - Asymptote: the motion on the slow manifold that a motion approaches behind its onset: slow logarithm at the
-  onset,
-  relaxation rate k0, split of the boundary layer, excess of distance, angle and slip loss.
+  onset, relaxation rate k0, split of the boundary layer, excess of distance, angle and slip loss.
 """
 
 import numpy as np
@@ -82,8 +76,7 @@ ROWS = 8
 @inline_kernel
 def _write_output(out, column, state):
     """Write one output state; ``out``: (ROWS, times), of which column ``column`` is written, all rows but
-    ROLLING_LOSS;
-    ``state``: :class:`.records.Output`.
+    ROLLING_LOSS; ``state``: :class:`.records.Output`.
     """
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
     out[_ANGLE, column], out[_DELTA, column], out[_REGIME, column] = state.angle, state.delta, state.regime
@@ -93,8 +86,7 @@ def _write_output(out, column, state):
 @inline_kernel
 def _write_rest(at, x, angle, loss, out):
     """Write outputs at rest, V = omega = delta = 0, into the columns of ``out``, (ROWS, times), from ``at`` on;
-    ``x``,
-    ``angle``, ``loss``: distance and angle times gamma, and slip loss, of all of them.
+    ``x``, ``angle``, ``loss``: distance and angle times gamma, and slip loss, of all of them.
     """
     for column in range(at, out.shape[1]):
         _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
@@ -110,9 +102,8 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns (:class:`FullSlipStart`, :class:`StickOnset` at a time tau >= 0, whether the map covers the motion:
-    its V at
-    onset is tabulated and the initial speeds are at most 4096 times that).  Distance and loss need level PATH.
+    Returns (:class:`FullSlipStart`, :class:`StickOnset` at a time tau >= 0, whether the map covers the motion: its V
+    at onset is tabulated and the initial speeds are at most 4096 times that).  Distance and loss need level PATH.
     """
     mu, (T, X) = flow.mu, start
     w = V - flow.j * omega
@@ -136,9 +127,8 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns (:class:`StickOnset` at a time tau <= 0, its :class:`Asymptote`, whether the map covers the motion).
-    A start
-    on the slow manifold has its onset at practically tau = 0 and no boundary layer.
+    Returns (:class:`StickOnset` at a time tau <= 0, its :class:`Asymptote`, whether the map covers the motion).  A
+    start on the slow manifold has its onset at practically tau = 0 and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
@@ -225,7 +215,8 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
 
 @inline_kernel
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
-    """Write all outputs from the onset of partial slip to the last output time, those after coming to rest included.
+    """Write all outputs from the onset of partial slip to the last output time, those after coming to rest
+    included.
 
     at : first column to write.
     tau_out : output times tau = gamma t, ascending, (times,).
@@ -235,10 +226,8 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     flow : Flow, of the scene.
     out : outputs (ROWS, times), written in the frame of the caller.
 
-    Returns (status, time tau at which the motion comes to rest, NaN if it does not).  The status is COMPLETED (0)
-    or
-    CAME_TO_REST (1), or NOT_COVERED (-1), and nothing is written, where rest is reached within the boundary
-    layer.
+    Returns (status, time tau at which the motion comes to rest, NaN if it does not).  The status is COMPLETED (0) or
+    CAME_TO_REST (1), or NOT_COVERED (-1), and nothing is written, where rest is reached within the boundary layer.
     """
     layer_end = stick.tau + LAYER_END / asymptote.rate
     rest_time, end = np.inf, tau_out[tau_out.size - 1]
@@ -272,8 +261,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
 
     Returns (status, time of the onset of partial slip, time of coming to rest).  The status is COMPLETED (0),
     CAME_TO_REST (1) or NOT_COVERED (-1); times are tau, NaN where there is none: the onset of a start in partial
-    slip,
-    or of one below the rest threshold, whose time of rest is 0.
+    slip, or of one below the rest threshold, whose time of rest is 0.
     """
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
@@ -314,19 +302,15 @@ def look_up_motions(flow, motions, result, start, stop):
 
     flow : Flow, of the scene.
     motions : :class:`.records.Motions` of all n motions: gamma; rest threshold, 0 for none; initial speeds V0,
-        omega0, of
-        length 1 or n; output times t, ascending, (times,); requested rows of an output, int, (q,).
-    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these motions are
-        written: out,
-        (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1); onset and rest, (n,),
-        times t of
-        the onset of partial slip and of coming to rest, NaN where there is none; switches, (n,), 1 with an onset,
-        else 0.
+        omega0, of length 1 or n; output times t, ascending, (times,); requested rows of an output, int, (q,).
+    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these motions are written:
+        out, (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1); onset and rest, (n,),
+        times t of the onset of partial slip and of coming to rest, NaN where there is none; switches, (n,), 1 with
+        an onset, else 0.
     start, stop : int, index of the first motion and of the one behind the last.
 
     Distance and angle are written as x and angle, divided by gamma.  Entries of ``out`` of a motion that is not
-    covered
-    have no meaning.
+    covered have no meaning.
     """
     gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j

@@ -1,10 +1,8 @@
 """Added mass: N of M = M(V) + N V', the rolling moment while the speed changes slowly, and the factor gamma N.
 
-Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P T_epsilon^2.  A law
-of steady
-rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of u = kappa |V|
-(``Law.N_rows``: for each row N and its integral over u, a pair; behind the rows the constants of the
-integral).
+Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P T_epsilon^2.  A law of
+steady rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of u = kappa |V|
+(``Law.N_rows``: for each row N and its integral over u, a pair; behind the rows the constants of the integral).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -30,10 +28,8 @@ def _evaluate_N(u, law):
     law : :class:`Law` of the material, with polynomials of N.
 
     Returns (row, N, integral, slope): index of the row from 0, or the number of rows where u lies behind the last
-    one and
-    N has its fast limit; N in units of P T_epsilon^2; its integral over u from the place where the argument t of
-    that
-    row is 0 (behind the last row: from infinity); its slope dN/du.
+    one and N has its fast limit; N in units of P T_epsilon^2; its integral over u from the place where the argument
+    t of that row is 0 (behind the last row: from infinity); its slope dN/du.
     """
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
@@ -86,8 +82,7 @@ def added_mass(law, V, kappa, gamma):
 @kernel
 def unsteady_loop(law, kappa, V, out):
     """Write N of n states, in units of P T_epsilon^2, into ``out``, (n,); ``kappa`` and ``V``, of either sign, have
-    length 1
-    or n; ``law`` is a :class:`Law` that has N.
+    length 1 or n; ``law`` is a :class:`Law` that has N.
     """
     for n in range(out.size):
         _, out[n], _, _ = _evaluate_N(element(kappa, n) * abs(element(V, n)), law)

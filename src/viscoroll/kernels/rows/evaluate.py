@@ -5,22 +5,16 @@
     length_and_moment(position, u, law)     L, M/V and their slopes over u
     H_over_F2(position, v, law)             H/F^2 and its slope over v
 
-``law`` is a :class:`record.Law` whatever made its rows, so that its readers are compiled once.  The law of
-one material
-(``LawTable.record``) has all its rows, and all threads share it.  The law of one alpha for each state
+``law`` is a :class:`record.Law` whatever made its rows, so that its readers are compiled once.  The law of one
+material (``LawTable.record``) has all its rows, and all threads share it.  The law of one alpha for each state
 (``materials.law.per_element.record_of_alphas``) or one material for each (``record_of_materials``) belongs to
-one
-thread, which makes it for a block of states or motions.
+one thread, which makes it for a block of states or motions.
 
-Such a law has one material selected at a time.  ``select_material`` gives a new material the next version
-number and
-writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader
-that finds
-another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion pays
-only for
-the parts that it reads.  A part depends on its material alone, not on what was read before.  Select the
-material before
-the first ``locate_row``: positions of another material mean nothing.
+Such a law has one material selected at a time.  ``select_material`` gives a new material the next version number
+and writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader
+that finds another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion
+pays only for the parts that it reads.  A part depends on its material alone, not on what was read before.
+Select the material before the first ``locate_row``: positions of another material mean nothing.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 
@@ -29,12 +23,10 @@ Terms of this file:
 - u = kappa |V|: dimensionless speed, >= 0.  L = lam (1 + epsilon) = 2 kappa delta_star/mu.
 - D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
 - zeta, eta: half the transit time of the contact and of its stick zone.  F(z) = z + g(z) and H(z) = z^2 + 2 z
-  h(z) with
-  functions g and h of the material (:mod:`.rows`): Eq. (10) is F(eta) = (L - D)/(2 u), and v = 1/F(eta), >=
-  0.
-- Fast limit: the expansion of the functions for large u or v, used behind the last row.  Its numbers in the
-  head of the
-  rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).
+  h(z) with functions g and h of the material (:mod:`.rows`): Eq. (10) is F(eta) = (L - D)/(2 u), and v =
+  1/F(eta), >= 0.
+- Fast limit: the expansion of the functions for large u or v, used behind the last row.  Its numbers in the head
+  of the rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).
 """
 
 from typing import NamedTuple
@@ -106,8 +98,7 @@ def locate_octave(x, e0):
     x : argument, >= 0.
     e0 : int, binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
 
-    Returns (row, t, dt/dx): number of the row, an int without upper bound; argument of its polynomials, in [0, 1)
-    in
+    Returns (row, t, dt/dx): number of the row, an int without upper bound; argument of its polynomials, in [0, 1) in
     row 0, else in [-1, 1); slope of that argument.
     """
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
@@ -139,14 +130,12 @@ def _fast_terms(u, body, law):
     """Return the terms of the fast limit, the expansion for u beyond the last row.
 
     u : kappa |V|, > 0.
-    body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER, the index in the head of the rows of W of both bodies or
-        of one;
-        C follows.
+    body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER, the index in the head of the rows of W of both bodies or of
+        one; C follows.
     law : :class:`Law` of the material.
 
     Returns (z, shift, part): z = zeta; shift = (alpha z/2) (C - W ln z), which with W and C of both bodies is the
-    epsilon
-    of a half-space; part = alpha z W/8.
+    epsilon of a half-space; part = alpha z W/8.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[body]
@@ -213,9 +202,8 @@ def body_moments(position, u, law):
     u : kappa |V|.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), dimensionless; the first
-    two are
-    divided by ``scale`` of the :class:`LengthAndMoment` at u, the slopes are not.
+    Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), dimensionless; the first two
+    are divided by ``scale`` of the :class:`LengthAndMoment` at u, the slopes are not.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -302,7 +290,7 @@ def H_over_F2_secants(position, near, v, x, law):
 
     position : :class:`RowPosition` of v: row and argument t in it.
     near : :class:`RowPosition` of v/(1 + x), in the same row or in the one before.
-    v : 1/F(eta), > 0.
+    v : 1/F(eta), >= 0.
     x : ratio of v to the other argument, less 1; >= 0, and 0 gives the slopes at v.
     law : :class:`Law` of the material: polynomials of each octave.
 

@@ -152,8 +152,7 @@ def _lower_call(context, builder, signature, arguments):
     context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
     arguments : values of LLVM: the law, which is the address of its user data, V and omega.
     Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`.  The status of the C function is not
-        read: a
-    state at which the law is not defined has NaN.
+    read: a state at which the law is not defined has NaN.
     """
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)

@@ -70,8 +70,7 @@ def _write_ratio_jets(z, series, work):
 
     z : zeta, half transit time of the contact, > 0, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four numbers a
-        mode.
+    work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four numbers a mode.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -107,12 +106,11 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 
     z : zeta, half transit time of the contact, > 0, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.
-    of_g, of_h, of_y : jets of g, h and sum X_i i2_i at z (:mod:`.series`), vectors of four: value, d/dz, d/ds,
-        d2/dz ds.
+    of_g, of_h, of_y : jets of g, h and sum X_i i2_i at z (:mod:`.series`), vectors of four: value, d/dz, d/ds, d2/dz
+        ds.
 
-    N goes from -sum E_i tau_i^2 as V -> 0 to z^2 sum E_i/4 in fast rolling; beyond 1e17 times the longest creep
-    time and
-    below 1e-9 times the shortest relaxation time it is that limit.
+    N goes from -sum E_i tau_i^2 as V -> 0 to z^2 sum E_i/4 in fast rolling; beyond 1e17 times the longest creep time
+    and below 1e-9 times the shortest relaxation time it is that limit.
     """
     T_mean = relaxed = strength = 0.0
     for i in range(series.a.size):
@@ -163,8 +161,7 @@ def modes_loop(series, alpha, work, z, out):
     work : the :class:`Workspace` of the series, scratch.
     z : values of zeta > 0, (n,), in the unit of time of the series.
     out : (9, n), written.  Rows 0 to 3: g/z, h/z, m of the half-space, m of the cylinder (m = M/V, in the unit of
-        time);
-        rows 4 to 7: their slopes over ln(1/z); row 8: N of M = M(V) + N dV/dt, in the unit of time squared.
+        time); rows 4 to 7: their slopes over ln(1/z); row 8: N of M = M(V) + N dV/dt, in the unit of time squared.
     """
     for n in range(z.size):
         set_alpha_of_state(n, alpha, series)

@@ -31,11 +31,9 @@ def _make_sums(count: int, orders: int):
     count : number of coefficients.
     orders : number of values that the kernel returns: the polynomial, its first derivative, and so on.
 
-    Returns the kernel, an intrinsic of numba, which takes (table, start, x): vector of numbers; index in it at
-    which the
-    first coefficient begins; argument, a number.  It returns a tuple of ``orders`` vectors of four doubles,
-    derivatives
-    over x, by Estrin's scheme.
+    Returns the kernel, an intrinsic of numba, which takes (table, start, x): vector of numbers; index in it at which
+    the first coefficient begins; argument, a number.  It returns a tuple of ``orders`` vectors of four doubles,
+    derivatives over x, by Estrin's scheme.
     """
 
     def lower(context, builder, signature, arguments):
@@ -61,11 +59,11 @@ def _make_sums(count: int, orders: int):
 
 
 def _lower_secants(context, builder, signature, arguments):
-    """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its slope.
+    """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its
+    slope.
 
     context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
-    Returns a value of LLVM: a tuple of four vectors, p and its secant of the function, then both of its slope in
-        t.
+    Returns a value of LLVM: a tuple of four vectors, p and its secant of the function, then both of its slope in t.
 
     p is the polynomial with vectors for coefficients; x and z are fourth powers of two arguments t.
     """

@@ -80,10 +80,8 @@ def _memory_integral(u, w, a, r_complement):
     a : a_i z (of one mode alpha z): half transit time z times the rate of the mode, > 0, finite.
     r_complement : 1 - r(a), r the ratio I1/I0.
 
-    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over
-    [0,
-    pi] is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign,
-    where
+    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0,
+    pi] is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign, where
     a (cos phi - cos t) <= a w < 1.
     """
     rear = w < 1.0 and a * w < 1.0
@@ -119,8 +117,7 @@ def unit_shape(u, w, z, series, weights):
     """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point, dimensionless; 0 outside the contact.
 
     u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
-    z : half transit time of the contact, or of the stick zone, in the unit of time of the series; inf is the
-        elastic
+    z : half transit time of the contact, or of the stick zone, in the unit of time of the series; inf is the elastic
         limit V = 0.
     series : :class:`Series`: rates and strengths of the modes.
     weights : :class:`MemoryWeights`, the strengths of the modes at z; computed and written here if they belong to
@@ -153,8 +150,7 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
     series : :class:`Series`: rates and strengths of the modes; written if ``alpha`` is not empty.
     alpha : alphas of a series of one mode, of length 1 or n; empty: the series is complete.
     whole, stick : :class:`MemoryWeights` for the contact and for the stick zone, scratch.
-    points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or
-        n.
+    points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or n.
     p, tau : (n,), pressure p/E' and modulus |tau|/E' of the shear stress at every point, written; 0 outside the
         contact.
     """

@@ -57,8 +57,7 @@ def select_cover(n, source):
     """Make the cover of a state the selected one: interpolate the numbers in front of its rows, and its cover rows.
 
     n : int, index of the state.
-    source : pointer to a SOURCE record, whose rows, marks and cover rows are written; not if that cover is
-        selected
+    source : pointer to a SOURCE record, whose rows, marks and cover rows are written; not if that cover is selected
         already.
 
     Rows of the law are then interpolated when they are first read (:func:`make_part`).
@@ -83,8 +82,7 @@ def make_part(number, source):
     number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the
         row/PART_SIZE.
     source : pointer to a SOURCE record; the 24 coefficients of a function, or 48 of a pair, are written, and the
-        mark of
-        the part.
+        mark of the part.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)

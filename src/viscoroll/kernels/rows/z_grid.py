@@ -103,8 +103,7 @@ _OUTWARDS = np.array([POINT_COUNT // 2 + (n + 1) // 2 * (-1) ** n for n in range
 
 def _leja_order(points: np.ndarray) -> np.ndarray:
     """Return points, (n,), in an order in which divided differences stay small: from the largest on, each has the
-    largest
-    product of distances from those before it.
+    largest product of distances from those before it.
     """
     order = [points.argmax()]
     while len(order) < points.size:
@@ -176,9 +175,8 @@ def select_series(n, source):
     """Make the material of a state the selected one: write its data into the heads of rows and marks.
 
     n : int, index of the state.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks; heads of rows and
-        marks are
-        written, nothing if that material is selected already.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks; heads of rows and marks
+        are written, nothing if that material is selected already.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).
     """
@@ -229,8 +227,8 @@ def _make_functions(part, row, grid):
     """Compute one function of v, or a pair of functions of u, for one row, and write the coefficients of the powers
     of t.
 
-    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON or BODY_MOMENTS of functions of u, H_OVER_F2 or ETA_OVER_F
-        of v.
+    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON or BODY_MOMENTS of functions of u, H_OVER_F2 or ETA_OVER_F of
+        v.
     row : int, index of the row, from 0; 0 is the slow row, where t is in [0, 1].
     grid : :class:`Grid` of function values over ln z of the selected material, whose ``rows`` are written; the
         coefficients of a pair are interleaved by two.
@@ -293,7 +291,7 @@ def _slow_limit(function, grid):
 @inline_kernel
 def _z_of_node(node, grid):
     """Return z, a half transit time, of a node: a power of 2^(1/10), or, of the last 36 nodes, a point of the slow
-        row.
+    row.
 
     node : int, index of the node, from 0 to node_count - 1.
     grid : :class:`Grid` of function values over ln z of the selected material.
@@ -416,8 +414,7 @@ def _collect_slow_points(first, count, over_v, grid):
     over_v : bool, True if they are functions of v, False for u.
     grid : :class:`Grid` of function values over ln z of the selected material; missing nodes are made.
 
-    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is
-    divided
+    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided
     by t.
     """
     end = math.ldexp(1.0, int(grid.e0))
