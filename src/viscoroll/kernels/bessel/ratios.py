@@ -66,11 +66,12 @@ def _r_power_series(terms: int) -> list[float]:
 
 
 def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
-    """Return the first coefficients a_n of the asymptotic series sum a_n x^-n, from the Riccati equations.
+    """Return the first coefficients a_n of the asymptotic series sum a_n x^-n of r or k, from the Riccati
+    equations.
 
-    sign : -1 for r, +1 for k.
-    terms : number of coefficients.
-    Returns [a_0, a_1, ...], ``terms`` Decimals.
+    sign : -1 for r = I1/I0, 1 for k = K0/K1.
+    terms : number of coefficients, > 0.
+    Returns [a_0 = 1, a_1, ...], ``terms`` Decimals, in the digits of the decimal context.
     """
     a = [Decimal(1)]
     for n in range(1, terms):
@@ -82,12 +83,13 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
 
 @in_40_digits
 def _tail(sign: int) -> np.ndarray:
-    """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the argument.
+    """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the
+    argument.
 
-    The polynomial goes through the asymptotic series at Chebyshev nodes.
+    The polynomial goes through the asymptotic series of that function at Chebyshev nodes.
 
-    sign : -1 for r, +1 for k.
-    Returns coefficients of ascending powers of 1/x or 1/z, (terms,), dimensionless.
+    sign : -1 for r, 1 for k.
+    Returns the 9 coefficients (layout.COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant first, doubles.
     """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]
@@ -159,7 +161,9 @@ def ratio_k(z):
 
 @inline_kernel
 def ratio_i2(x, r):
-    """Return i2 = I2/I0 at x >= 0, to full relative accuracy; ``r``: r(x)."""
+    """Return i2 = I2/I0 of modified Bessel functions at ``x`` >= 0, in [0, 1), to full relative accuracy; ``r``:
+    r(x), of :func:`ratio_r`.
+    """
     if not x < 4.0:  # or a NaN
         return 1.0 - 2.0 * r / x
     near = x < _NEAR

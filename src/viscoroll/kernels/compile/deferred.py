@@ -90,10 +90,14 @@ class EntryPipeline:
 
     @_without_garbage_collection()
     def compile_extra(self, function: Callable):
-        """Compile a function by a part and a whole; by numba's own pipeline if a private name of numba has changed.
+        """Compile a kernel that Python calls as a whole, with the parts below it; by numba's own compiler if that
+        fails.
 
-        function : the Python function.
-        Returns numba's ``CompileResult``.
+        It fails if a private name of numba has changed.  This and all later kernels of the process then are compiled
+        by numba's own compiler, with a RuntimeWarning.
+
+        function : the Python function. Returns numba's ``CompileResult``.  Raises numba's error if its own compiler
+        cannot compile the function either.
         """
         announce_compiling()
         global _deferring
@@ -124,9 +128,10 @@ def defer(whole, options: dict[str, Any]):
     """Let other kernels that call this one compile against its separately compiled part, instead of compiling it
     again.
 
-    whole : numba's dispatcher of the kernel, changed.
-    options : options of ``numba.njit`` for the part.
-    Returns None; the dispatcher compiles in the new way from then on.
+    whole : numba's dispatcher of the kernel, whose methods get_call_template and get_overload, by which numba
+        compiles a call from another kernel, are replaced.
+    options : options of ``numba.njit`` by name, those of the kernel, for the part.
+    Returns None.  The part is compiled when another kernel that calls this one is.
     """
     plain = type(whole)
 
@@ -152,7 +157,10 @@ def defer(whole, options: dict[str, Any]):
 def _pipelines():
     """Make numba's compiler classes for the part of a kernel that others call and for the whole that Python calls.
 
-    Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``.
+    Parts are lowered to LLVM's intermediate representation only; wholes link that of all parts and are optimised
+    once.
+
+    Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``, made once in a process.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -226,10 +234,10 @@ def _pipelines():
 
 
 def _link(library, module):
-    """Add to a module of LLVM the libraries that a library calls, directly or not, each once.
+    """Add to a module of LLVM the libraries that a library calls, directly or through parts, each once.
 
-    library : numba's library.
-    module : LLVM's module, changed.
+    library : numba's library, a Part or a Whole of :func:`_pipelines`.
+    module : LLVM's module, into which copies of their modules are linked.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -245,9 +253,10 @@ def _link(library, module):
 
 
 def _pipeline(library_class: type):
-    """Return numba's default compiler, which lowers into libraries of ``library_class``.
+    """Return numba's default compiler without needless passes, which lowers into libraries of ``library_class``.
 
-    Returns the subclass of numba's ``CompilerBase``.
+    library_class : subclass of numba's ``JITCodeLibrary``: Part or Whole of :func:`_pipelines`.
+    Returns a subclass of numba's ``CompilerBase``.
     """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass

@@ -238,8 +238,8 @@ def manifold_at_speed(v, table):
 
 @kernel
 def asymptote_on_manifold(slow_log):
-    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow logarithm
-    ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
+    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow
+    logarithm ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
     """
     return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
 

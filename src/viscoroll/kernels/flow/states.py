@@ -27,8 +27,8 @@ def states(V, delta, kappa, mu, law, out):
     delta : creepage, |delta| < delta_star, (n,).
     kappa, mu : slenderness R/l0 and coefficient of friction.
     law : :class:`..rows.record.Law` of the material, of half-spaces.
-    out : (4, n), written: delta_star; M divided by P R; Q divided by P, with the sign of delta; dQ/d delta at
-        fixed V.
+    out : (4, n), written: delta_star; M divided by P R; Q divided by P, with the sign of delta; dQ/d delta at fixed
+        V.
     """
     for i in range(V.size):
         u = kappa * V[i]

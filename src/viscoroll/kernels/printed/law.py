@@ -34,12 +34,13 @@ _EPS = 2.0**-52
 
 @kernel
 def _residual(equation, x, data):
-    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it; its root is sought.
+    """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it; its root is
+    sought.
 
-    equation : _EQ_6 or _EQ_10; numba cannot cache a caller that passes a function.
+    equation : 6 (_EQ_6) or 10 (_EQ_10); numba cannot cache a caller that passes a function.
     x : lam in Eq. (6), beta in Eq. (10).
-    data : four numbers: in Eq. (6) kappa V, alpha and two that are not used; in Eq. (10) 1 + epsilon,
-        2 delta kappa/(mu lam), zeta and alpha.
+    data : four numbers: in Eq. (6) kappa V, alpha and two that are not used; in Eq. (10) 1 + epsilon, 2 |delta|
+        kappa/(mu lam), zeta and alpha.
     """
     if equation == _EQ_6:
         kappa_V, alpha, _, _ = data
@@ -60,11 +61,11 @@ def brent(equation, data, low, high, floor):
     equation, data : arguments of :func:`_residual`.
     low, high : ends of the bracket.
     floor : absolute tolerance; the root is found to floor + 4e-16 |x|.
-    Returns (root, status OK or NOT_CONVERGED).
+    Returns (root, status): OK (0); or NOT_CONVERGED (1), after 60 steps with the best value so far, or with NaN
+    where the residual is NaN at an end.
 
-    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].
-    The residual falls from >= 0 at low to <= 0 at high.  An end where rounding spoils that
-    sign is itself the root, to rounding.
+    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4]. The residual falls from >= 0 at low to
+    <= 0 at high.  An end where rounding spoils that sign is itself the root, to rounding.
     """
     a = low
     fa = _residual(equation, low, data)
@@ -140,7 +141,9 @@ def direct_contact_length(kappa_V, alpha):
 
 @kernel
 def direct_delta_star(kappa, mu, lam, epsilon):
-    """Return delta_star by Eq. (9), the creepage at which stick ends; arguments in the symbols of the paper."""
+    """Return the critical creepage delta_star by Eq. (9), at which full slip begins; ``kappa``, ``mu``: slenderness
+    and coefficient of friction; ``lam``, ``epsilon``: length and shift of the contact, Eqs. (6), (8).
+    """
     return mu * lam * (1.0 + epsilon) / (2.0 * kappa)
 
 
@@ -167,14 +170,14 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
     """Return the traction |Q| by Eq. (15), divided by the load.
 
-    beta : length of the stick zone divided by that of the contact.
-    delta_abs : |delta|.
+    beta : length of the stick zone divided by that of the contact, >= 0.
+    delta_abs : |delta|, below delta_star.
     kappa, mu : slenderness R/l0 and coefficient of friction.
     lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
 
-    1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at
-    s = 1e-6 (1e-8 for kappa V = 1e3, where K1/K0 magnifies the rounding of the bracket).
-    That magnification grows in proportion to V: 1e-13 mu at kappa V = 1e4, 2e-9 mu at 1e8.
+    1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = 1e-6 (1e-8 for kappa V =
+    1e3, where K1/K0 magnifies the rounding of the bracket). That magnification grows in proportion to V: 1e-13 mu at
+    kappa V = 1e4, 2e-9 mu at 1e8.
     """
     k = ratio_k0k1(beta * zeta)
     if k == 0.0:

@@ -107,11 +107,11 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
     """Return the part of slip and creepage that causes the traction: delta less that of free rolling.
 
     slip : a number with the sign of omega - V.
-    delta : creepage.
-    free_creep : 2 kappa delta_0, from the creepage of free rolling.
-    state : :class:`.contact_states.State`: V, kappa, mu, and delta or omega.
+    delta : creepage (omega - V)/V; may be infinite at V = 0.
+    free_creep : 2 kappa delta_0, with delta_0 the creepage of free rolling.
+    state : :class:`.contact_states.State`, of which kappa and the sign of V are read.
     cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
-    Returns (a number with the sign of the traction, creepage delta - delta_0); the arguments for half-spaces.
+    Returns (a number with the sign of the traction, creepage delta - delta_0); slip and delta for half-spaces.
     """
     if cover_rows is None:
         return slip, delta

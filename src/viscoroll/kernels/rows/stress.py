@@ -41,9 +41,13 @@ _DEEP = 38.0
 
 
 class MemoryWeights(NamedTuple):
-    """What the memory integrals of a series have in common at one z; filled by :func:`unit_shape`.
+    """The strengths of the modes at one z, which all points of a contact have in common; filled by
+    :func:`unit_shape`.
 
-    weight : a_i X_i of each mode.  complement : 1 - r(a_i z) of each mode.  z : the z, (1,).  work : a workspace.
+    weight : a_i X_i of each mode, (modes,).
+    complement : 1 - r(a_i z) of each mode, (modes,).
+    z : the z, (1,); NaN: of none yet.
+    work : :class:`.series.Workspace`.
     """
 
     weight: Any
@@ -70,10 +74,10 @@ class Points(NamedTuple):
 
 @kernel
 def _memory_integral(u, w, a, r_complement):
-    """Return the memory integral of one relaxation mode at a point of the contact.
+    """Return the memory integral of one relaxation mode at a point of the contact, dimensionless.
 
-    u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
-    a : alpha z, half transit time times the rate of the mode.
+    u, w : distances from the front and the rear edge, divided by half the contact length, > 0; u + w = 2.
+    a : a_i z (of one mode alpha z): half transit time z times the rate of the mode, > 0, finite.
     r_complement : 1 - r(a), r the ratio I1/I0.
 
     Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0,
@@ -110,12 +114,14 @@ def new_memory_weights(series) -> MemoryWeights:
 
 @kernel
 def unit_shape(u, w, z, series, weights):
-    """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point; 0 outside the contact.
+    """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point, dimensionless; 0 outside the contact.
 
     u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
-    z : half transit time of the contact, or of the stick zone, dimensionless; inf is the elastic limit V = 0.
+    z : half transit time of the contact, or of the stick zone, in the unit of time of the series; inf is the elastic
+        limit V = 0.
     series : :class:`Series`: rates and strengths of the modes.
-    weights : :class:`MemoryWeights`, the strengths of the modes at z; computed again here if they belong to another z.
+    weights : :class:`MemoryWeights`, the strengths of the modes at z; computed and written here if they belong to
+        another z.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
@@ -139,13 +145,14 @@ def unit_shape(u, w, z, series, weights):
 
 @kernel
 def stress_loop(series, alpha, whole, stick, points, p, tau):
-    """Compute pressure and shear stress at points of the contact.
+    """Compute pressure and shear stress at n points of the contact.
 
-    series : :class:`Series`: rates and strengths of the modes.
-    alpha : alphas of a series of one mode, of length 1 or one for each point; empty: the series is complete.
+    series : :class:`Series`: rates and strengths of the modes; written if ``alpha`` is not empty.
+    alpha : alphas of a series of one mode, of length 1 or n; empty: the series is complete.
     whole, stick : :class:`MemoryWeights` for the contact and for the stick zone, scratch.
-    points : :class:`Points`: position, kappa, mu and the contact state of each point.
-    p, tau : (n,), pressure p/E' and shear stress |tau|/E' at every point, written.
+    points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or n.
+    p, tau : (n,), pressure p/E' and modulus |tau|/E' of the shear stress at every point, written; 0 outside the
+        contact.
     """
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:
