@@ -84,10 +84,12 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
         creep), kappa, mu (gamma, j), or changes those of the preset; its [cylinder] gives R, m, E, nu, T_epsilon,
         T_sigma, mu (j, g, plane, load) in SI units.  E to T_sigma may stand in a section [material], and [base] is
         the half-space if it is another material.
-    more : further sections that the file may have.
+    more : names of further sections that the file may have; they are not read.
 
     Returns
-    ------- Scene or Cylinder
+    -------
+    Scene or Cylinder
+        A Cylinder if there is a section [cylinder].
 
     Raises
     ------
@@ -172,12 +174,15 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     path : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
 
     Returns
-    ------- Pair, Prony, Bodies, float or Cylinder
+    -------
+    Pair, Prony, Bodies, float or Cylinder
+        A Pair of [material] and [base], or of a cylinder; of a scene its series or bodies, or its alpha, a float; a
+        Cylinder where one body has a layer of finite thickness, since the law then depends on load and radius.
 
     Raises
     ------
     FileError
-        As :func:`read_materials` and :func:`read_roller`.
+        As :func:`read_materials` and :func:`read_roller`; a file without a section [material] and without a roller.
     """
     content = {} if Path(path).suffix == SUFFIX else read_toml(path)
     if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):

@@ -70,7 +70,7 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     Returns
     -------
     Sample
-        A mapping from name to array (n,).
+        A mapping from name to draws, an array (n,), with attributes ``seed`` and ``design``.
 
     Raises
     ------

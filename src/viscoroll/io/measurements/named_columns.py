@@ -73,7 +73,8 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
 
     Returns
     -------
-    values, shape (n,)
+    array of shape (n,)
+        The numbers, in the unit ``wanted``.
 
     Raises
     ------

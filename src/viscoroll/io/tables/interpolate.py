@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 class Interpolant:
     """A table prepared for repeated interpolation; :func:`interpolate` prepares one in each call.
 
-    A call takes fields and points; it returns what :func:`interpolate` does, with the same errors.
+    A call ``interpolant(fields, V=..., delta=...)`` takes names of fields and points, and returns what
+    :func:`interpolate` does, with the same errors.
 
     Parameters
     ----------

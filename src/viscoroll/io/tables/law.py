@@ -96,12 +96,15 @@ def measured_errors(
     Parameters
     ----------
     table : a law, or that of every alpha, of which random alphas are tested.
-    count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave.
-    seed : seed of the points.
+    count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave, and
+        :data:`_COVER_SPEEDS` speeds for the law of a layer.
+    seed : seed of the points and alphas, >= 0.
 
     Returns
-    ------- dict of str to float
-        Function -> largest relative error, dimensionless.
+    -------
+    dict of str to float
+        Name of a function of the law -> largest relative error, dimensionless; of parts of M relative to M, of N to
+        its largest value.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):
