@@ -48,9 +48,11 @@ def roll(
     roller : a :class:`Scene`; or a :class:`Cylinder`, in SI units per m of its length: s, m/s, rad/s, m, N, N m, J.
         One, no arrays.  Below, "divided by" is the unit of a scene, whose unit of time is T_ref (T_epsilon of an
         ``alpha``); with a cylinder the SI unit takes its place.
-    V0 : initial speed of the axis, divided by R/T_ref or in m/s, of any sign; None is allowed with ``V``.  The larger of
+    V0 : initial speed of the axis, divided by R/T_ref or in m/s, of any sign; None is allowed with ``V``.  The larger
+    of
         |V0| and R |omega0| is 0, or in [1e-300, 1e100] R/T_ref.
-    omega0 : initial angular velocity, divided by 1/T_ref or in rad/s, of any sign; None is allowed with ``omega``.  Limits
+    omega0 : initial angular velocity, divided by 1/T_ref or in rad/s, of any sign; None is allowed with ``omega``.
+    Limits
         as for V0.
     t : output times, (times,), >= 0, ascending, divided by T_ref or in s; one number: the final state only, and
         ``course`` of the result is the whole motion.
