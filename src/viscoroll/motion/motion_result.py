@@ -88,7 +88,7 @@ class Motion(RollResult):
 
     @property
     def message(self) -> str:
-        """Return the status in words; for a motion that was given up also the state that it had reached."""
+        """How the motion ended, in words; for one that was given up also the state that it had reached."""
         text = self.status.message
         if self.success or self.status == MotionStatus.CAUGHT:
             return text

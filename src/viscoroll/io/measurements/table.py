@@ -157,7 +157,7 @@ class _Layout:
     def is_row(self, line: Line) -> bool:
         """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone.
 
-        line : the line.
+        line: the line with its cells.
         """
         return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
 

@@ -50,7 +50,7 @@ class Rollers(Roller):
 
     @cached_property
     def _scene(self) -> Parameters:
-        """The dimensionless parameters."""
+        """The dimensionless parameters, computed once; with ``seconds`` gamma counts time in s."""
         one, law = self.like, self.law
         if isinstance(law, Pair):
             law = law.cover(contact_length(one.R, one.load, self.E_prime))
@@ -172,7 +172,11 @@ def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats |
 
 
 def _first(part: Any) -> Any:
-    """Return a part of a section with the first element of each of its arrays."""
+    """Return a part of a section with the first element of each of its arrays, a float, in place of the array.
+
+    part: a table, list, number or text of the section; arrays are (n,).
+    Returns a new part of the same kind.
+    """
     if isinstance(part, dict):
         return {key: _first(member) for key, member in part.items()}
     if isinstance(part, list):

@@ -54,7 +54,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     ----------
     run : a run of :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
     n : number of base points in [16, 65536], rounded up to a power of two.
-    threads : default ``$VISCOROLL_THREADS`` or the number of cores; the bits do not depend on it.
+    threads : number of threads; None: ``$VISCOROLL_THREADS`` or the number of cores.  The bits do not depend on it.
     progress : whether to draw a progress bar if it takes longer than a second.
 
     Returns

@@ -206,9 +206,9 @@ def errors_at(
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid; along an axis of one node they all have its coordinate.
 
-    table: the grid.
+    table: the grid, dataset of :func:`build`.
     count: number of points.
-    seed: seed of the generator.
+    seed: seed of the generator, >= 0.
     Returns axis -> coordinates, (count,), in the units of the grid.
     """
     random = np.random.default_rng(seed)

@@ -89,12 +89,13 @@ class Interpolant:
 
         Parameters
         ----------
-        field : a field over V, delta and alpha or some of them.
+        field : name of a field over V, delta and alpha or some of them.
 
         Returns
         -------
-        at : a jitted function of numbers; it returns ``value``, ``dV``, ``ddelta`` and ``dalpha``, clipped as values
-            of this class are, with slopes 0 there, and NaN outside of the axes.  For an axis that the field does not
+        at : a jitted function of numbers, in the units of the table; it returns a record of ``value`` and its
+            derivatives ``dV``, ``ddelta`` and ``dalpha``, clipped as values of this class are, with slopes 0 there,
+            and NaN outside of the axes.  For an axis that the field does not
             depend on any number may be given.
         spline : first argument of ``at``.
 

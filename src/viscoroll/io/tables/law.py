@@ -61,7 +61,7 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     Raises
     ------
     ParameterError
-        An argument that is no material, alphas out of range, both or neither.
+        An argument that is no material, alphas out of range, both or neither of ``material`` and ``alpha``.
 
     Examples
     --------

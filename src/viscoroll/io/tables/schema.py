@@ -100,8 +100,8 @@ def check(table: Any, path: Any) -> None:
 
     Parameters
     ----------
-    table : dataset.
-    path : path of its file, for messages.
+    table : dataset; anything else is refused too.
+    path : path of its file, or another name, for messages.
 
     Raises
     ------
