@@ -51,7 +51,8 @@ def evaluate_contact(
     method : "table", from the rows of the law, or "direct", by root solves of the printed equations.
 
     Returns
-    ------- dict of str to array
+    -------
+    dict of str to array
         The fields in the shape of the broadcast arguments; numbers if these are numbers.
 
     Raises
