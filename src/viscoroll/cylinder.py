@@ -272,8 +272,8 @@ class Cylinder(Methods):
     def _scene(self) -> Scene:
         """The dimensionless :class:`viscoroll.Scene`, computed once.
 
-        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  With arrays T_epsilon, T_sigma its material
-        is a series for each cylinder.
+        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  With an array T_epsilon its material is a
+        series for each cylinder.
         Raises ParameterError for the law of a layer that was computed for another load, and for a scene out of range.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None

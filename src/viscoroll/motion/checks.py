@@ -89,7 +89,7 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
-    """Return start speeds, checked: two floats as they are, else both as arrays in the shapes that were given.
+    """Return start speeds, checked: two floats, not both 0, as they are, else both as arrays in their shapes.
 
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
     Raises ParameterError unless both are finite and at most 1e100 in size, the larger of |V0| and |omega0| of each

@@ -74,8 +74,8 @@ def ensemble(
     rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of the result are
         those after the cost of a standstill.  With a material each an unsteady motion takes some milliseconds more,
         for its N.
-    fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
-        work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
+    fields : names of the quantities to compute, out of ``V omega x angle delta regime slip_loss rolling_loss``, and
+        ``force torque work_force work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
         some rtol of the energy that moves.
     speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the largest of the starts.
         Where a large ensemble is computed in several calls, one number for all makes the

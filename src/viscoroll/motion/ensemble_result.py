@@ -110,11 +110,11 @@ class Ensemble(RollResult):
         Returns
         -------
         xarray.Dataset
-            In the units of the roller.  Of every field kept but the regime, of onset_time and rest_time:
-            ``NAME_counted`` (motions that have a value: outputs that one did not reach do not count), ``_mean``,
-            ``_std``, ``_min``, ``_max``, ``_quantiles`` over (quantile, t), which are exact, those of a run to their
-            bin (``comment``), and ``_histogram`` over ``_bin_low``, ``_bin_high``.  ``ended``: how many motions ended
-            in which way.
+            In the units of the roller.  Of every field kept but the regime, with x also of the distance |x|, of
+            onset_time and rest_time: ``NAME_counted`` (motions that have a value: outputs that one did not reach do not
+            count), ``_mean``, ``_std``, ``_min``, ``_max``, ``_quantiles`` over (quantile, t), which are exact, those
+            of a run to their bin (``comment``), and ``_histogram`` over ``_bin_low``, ``_bin_high``.  ``ended``: how
+            many motions ended in which way.
 
         Raises
         ------

@@ -49,11 +49,9 @@ def roll(
         One, no arrays.  Below, "divided by" is the unit of a scene, whose unit of time is T_ref (T_epsilon of an
         ``alpha``); with a cylinder the SI unit takes its place.
     V0 : initial speed of the axis, divided by R/T_ref or in m/s, of any sign; None is allowed with ``V``.  The larger
-    of
-        |V0| and R |omega0| is 0, or in [1e-300, 1e100] R/T_ref.
+        of |V0| and R |omega0| is 0, or in [1e-300, 1e100] R/T_ref.
     omega0 : initial angular velocity, divided by 1/T_ref or in rad/s, of any sign; None is allowed with ``omega``.
-    Limits
-        as for V0.
+        Limits as for V0.
     t : output times, (times,), >= 0, ascending, divided by T_ref or in s; one number: the final state only, and
         ``course`` of the result is the whole motion.
     rtol : relative tolerance in [1e-12, 1e-2].  The global relative error of x and of the switch times is
@@ -83,8 +81,8 @@ def roll(
     rest : a speed, divided by R/T_ref or in m/s; None: none.  End the motion where max(|V|, R |omega|) falls below
         this once nothing drives any more; refused where something drives to the end.  Nothing stops in finite time: at
         small V the speed decays like exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha
-        = 1) rolls for ever. From there on V = omega = 0, and x and angle stay; the omitted distance is close to (1 + j)
-        V/(gamma c).
+        = 1) rolls for ever.  From there on V = omega = 0, and x and angle stay; the omitted distance is close to
+        (1 + j) V/(gamma c).
     unsteady : in partial slip use M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N) V' = -gamma M where
         creepage is small.  The errors of V by the law of steady rolling become some five times smaller
         (docs/validity.md).  The motion ends where gamma N is 1 + j or -(1 + j)/2, at least -1: below that speed the

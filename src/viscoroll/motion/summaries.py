@@ -126,8 +126,8 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     motions: the ensemble.
     levels: levels of the quantiles, in [0, 1].
     Raises ParameterError for an ensemble without motions.
-    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, in the units of
-    the roller.
+    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, of the distance
+    |x|, and of onset and rest time, in the units of the roller.
     """
     if not len(motions):
         raise ParameterError("motions", 0, "at least 1")

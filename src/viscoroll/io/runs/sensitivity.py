@@ -240,7 +240,7 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
     """Return a row for each quantity, time and input that has indices, the largest total index first at each t.
 
     indices: dataset of :func:`sobol_indices`.
-    Returns the columns "quantity", "t" with its unit, "input", "S1", "S1_conf", "ST", "ST_conf".
+    Returns a table of pandas with the columns "quantity", "t" with its unit, "input", "S1", "S1_conf", "ST", "ST_conf".
     """
     import pandas as pd
 

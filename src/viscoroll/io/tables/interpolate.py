@@ -181,9 +181,9 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     Parameters
     ----------
     table : Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
-    fields : names out of the table's fields; default all.
-    **points : ``V``, ``delta`` and, where the table has it, ``alpha``, in the table's units; they broadcast.
-        ``delta`` only for beta and Q.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
+    fields : names out of the table's fields; default all, which need a coordinate on every axis.
+    **points : coordinates, numbers or arrays that broadcast, in the table's units: ``V``, ``delta`` and, where the
+        table has it, ``alpha``.  ``delta`` only for beta and Q.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
 
     Returns
     -------
