@@ -69,7 +69,11 @@ SCENES = ("preset", *SCHEMA)
 
 
 def preset(name: str) -> Scene:
-    """Return the scene of the preset ``name``; raise ParameterError if there is none."""
+    """Return the scene of a preset, one of :data:`.presets.PRESETS`.
+
+    name: name of the preset, as "paper-section-5".
+    Raises ParameterError, with the nearest name, if there is none.
+    """
     if not isinstance(name, str) or name not in PRESETS:
         raise unknown_name_error("preset", name, PRESETS, "a preset")
     return PRESETS[name]

@@ -63,7 +63,10 @@ def require_single(**arguments: Any) -> None:
 
 
 def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument, of a ragged list as one of objects; () of what is no array."""
+    """Return the shape of an argument; () of what is no array.
+
+    value: what a caller gave; a ragged list counts as an array of objects.
+    """
     try:
         return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
     except (TypeError, ValueError):

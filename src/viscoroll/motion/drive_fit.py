@@ -184,6 +184,7 @@ class _Sampled:
         ends = values[n : n + 2].tolist()
 
         def is_before(time: float) -> bool:
+            """Return whether the value at ``time`` is nearer to that before the jump, and replace the nearer one."""
             value = self.value(time)
             before = abs(value - ends[0]) < abs(ends[1] - value)
             ends[0 if before else 1] = value

@@ -122,7 +122,10 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
 
 
 def refuse_unreadable(root: Path) -> None:
-    """Raise FileError if the folder of a store, or that of its records, may not be read."""
+    """Raise FileError if the folder of a store, or that of its records, exists and may not be read.
+
+    root: folder of the store.
+    """
     for folder in (root, root / RECORDS):
         if folder.is_dir() and not os.access(folder, os.R_OK | os.X_OK):
             raise FileError(folder, "cannot be read (Permission denied)")

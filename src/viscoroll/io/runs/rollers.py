@@ -65,7 +65,7 @@ class Rollers(Roller):
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        """SI value of 1 of each dimensionless quantity."""
+        """SI value of 1 of each dimensionless quantity, by its name; with ``seconds`` the unit of time is 1 s."""
         scale = Scale(self.like.R, self.T, self.like.load, self.like.m)
         if self.seconds:
             scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {"x": scale["V"], "angle": scale["omega"]}

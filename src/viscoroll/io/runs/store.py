@@ -127,7 +127,10 @@ class Store:
             raise FileError(root, f"is not a results store, it contains {', '.join(others[:3])}: {ADVICE}")
 
     def missing(self) -> Iterator[int]:
-        """Yield the blocks that are missing or damaged; the records of all blocks and all their files are read."""
+        """Yield the numbers of the blocks that are missing or damaged, ascending.
+
+        The records of all blocks and all their files are read.
+        """
         own = identity(self.run)
         for block in range(self.run.blocks):
             if problems(self.root, block, own, self._motions(block)):

@@ -155,7 +155,12 @@ class Interpolant:
         return {name: np.broadcast_to(self._map_axis(name, array), shape) for name, array in arrays.items()}, shape
 
     def _map_axis(self, name: str, values: Floats) -> Floats:
-        """Return the coordinate in which the law is smooth, at the ``values`` of the axis ``name``."""
+        """Return the coordinate in which the law is smooth, or, for linear interpolation and for delta, the value.
+
+        name: name of the axis.
+        values: values on the axis, of any shape, which the result has too; of s, of an atlas, the coordinate is
+        s/(1 + sqrt(1 - s)), of the others ln.
+        """
         if self._linear or name == "delta":
             return values
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
