@@ -40,8 +40,7 @@ class _Attributes(AttributeTemplate):
 
 @lower_getattr_generic(_ReferenceType)
 def _attribute(context, builder, kind, reference, name):
-    """Return instructions that read a field of a reference to a record: its value, or, of a record in it, its
-    address.
+    """Return instructions that read a field of a reference to a record: its value, or, of a record in it, its address.
 
     context, builder : numba's context of code generation, and builder of LLVM.
     kind : numba's type of the reference.

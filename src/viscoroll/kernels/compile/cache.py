@@ -1,10 +1,10 @@
 """A disk cache of machine code that cannot go stale.
 
-numba's own cache stamps a function with the file it is defined in and does not notice a change in a
-function it calls from another module.  Here the cache folder is named after a hash of *all* kernel
-sources, their coefficient table and the versions of numba and llvmlite.  It holds one file for each function,
-signature and choice of numba's settings, behind a SHA-256 of itself.  Anything unreadable, or that others may have
-written (:mod:`folder`), is compiled again and replaced: it is never trusted and never ends the process.
+numba's own cache stamps a function with the file it is defined in and does not notice a change in a function it calls
+from another module.  Here the cache folder is named after a hash of *all* kernel sources, their coefficient table and
+the versions of numba and llvmlite.  It holds one file for each function, signature and choice of numba's settings,
+behind a SHA-256 of itself.  Anything unreadable, or that others may have written (:mod:`folder`), is compiled again and
+replaced: it is never trusted and never ends the process.
 """
 
 import hashlib
@@ -50,8 +50,8 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """Return a hash, 16 hexadecimal digits, of the kernel sources, of their coefficients and of the versions of
-    numba and llvmlite.
+    """Return a hash, 16 hexadecimal digits, of the kernel sources, of their coefficients and of the versions of numba
+    and llvmlite.
     """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
@@ -80,12 +80,11 @@ class DiskCache:
     def exclusive(self, signature, codegen) -> Iterator[None]:
         """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE` seconds.
 
-        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed behind
-        it. If the code is stored already, or if no lock can be made or had in that time, the block runs without one.
+        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed behind it.
+        If the code is stored already, or if no lock can be made or had in that time, the block runs without one.
 
         signature : tuple of numba's types of the arguments of the kernel.
-        codegen : numba's code generator, which knows the processor.
-        Yields None.  Raises what the block raises.
+        codegen : numba's code generator, which knows the processor. Yields None.  Raises what the block raises.
         """
         path = self._path(signature, codegen)
         if path.exists():
@@ -108,8 +107,7 @@ class DiskCache:
         """Return the machine code for a signature, numba's ``CompileResult``; None if it is not stored or cannot be
         used.
 
-        It is not used if others may have written it, or, with one warning for each process, if its checksum is
-        wrong.
+        It is not used if others may have written it, or, with one warning for each process, if its checksum is wrong.
 
         signature : tuple of numba's types of the arguments of the kernel.
         target : numba's target context, which the code is linked into.
@@ -129,8 +127,7 @@ class DiskCache:
     def save_overload(self, signature, compiled: CompileResult) -> None:
         """Store machine code for a signature, unless it contains addresses of this process; warn once if that fails.
 
-        signature : tuple of numba's types of the arguments of the kernel; their text is part of the name of the
-        file.
+        signature : tuple of numba's types of the arguments of the kernel; their text is part of the name of the file.
         compiled : numba's ``CompileResult``.
         """
         if compiled.library.has_dynamic_globals:

@@ -1,8 +1,8 @@
 """The folder of every cache, and files in it that nobody else can have written.
 
-Its files are run (:mod:`cache`) or trusted (``motion/flow_store.py``), and a checksum that a file carries itself
-does not say who wrote it.  So a file is used only if it and every folder above it belong to this user or to the
-system, and nobody else may write to them.
+Its files are run (:mod:`cache`) or trusted (``motion/flow_store.py``), and a checksum that a file carries itself does
+not say who wrote it.  So a file is used only if it and every folder above it belong to this user or to the system, and
+nobody else may write to them.
 
 The folder is ``$VISCOROLL_CACHE_DIR``, else ``$XDG_CACHE_HOME/viscoroll``, else ``~/.cache/viscoroll``, else, of a user
 without a home directory, a folder of this user in ``$TMPDIR`` or ``/tmp``.
@@ -24,8 +24,7 @@ _SUPERUSERS = 0
 def cache_root() -> Path:
     """Return the folder that holds every cache of the package, by the environment as the module says.
 
-    Returns its path; the folder may not exist yet.  A user without a home directory is warned once of the folder
-    taken.
+    Returns its path; the folder may not exist yet.  A user without a home directory is warned once of the folder taken.
     """
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
@@ -39,8 +38,8 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def _without_home() -> Path:
-    """Return the path of the cache folder of a user without a home directory, viscoroll-UID in the folder of
-    temporary files, and warn of it once in a process.
+    """Return the path of the cache folder of a user without a home directory, viscoroll-UID in the folder of temporary
+    files, and warn of it once in a process.
     """
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
     folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
@@ -93,8 +92,8 @@ def refuse_writable_by_others(path: Path) -> None:
     Nor may one of them belong to another user than this one, the superuser or the owner of "/".  Where ``path`` is a
     link, the folders above its target are tested too.
 
-    Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile of
-    a user is theirs alone, nothing is tested.
+    Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile of a
+    user is theirs alone, nothing is tested.
 
     path : file or folder, which may not exist.
     Returns None.  The error says how to change the rights or to choose another folder.
@@ -119,8 +118,8 @@ def refuse_writable_by_others(path: Path) -> None:
 
 
 def _is_private(group: int) -> bool:
-    """Return whether nobody but this user can use the rights of a group: it is the superuser's, or has the name of
-    this user and no other member.
+    """Return whether nobody but this user can use the rights of a group: it is the superuser's, or has the name of this
+    user and no other member.
 
     group : int, number of the group; False for one that has no entry.
     """

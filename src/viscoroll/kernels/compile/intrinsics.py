@@ -1,9 +1,9 @@
 """Instructions of LLVM that kernels call like functions: a fused product and sum, bits of a double, calls by address.
 
-**Fused product and sum.**  LLVM could fuse products and sums by itself (``fastmath={"contract"}``).  Its choice
-depends on the functions that it sees, and so on whether they were compiled in the same process or came from the
-cache: the last bits of a result would follow the history of the cache.  So only polynomials, where most of the time
-is spent, call :func:`fma`.
+**Fused product and sum.**  LLVM could fuse products and sums by itself (``fastmath={"contract"}``).  Its choice depends
+on the functions that it sees, and so on whether they were compiled in the same process or came from the cache: the last
+bits of a result would follow the history of the cache.  So only polynomials, where most of the time is spent, call
+:func:`fma`.
 
 **Calls by address.**  A kernel that is called by its address is compiled once, by itself, and not again with each
 caller. Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
@@ -33,8 +33,8 @@ def make_intrinsic(lower: Callable, returned, *kinds):
 
     lower : (context, builder, signature, arguments) -> value of LLVM; numba calls it with its context of code
         generation, the builder of LLVM, its signature of the call and the values of LLVM of the arguments.
-    returned : numba's type of the value; or a function (types of the arguments) -> numba's signature.
-    kinds : numba's types of the arguments, None for any type, in their number and order.
+    returned : numba's type of the value; or a function (types of the arguments) -> numba's signature. kinds : numba's
+    types of the arguments, None for any type, in their number and order.
     Returns numba's intrinsic, which is called in kernels with these arguments.
     """
 
@@ -106,8 +106,8 @@ def function_address(function, record: np.dtype, returned=types.void, *first) ->
 
     function : the kernel, numba's dispatcher, whose last argument is a pointer to a record.
     record : dtype of that record.
-    returned : numba's type of its value; by default nothing.
-    first : numba's types of the other arguments; by default one 64-bit integer.
+    returned : numba's type of its value; by default nothing. first : numba's types of the other arguments; by default
+    one 64-bit integer.
     Returns the address as an int, valid in this process.
     """
     kinds = *(first or (types.int64,)), types.CPointer(numba.from_dtype(record))
@@ -136,8 +136,8 @@ def record_at(pointer):
 
 @inline_kernel
 def septic(t, c):
-    """Return the polynomial c[0] + c[1] t + ... + c[7] t^7 of a number ``t`` with eight coefficients ``c``, by
-    Estrin's scheme, whose parts are independent of one another.
+    """Return the polynomial c[0] + c[1] t + ... + c[7] t^7 of a number ``t`` with eight coefficients ``c``, by Estrin's
+    scheme, whose parts are independent of one another.
     """
     t2 = t * t
     low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))

@@ -12,8 +12,7 @@ def announce_compiling() -> None:
     """Print a line on standard error that kernels are being compiled, at most once in a process; nothing if it is
     quiet.
 
-    It is quiet as :func:`is_quiet` says.  The number of kernels is not known at that time, so that the line names
-    none.
+    It is quiet as :func:`is_quiet` says.  The number of kernels is not known at that time, so that the line names none.
     Returns None.
     """
     global announced
@@ -36,9 +35,7 @@ def is_quiet() -> bool:
 
 
 def is_worker() -> bool:
-    """Return whether this process works for another one (multiprocessing or dask), which prints and warns in its
-    place.
-    """
+    """Return whether this process works for another one (multiprocessing or dask), which prints and warns instead."""
     if multiprocessing.parent_process() is not None:
         return True
     distributed = sys.modules.get("distributed")

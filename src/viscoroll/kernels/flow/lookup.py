@@ -176,8 +176,7 @@ def _locate_on_manifold(slow_log):
 
 @inline_kernel
 def manifold_speeds(slow_log, table):
-    """Return (V, delta) on the slow manifold: speed > 0 and creepage; ``slow_log``: slow logarithm; ``table``: of Flow.
-    """
+    """Return (V, delta) on the slow manifold: speed > 0, creepage; ``slow_log``: slow logarithm; ``table``: of Flow."""
     at, t, share = _locate_on_manifold(slow_log)
     V, delta = evaluate_pair(table, at, t)[:2]
     return share * V, share * delta
@@ -238,8 +237,8 @@ def manifold_at_speed(v, table):
 
 @kernel
 def asymptote_on_manifold(slow_log):
-    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow
-    logarithm ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
+    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow logarithm
+    ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
     """
     return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
 

@@ -214,8 +214,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
 
 @inline_kernel
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
-    """Write all outputs from the onset of partial slip to the last output time, those after coming to rest
-    included.
+    """Write all outputs from the onset of partial slip to the last output time, those after coming to rest included.
 
     at : first column to write.
     tau_out : output times tau = gamma t, ascending, (times,).

@@ -15,8 +15,7 @@ _ONE = 1023 << 52
 
 @inline_kernel
 def bin_number(x, bits):
-    """Return the number of the bin of ``x`` > 0, an int: its exponent and the leading ``bits`` bits of its
-    mantissa.
+    """Return the number of the bin of ``x`` > 0, an int: its exponent and the leading ``bits`` bits of its mantissa.
 
     An octave has 2^bits bins.  The number grows by one from bin to bin; that of x = 1 is 1023 2^bits.
     """

@@ -118,8 +118,8 @@ def radau(n: int, side: int) -> list[Decimal]:
 
 @in_40_digits
 def gauss(n: int) -> tuple[_Floats, _Floats]:
-    """Return (nodes, weights) of the Gauss-Legendre rule of ``n`` points on [0, 1], doubles, each (n,); the weights
-    add up to 1.
+    """Return (nodes, weights) of the Gauss-Legendre rule of ``n`` points on [0, 1], doubles, each (n,); the weights add
+    up to 1.
     """
     legendre = leg2poly(_unit_series(n, 1))
     nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))

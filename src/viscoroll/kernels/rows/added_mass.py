@@ -1,7 +1,7 @@
 """Added mass: N of M = M(V) + N V', the rolling moment while the speed changes slowly, and the factor gamma N.
 
-Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P T_epsilon^2.  A law of
-steady rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of u = kappa |V|
+Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P T_epsilon^2.  A law of steady
+rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of u = kappa |V|
 (``Law.N_rows``: for each row N and its integral over u, a pair; behind the rows the constants of the integral).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
@@ -27,9 +27,9 @@ def _evaluate_N(u, law):
     u : kappa |V|, >= 0.
     law : :class:`Law` of the material, with polynomials of N.
 
-    Returns (row, N, integral, slope): index of the row from 0, or the number of rows where u lies behind the last
-    one and N has its fast limit; N in units of P T_epsilon^2; its integral over u from the place where the argument
-    t of that row is 0 (behind the last row: from infinity); its slope dN/du.
+    Returns (row, N, integral, slope): index of the row from 0, or the number of rows where u lies behind the last one
+    and N has its fast limit; N in units of P T_epsilon^2; its integral over u from the place where the argument t of
+    that row is 0 (behind the last row: from infinity); its slope dN/du.
     """
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
@@ -65,8 +65,7 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 
 @inline_kernel
 def added_mass(law, V, kappa, gamma):
-    """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law of steady
-    rolling.
+    """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law of steady rolling.
 
     The integral begins at V = 0 or, where V = 0 is out of reach (gamma N < -4 there), at infinity.
 

@@ -34,8 +34,8 @@ SCENE = record_type("function slopes unlike rows marks row_count cover_rows", "k
 
 @inline_kernel
 def refuse(out):
-    """Fill ``out``, the RESULTS numbers of a C function, with NaN, and return 1, the status of a state at which the
-    law is not defined.
+    """Fill ``out``, the RESULTS numbers of a C function, with NaN, and return 1, the status of a state at which the law
+    is not defined.
     """
     for n in range(RESULTS):
         out[n] = np.nan
@@ -44,8 +44,8 @@ def refuse(out):
 
 @kernel(allocates=True)
 def _half_space_law(V, omega, out, scenes):
-    """The C function of half-spaces: :func:`_evaluate` without cover; ``out`` and ``scenes`` are pointers to
-    RESULTS numbers and to a SCENE.  Returns the status.
+    """The C function of half-spaces: :func:`_evaluate` without cover; ``out`` and ``scenes`` are pointers to RESULTS
+    numbers and to a SCENE.  Returns the status.
     """
     return _evaluate(V, omega, out, record_at(scenes), None)
 
@@ -65,8 +65,8 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     """Evaluate the law at one state and write the results in the units of the caller.
 
     caller_V, caller_omega : speed and angular velocity in the units of the caller, of any sign.
-    pointer : address of RESULTS = 8 numbers, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``,
-        dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, else numbers without meaning.
+    pointer : address of RESULTS = 8 numbers, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV
+        at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, else numbers without meaning.
     scene : a SCENE record: rows of the law, kappa, mu and the units of the caller.
     cover_rows : numbers that only a cover has, as in :class:`Law`; None of half-spaces.
 
@@ -124,8 +124,8 @@ def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[
 
 
 def c_function_address(function, record: np.dtype) -> int:
-    """Return the address, an int, of the machine code of a kernel (V, omega, pointer to results, pointer to a
-    record) -> status; ``function``: the kernel; ``record``: dtype of the record.
+    """Return the address, an int, of the machine code of a kernel (V, omega, pointer to results, pointer to a record)
+    -> status; ``function``: the kernel; ``record``: dtype of the record.
     """
     arguments = types.float64, types.float64, types.CPointer(types.float64)
     return function_address(function, record, types.int32, *arguments)

@@ -1,8 +1,7 @@
 """States of the contact from the rows of their law: no root, no iteration, and nothing that is not requested.
 
-With D = 2 kappa |delta|/mu and w = L - D, |Q|/mu = 1 - w^2 (H/F^2)(2 u/w), where 1 = L^2 (H/F^2)(2 u/L) is close
-to it at small creepage.  There their difference is exact with the mean slope S of H/F^2 between v1 = 2 u/L and
-v2 = 2 u/w:
+With D = 2 kappa |delta|/mu and w = L - D, |Q|/mu = 1 - w^2 (H/F^2)(2 u/w), where 1 = L^2 (H/F^2)(2 u/L) is close to it
+at small creepage.  There their difference is exact with the mean slope S of H/F^2 between v1 = 2 u/L and v2 = 2 u/w:
 
     |Q|/mu = D [(2 L - D) (H/F^2)(v2) - v2 L S]
 
@@ -13,10 +12,10 @@ Terms of this file:
 - Law: polynomials of the functions of one material, a row for each octave of u or v (:mod:`.record`).
 - RowPosition: where u or v lies in them: number of the row, argument t of its polynomials, slope dt/dx.
 - u = kappa |V|: dimensionless speed.  L = 2 kappa delta_star/mu: critical creepage, a function of u.
-- D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for half-spaces; D <
-  L in partial slip, and infinite stands for full slip.
-- v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are functions of the
-  material (:mod:`.rows`), of which only H/F^2 and eta/F occur, as functions of v.
+- D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for half-spaces; D < L in
+  partial slip, and infinite stands for full slip.
+- v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are functions of the material
+  (:mod:`.rows`), of which only H/F^2 and eta/F occur, as functions of v.
 - State: kappa, mu, V, and ``creep``, which is delta, or omega where ``creep_is_omega``.
 - Request: states, and the quantities of them that are written into rows of ``out``.
 """
@@ -136,8 +135,7 @@ def friction_reserve(position, v, L, D, law):
 
 @inline_kernel
 def stick_fraction(position, v, lam, L, D, law):
-    """Return beta, the length of the stick zone divided by the contact length, in [0, 1]: 0 in full slip, 1 at D =
-    0.
+    """Return beta, the length of the stick zone divided by the contact length, in [0, 1]: 0 in full slip, 1 at D = 0.
 
     position : RowPosition of v.
     v : argument of the stick zone, of :func:`stick_argument`.
@@ -185,8 +183,7 @@ def traction_slopes(u, L, dL, D, law):
 
 @inline_kernel
 def signed_creep(L, free_creep, state, law):
-    """Return D = 2 kappa |delta - delta_0|/mu with the sign of the traction; infinite, with that sign, in full
-    slip.
+    """Return D = 2 kappa |delta - delta_0|/mu with the sign of the traction; infinite, with that sign, in full slip.
 
     L : 2 kappa delta_star/mu.
     free_creep : 2 kappa delta_0, with delta_0 the creepage of free rolling; 0 for half-spaces.
@@ -325,21 +322,20 @@ def _write_other_fields(n, c, law, scratch, request):
 
 @kernel
 def contact_loop(laws, request, scratch, count):
-    """Evaluate the law at ``count`` states and write what is requested, in the units of docs/symbols.md for a
-    scene.
+    """Evaluate the law at ``count`` states and write what is requested, in the units of docs/symbols.md for a scene.
 
-    laws : tuple of :class:`Law`: one of all states; or of states that have a law of their own, as many records as
-        are evaluated together, each with one material selected at a time.
-    request : :class:`Request`: ``states`` (one number for all or for each), ``order`` of evaluation, ``to`` (for
-        each quantity its row of ``out``, -1 if not requested), ``out``, (quantities, states), written from column
-        ``first`` on.
+    laws : tuple of :class:`Law`: one of all states; or of states that have a law of their own, as many records as are
+        evaluated together, each with one material selected at a time.
+    request : :class:`Request`: ``states`` (one number for all or for each), ``order`` of evaluation, ``to`` (for each
+        quantity its row of ``out``, -1 if not requested), ``out``, (quantities, states), written from column ``first``
+        on.
     scratch : (SCRATCH_SIZE,), written.
     count : int, number of states.
 
     The states pass through the stages in blocks: their numbers are copied; then come the positions in the rows, the
     polynomials of the speed, creepage and position of v, and the polynomials of the traction.  Each stage is a short
-    loop over the states of a block.  So the processor works on several states at once, stages without polynomials
-    are compiled to vector instructions, and what is requested is tested once for a block.
+    loop over the states of a block.  So the processor works on several states at once, stages without polynomials are
+    compiled to vector instructions, and what is requested is tested once for a block.
     """
     to = request.to
     others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)

@@ -87,9 +87,9 @@ def slip_and_creepage(state):
     """Return slip and creepage of a state, whichever of creepage and omega it has.
 
     state : :class:`State`, of numbers: V, kappa, mu, and delta or omega.
-    Returns (slip, delta): a number with the sign of omega - V, which is that difference only where omega is given;
-    the creepage (omega - V)/V.  V = 0 counts as V -> 0+: where omega is given, delta is 0 if omega is 0 too, else
-    infinite with the sign of omega.
+    Returns (slip, delta): a number with the sign of omega - V, which is that difference only where omega is given; the
+    creepage (omega - V)/V.  V = 0 counts as V -> 0+: where omega is given, delta is 0 if omega is 0 too, else infinite
+    with the sign of omega.
     """
     V = state.V
     creep = state.creep

@@ -1,8 +1,8 @@
 """What the law of a cover of finite thickness has beside its rows: the creep of free rolling and its own fast limit.
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
-nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law
-2 kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.
+nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law 2
+kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """

@@ -5,16 +5,16 @@
     length_and_moment(position, u, law)     L, M/V and their slopes over u
     H_over_F2(position, v, law)             H/F^2 and its slope over v
 
-``law`` is a :class:`record.Law` whatever made its rows, so that its readers are compiled once.  The law of one
-material (``LawTable.record``) has all its rows, and all threads share it.  The law of one alpha for each state
-(``materials.law.per_element.record_of_alphas``) or one material for each (``record_of_materials``) belongs to
-one thread, which makes it for a block of states or motions.
+``law`` is a :class:`record.Law` whatever made its rows, so that its readers are compiled once.  The law of one material
+(``LawTable.record``) has all its rows, and all threads share it.  The law of one alpha for each state
+(``materials.law.per_element.record_of_alphas``) or one material for each (``record_of_materials``) belongs to one
+thread, which makes it for a block of states or motions.
 
-Such a law has one material selected at a time.  ``select_material`` gives a new material the next version number
-and writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader
-that finds another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion
-pays only for the parts that it reads.  A part depends on its material alone, not on what was read before.
-Select the material before the first ``locate_row``: positions of another material mean nothing.
+Such a law has one material selected at a time.  ``select_material`` gives a new material the next version number and
+writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader that finds
+another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion pays only for the
+parts that it reads.  A part depends on its material alone, not on what was read before. Select the material before the
+first ``locate_row``: positions of another material mean nothing.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 
@@ -22,11 +22,10 @@ Terms of this file:
 
 - u = kappa |V|: dimensionless speed, >= 0.  L = lam (1 + epsilon) = 2 kappa delta_star/mu.
 - D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
-- zeta, eta: half the transit time of the contact and of its stick zone.  F(z) = z + g(z) and H(z) = z^2 + 2 z
-  h(z) with functions g and h of the material (:mod:`.rows`): Eq. (10) is F(eta) = (L - D)/(2 u), and v =
-  1/F(eta), >= 0.
-- Fast limit: the expansion of the functions for large u or v, used behind the last row.  Its numbers in the head
-  of the rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).
+- zeta, eta: half the transit time of the contact and of its stick zone.  F(z) = z + g(z) and H(z) = z^2 + 2 z h(z) with
+  functions g and h of the material (:mod:`.rows`): Eq. (10) is F(eta) = (L - D)/(2 u), and v = 1/F(eta), >= 0.
+- Fast limit: the expansion of the functions for large u or v, used behind the last row.  Its numbers in the head of the
+  rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).
 """
 
 from typing import NamedTuple
@@ -202,8 +201,8 @@ def body_moments(position, u, law):
     u : kappa |V|.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), dimensionless; the first two
-    are divided by ``scale`` of the :class:`LengthAndMoment` at u, the slopes are not.
+    Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), dimensionless; the first two are
+    divided by ``scale`` of the :class:`LengthAndMoment` at u, the slopes are not.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -252,8 +251,7 @@ def _half_space_eta_over_F(y, law):
 
 @inline_kernel
 def eta_over_F(position, v, law):
-    """Return eta/F, dimensionless; eta = beta zeta is half the transit time of the stick zone, Eq. (10), and F =
-    1/v.
+    """Return eta/F, dimensionless; eta = beta zeta is half the transit time of the stick zone, Eq. (10), and F = 1/v.
 
     position : :class:`RowPosition` of v: row and argument t in it.
     v : 1/F(eta), >= 0.

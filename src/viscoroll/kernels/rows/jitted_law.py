@@ -43,8 +43,8 @@ class LawType(types.Callable):
         super().__init__("viscoroll.law")
 
     def get_call_type(self, context, args, kws):
-        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real numbers, integer
-        or float.
+        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real numbers, integer or
+        float.
 
         context : numba's typing context, not used.
         args, kws : tuple and dict of numba's types of the positional and of the named arguments.
@@ -151,8 +151,8 @@ def _lower_call(context, builder, signature, arguments):
 
     context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
     arguments : values of LLVM: the law, which is the address of its user data, V and omega.
-    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`.  The status of the C function is not
-    read: a state at which the law is not defined has NaN.
+    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`.  The status of the C function is not read:
+    a state at which the law is not defined has NaN.
     """
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)

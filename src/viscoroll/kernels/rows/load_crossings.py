@@ -44,8 +44,8 @@ def _find_crossing(load, n, curve, law):
     law : :class:`Law` of the material: polynomials of each octave.
     Returns u = kappa V, > 0; the node itself where the load equals its extremum to rounding (of the node n + 1).
 
-    Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others: 4e-15 of
-    the load, measured.
+    Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others: 4e-15 of the
+    load, measured.
     """
     low = curve.u[n]
     high = curve.u[n + 1]

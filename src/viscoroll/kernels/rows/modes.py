@@ -1,7 +1,7 @@
 """What the rows of one material are fitted to: the functions of :mod:`series` with slopes over ln(1/z), and N.
 
-N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed changes slowly, has a closed form: with
-y = sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
+N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed changes slowly, has a closed form: with y
+= sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
 
     W = H g - 2 z (h - z h') g - z H g' + z^2 (y - z y')
     U = H g_s - g H_s + z^2 (y_s + T_mean g)
@@ -101,8 +101,7 @@ def _write_ratio_jets(z, series, work):
 
 @kernel
 def _evaluate_N(z, series, of_g, of_h, of_y):
-    """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0, in the unit of time of the series,
-    squared.
+    """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0, in the unit of time of the series, squared.
 
     z : zeta, half transit time of the contact, > 0, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.

@@ -50,11 +50,11 @@ def divided_differences(count, scratch):
 
     count : int, number of functions, 1 or 2.
     scratch : vector of SCRATCH_SIZE numbers with POINT_COUNT arguments at ARGUMENTS, and values at VALUES and one
-        FUNCTION_STRIDE behind; the differences of each function are written one block behind its values, and the
-        values are overwritten.
+        FUNCTION_STRIDE behind; the differences of each function are written one block behind its values, and the values
+        are overwritten.
 
-    Each order is computed in place, four at a time, from the last point down.  The entries below the first
-    difference of an order are overwritten and are not read again.
+    Each order is computed in place, four at a time, from the last point down.  The entries below the first difference
+    of an order are overwritten and are not read again.
     """
     for order in range(POINT_COUNT):
         first = POINT_COUNT - LANES
@@ -111,10 +111,10 @@ def sum_of_rows(matrix, first, terms, factors, to, numbers):
 def to_powers(slow, limit, scratch):
     """Replace the values of a function at the 24 nodes of a row by its coefficients of the powers of t.
 
-    slow : whether this is the slow row, where t is in [0, 1] and Chebyshev coefficients below rounding are set to
-        zero; the other rows have t in [-1, 1].
-    limit : in the slow row, the value at t = 0, which has been subtracted from the values at the nodes and is added
-        to the constant coefficient; not read in the other rows.
+    slow : whether this is the slow row, where t is in [0, 1] and Chebyshev coefficients below rounding are set to zero;
+        the other rows have t in [-1, 1].
+    limit : in the slow row, the value at t = 0, which has been subtracted from the values at the nodes and is added to
+        the constant coefficient; not read in the other rows.
     scratch : vector of this module; values at NODE_VALUES are read, and the 24 coefficients, the constant first, are
         written in their place.
     """

@@ -133,8 +133,8 @@ def evaluate_ratios(places, series, work):
 
 @inline_kernel
 def multiply(jets, p, q):
-    """Return the product of two vectors of four: number by number, or, if ``jets``, as jets (value, d/dz, d/ds,
-    d2/dz ds); ``p``, ``q``: the factors.
+    """Return the product of two vectors of four: number by number, or, if ``jets``, as jets (value, d/dz, d/ds, d2/dz
+    ds); ``p``, ``q``: the factors.
     """
     if not jets:
         return p * q
@@ -212,16 +212,15 @@ def _substitute(matrix, right, count):
 
 @inline_kernel
 def solve_modes(jets, series, work):
-    """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes, and write y and k f, f = Q y, into the
-    workspace.
+    """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes, and write y and k f, f = Q y, into the workspace.
 
     jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     series : :class:`Series`: rates and strengths of the modes.
     work : :class:`Workspace` of the series with the ratios 1/r and k; ``y`` and ``kf`` are written, ``right`` and
         ``matrix`` are scratch.
 
-    The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor:
-    the second pass leaves one with both, and the third none.
+    The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor: the
+    second pass leaves one with both, and the third none.
     """
     count = series.a.size
     for i in range(count):
@@ -261,8 +260,7 @@ def solve_modes(jets, series, work):
 
 @kernel
 def _split_moment(jets, lam2, series, work):
-    """Return the parts of m = M/V that half-space and cylinder take, by their creep modes; a jet has no slopes in
-    s.
+    """Return the parts of m = M/V that half-space and cylinder take, by their creep modes; a jet has no slopes in s.
 
     jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     lam2 : lam^2, square of the contact length divided by l0, vector of four.
@@ -297,8 +295,8 @@ def evaluate_functions(jets, z, series, work):
     jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     z : vector of four z, or the jet (z, 1, 0, 0) of one, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series with the ratios 1/r, k and i2 at z; ``functions`` is written (at
-        G_OVER_Z, H_OVER_Z, M_HALF_SPACE, M_CYLINDER), ``y`` becomes X, the rest is scratch.
+    work : :class:`Workspace` of the series with the ratios 1/r, k and i2 at z; ``functions`` is written (at G_OVER_Z,
+        H_OVER_Z, M_HALF_SPACE, M_CYLINDER), ``y`` becomes X, the rest is scratch.
 
     Returns (g, h, sum X_i i2_i), vectors of four.  The moments of the two bodies are scaled so that their sum is m:
     they differ from it by roundings of alpha times the size of one.  They are halves of m if the bodies are alike.

@@ -59,8 +59,7 @@ def _make_sums(count: int, orders: int):
 
 
 def _lower_secants(context, builder, signature, arguments):
-    """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its
-    slope.
+    """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its slope.
 
     context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
     Returns a value of LLVM: a tuple of four vectors, p and its secant of the function, then both of its slope in t.

@@ -1,21 +1,20 @@
 """Pressure and shear along the contact, Eqs. (11)-(14), in a form where nothing cancels.
 
-As printed the integrals start at the rear edge and lose a factor exp(2 alpha zeta).  Here, with
-Y measured from the middle of the contact, p(z) = r(alpha z) k(z), B = c/(1 + p), cos phi = Y/z,
+As printed the integrals start at the rear edge and lose a factor exp(2 alpha zeta).  Here, with Y measured from the
+middle of the contact, p(z) = r(alpha z) k(z), B = c/(1 + p), cos phi = Y/z,
 
     S(Y; z) = sqrt(z^2 - Y^2) + alpha z B Int_0^phi (r(alpha z) + cos t) exp(-alpha (z cos t - Y)) dt
     p/E'    = V/(4 pi) S(Y; zeta)
     |tau|/E' = mu V/(4 pi) [S(Y; zeta) - S(Y - (zeta - eta); eta)]      second term in the stick zone
 
-Inside, lengths are in half contacts: u = 1 - Y/z from the front edge, w = 1 + Y/z from the rear
-edge (each passed on its own: 2 - u would spoil a small w), S/z instead of S.  V zeta = lam/(2 kappa)
-then removes the speed from the formulas, and V = 0 is zeta = inf: Hertz.
+Inside, lengths are in half contacts: u = 1 - Y/z from the front edge, w = 1 + Y/z from the rear edge (each passed on
+its own: 2 - u would spoil a small w), S/z instead of S.  V zeta = lam/(2 kappa) then removes the speed from the
+formulas, and V = 0 is zeta = inf: Hertz.
 
-With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = alpha z.  Only the
-part of [0, phi] with a D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40
-digits S is within 3e-15 of its peak and 2e-14 of itself for a from 1e-8 to 1e8, alpha from 1.01
-to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum over
-the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
+With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = alpha z.  Only the part of [0, phi] with a
+D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40 digits S is within 3e-15 of its peak and 2e-14
+of itself for a from 1e-8 to 1e8, alpha from 1.01 to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes
+the second term is a sum over the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -41,8 +40,7 @@ _DEEP = 38.0
 
 
 class MemoryWeights(NamedTuple):
-    """The strengths of the modes at one z, which all points of a contact have in common; filled by
-    :func:`unit_shape`.
+    """The strengths of the modes at one z, which all points of a contact have in common; filled by :func:`unit_shape`.
 
     weight : a_i X_i of each mode, (modes,).
     complement : 1 - r(a_i z) of each mode, (modes,).
@@ -80,9 +78,9 @@ def _memory_integral(u, w, a, r_complement):
     a : a_i z (of one mode alpha z): half transit time z times the rate of the mode, > 0, finite.
     r_complement : 1 - r(a), r the ratio I1/I0.
 
-    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0,
-    pi] is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign, where
-    a (cos phi - cos t) <= a w < 1.
+    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0, pi]
+    is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign, where a (cos
+    phi - cos t) <= a w < 1.
     """
     rear = w < 1.0 and a * w < 1.0
     sine = np.sqrt(u * w)

@@ -79,10 +79,9 @@ def select_cover(n, source):
 def make_part(number, source):
     """Make a part of a row of the selected cover, by interpolation, and write it into the rows of the law.
 
-    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the
-        row/PART_SIZE.
-    source : pointer to a SOURCE record; the 24 coefficients of a function, or 48 of a pair, are written, and the
-        mark of the part.
+    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
+    source : pointer to a SOURCE record; the 24 coefficients of a function, or 48 of a pair, are written, and the mark
+        of the part.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)

@@ -1,10 +1,10 @@
 """Rows for one series or pair after another, from a grid of z that all rows of a material share.
 
 At the nodes z = 2^(n/10) the formulas of the modes (:mod:`series`) give lam and eta/F = z/(z + g), and with them a
-point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v through the 36
-points around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that octave.  The polynomial of
-the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is
-needed.  A row depends on its material alone, not on the rows that were made before.
+point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v through the 36 points
+around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that octave.  The polynomial of the slow row
+goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is needed.  A row
+depends on its material alone, not on the rows that were made before.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -198,8 +198,7 @@ def select_series(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected material, and write it into the rows of the law.
 
-    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the
-        row/PART_SIZE.
+    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
     source : pointer to a SOURCE record, with the addresses of the materials, rows and marks, and scratch; the 24
         coefficients of a function, or 48 of a pair, are written, and the mark of the part.
     """
@@ -224,11 +223,10 @@ def make_part(number, source):
 
 @kernel
 def _make_functions(part, row, grid):
-    """Compute one function of v, or a pair of functions of u, for one row, and write the coefficients of the powers
-    of t.
+    """Compute one function of v, or a pair of functions of u, for one row, and write the coefficients of the powers of
+    t.
 
-    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON or BODY_MOMENTS of functions of u, H_OVER_F2 or ETA_OVER_F of
-        v.
+    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON or BODY_MOMENTS of functions of u, H_OVER_F2 or ETA_OVER_F of v.
     row : int, index of the row, from 0; 0 is the slow row, where t is in [0, 1].
     grid : :class:`Grid` of function values over ln z of the selected material, whose ``rows`` are written; the
         coefficients of a pair are interleaved by two.
@@ -290,8 +288,7 @@ def _slow_limit(function, grid):
 
 @inline_kernel
 def _z_of_node(node, grid):
-    """Return z, a half transit time, of a node: a power of 2^(1/10), or, of the last 36 nodes, a point of the slow
-    row.
+    """Return z, a half transit time, of a node: a power of 2^(1/10), or, of the last 36 nodes, a point of the slow row.
 
     node : int, index of the node, from 0 to node_count - 1.
     grid : :class:`Grid` of function values over ln z of the selected material.
@@ -414,8 +411,8 @@ def _collect_slow_points(first, count, over_v, grid):
     over_v : bool, True if they are functions of v, False for u.
     grid : :class:`Grid` of function values over ln z of the selected material; missing nodes are made.
 
-    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided
-    by t.
+    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided by
+    t.
     """
     end = math.ldexp(1.0, int(grid.e0))
     _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)

@@ -41,8 +41,8 @@ TERMS = 4
 
 
 class Value(NamedTuple):
-    """A field at a point and its slopes over V, delta and alpha; NaN outside of the axes, slopes 0 where the value
-    is clipped to the bounds.
+    """A field at a point and its slopes over V, delta and alpha; NaN outside of the axes, slopes 0 where the value is
+    clipped to the bounds.
     """
 
     value: float
@@ -130,10 +130,9 @@ def evaluate(spline, V, delta, alpha):
     """Return the :class:`Value` of a field at a point, for kernels that inline it.
 
     spline : vector of the spline: bounds, axes and coefficients.
-    V, delta, alpha : coordinates in the units of the grid; any number for an axis on which the field does not
-        depend.
-    Returns value and slopes, in the units of the grid: NaN outside of the axes; a value beyond the bounds of the
-    field is clipped to them, and its slopes are 0.
+    V, delta, alpha : coordinates in the units of the grid; any number for an axis on which the field does not depend.
+    Returns value and slopes, in the units of the grid: NaN outside of the axes; a value beyond the bounds of the field
+    is clipped to them, and its slopes are 0.
     """
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)
@@ -163,8 +162,8 @@ def evaluate(spline, V, delta, alpha):
 
 @kernel
 def spline_at(spline, V, delta, alpha):
-    """Return the :class:`Value` of a field at a point: value and slopes over V, delta and alpha, in the units of
-    the grid.
+    """Return the :class:`Value` of a field at a point: value and slopes over V, delta and alpha, in the units of the
+    grid.
 
     spline : the vector of :meth:`viscoroll.io.tables.Interpolant.jitted`: bounds, axes and coefficients.
     V, delta, alpha : coordinates in the units of the grid; for an axis that the field is not over any number does.
