@@ -40,7 +40,7 @@ class _FourModel(models.PrimitiveModel):
 
 
 def shuffle(builder, a, b, order):
-    """Return instructions that take four of the eight numbers of vectors ``a`` and ``b``: those that ``order`` numbers."""
+    """Return instructions that take four of the eight numbers of the vectors ``a`` and ``b``, numbered by ``order``."""
     return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
 
 
