@@ -36,34 +36,31 @@ TIMES = np.round(OMEGA, 3)
 CURVE = 1e6 * (1.0 + OMEGA**2 / (1.0 + OMEGA**2)), 1e6 * OMEGA / (1.0 + OMEGA**2)
 #: a value of each argument, which goes with those of the others of its function
 SAMPLES = {
-    name: value
-    for value, names in (
-        (0.5, "V V0 omega omega0 rested j share R T_epsilon T_ref low M F Q sigma level"),
-        (0.25, "t mu nu thickness"), (0.125, "x T_sigma t0"), (0.01, "force torque slope brake drag misfit"),
-        (1e-3, "delta rest"), (1e-6, "rtol"), (1e3, "density"), (400.0, "load pressed"), (4e6, "E0 G0"), (1e6, "G_inf"),
-        (30.0, "temperature reference"), (20.0, "T0"), (1.0, "speed gamma"), (10.0, "kappa g"), (11.0, "alpha"),
-        (40.0, "m"), (2e6, "E"), (1e9, "bulk"), (1e5, "energy"), (17.0, "C1"), (50.0, "C2"), (4.0, "high"),
-        (SCENE, "roller"), (CYLINDER, "cylinder what"), (RUBBER.prony, "prony"), (vr.WLF(T0=20.0), "shift"),
-        ((0.25, 0.75), "quantiles"),
-    )
-    for name in names.split()
+    "roller": SCENE, "cylinder": CYLINDER, "prony": RUBBER.prony, "shift": vr.WLF(T0=20.0), "what": CYLINDER,
+    "V": 0.5, "V0": 0.5, "omega": 0.5, "omega0": 0.5, "t": 0.25, "x": 0.125, "delta": 1e-3, "speed": 1.0,
+    "force": 0.01, "torque": 0.01, "slope": 0.01, "brake": 0.01, "drag": 0.01, "rest": 1e-3, "rested": 0.5,
+    "rtol": 1e-6, "density": 1e3, "thickness": 0.25, "temperature": 30.0, "reference": 30.0,
+    "alpha": 11.0, "kappa": 10.0, "mu": 0.25, "gamma": 1.0, "j": 0.5, "share": 0.5,
+    "R": 0.5, "m": 40.0, "E": 2e6, "nu": 0.25, "T_epsilon": 0.5, "T_sigma": 0.125, "T_ref": 0.5, "g": 10.0,
+    "load": 400.0, "pressed": 400.0, "E0": 4e6, "G0": 4e6, "G_inf": 1e6, "bulk": 1e9, "energy": 1e5,
+    "T0": 20.0, "C1": 17.0, "C2": 50.0, "low": 0.5, "high": 4.0, "misfit": 0.01, "M": 0.5, "F": 0.5, "Q": 0.5,
+    "sigma": 0.5, "t0": 0.125, "quantiles": (0.25, 0.75), "level": 0.5,
 }  # fmt: skip
 #: the same where a name means something else
 OWN = {
-    name: value
-    for value, names in (
-        ([0.5], "Prony.tau Prony.creep.J Prony.creep.T Material.abaqus.g Material.abaqus.tau Material.abaqus.k"),
-        ([0.5], "Material.ansys.alpha Material.ansys.tau Material.ansys.k Material.comsol.tau"),
-        ([1e6], "Material.comsol.G Material.comsol.K Material.lsdyna.G Material.lsdyna.K"),
-        ([2.0], "Prony.E Material.lsdyna.beta"), (2.0, "Prony.creep.alpha Prony.times.factor"),
-        (RUBBER.prony, "Bodies.cylinder Bodies.base Cover.series"), (0.75, "Cover.part"), (0.25, "Cover.other_nu"),
-        (TIMES, "fit_relaxation.t"), (1e6 * (1.0 + np.exp(-TIMES)), "fit_relaxation.relaxation"),
-        (OMEGA, "fit_prony.omega"), (CURVE[0], "fit_prony.storage"), (CURVE[1], "fit_prony.loss"),
-        (np.full(12, 30.0), "fit_prony.temperature"),
-        ([0.0, 0.25, 0.5], "Coastdown.t"), ([0.0, 0.1, 0.2], "Coastdown.x"),
-        ([0.5, 0.4, 0.3], "Coastdown.V Coastdown.omega"), (0.125, "Motion.at.t"), (20.0, "Arrhenius.T0"),
-    )
-    for name in names.split()
+    ("Prony", "E"): [2.0], ("Prony", "tau"): [0.5], ("Prony.creep", "J"): [0.5], ("Prony.creep", "T"): [0.5],
+    ("Prony.creep", "alpha"): 2.0, ("Bodies", "cylinder"): RUBBER.prony, ("Bodies", "base"): RUBBER.prony,
+    ("Prony.times", "factor"): 2.0,
+    ("Material.abaqus", "g"): [0.5], ("Material.abaqus", "tau"): [0.5], ("Material.ansys", "alpha"): [0.5],
+    ("Material.ansys", "tau"): [0.5], ("Material.comsol", "G"): [1e6], ("Material.comsol", "tau"): [0.5],
+    ("Material.lsdyna", "G"): [1e6], ("Material.lsdyna", "beta"): [2.0], ("Material.abaqus", "k"): [0.5],
+    ("Material.ansys", "k"): [0.5], ("Material.comsol", "K"): [1e6], ("Material.lsdyna", "K"): [1e6],
+    ("Cover", "series"): RUBBER.prony, ("Cover", "part"): 0.75, ("Cover", "other_nu"): 0.25,
+    ("fit_relaxation", "t"): TIMES, ("fit_relaxation", "relaxation"): 1e6 * (1.0 + np.exp(-TIMES)),
+    ("fit_prony", "omega"): OMEGA, ("fit_prony", "storage"): CURVE[0], ("fit_prony", "loss"): CURVE[1],
+    ("fit_prony", "temperature"): np.full(12, 30.0),
+    ("Coastdown", "t"): [0.0, 0.25, 0.5], ("Coastdown", "V"): [0.5, 0.4, 0.3], ("Coastdown", "x"): [0.0, 0.1, 0.2],
+    ("Coastdown", "omega"): [0.5, 0.4, 0.3], ("Motion.at", "t"): 0.125, ("Arrhenius", "T0"): 20.0,
 }  # fmt: skip
 #: words of annotations of what may be a number with a unit, and of what is none
 NUMBERS = ("float", "ArrayLike", "Numbers", "Acting", "Course", "Any")
@@ -150,9 +147,9 @@ def public():
 
 def sample(call, name):
     """The value of an argument; raises AssertionError where there is none."""
-    own = f"{call.partition(' of ')[0]}.{name}"
-    assert own in OWN or name in SAMPLES, f"give a value of {own} in SAMPLES or OWN"
-    return OWN.get(own, SAMPLES.get(name))
+    call = call.partition(" of ")[0]
+    assert (call, name) in OWN or name in SAMPLES, f"give a value of {name} of {call} in SAMPLES or OWN"
+    return OWN.get((call, name), SAMPLES.get(name))
 
 
 @functools.cache

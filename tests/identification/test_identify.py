@@ -91,8 +91,7 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 
 
 def test_slow_rolling_tells_a_product_alone():
-    data = [resistance(np.geomspace(0.01, 0.1, 5), seed=2)]
-    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), data, starts=1)
+    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW[::4], seed=2)], starts=1)
     assert fit.does_not_act == ("mu",)
     assert fit.undetermined == ("E", "E_1", "T_ref")
     assert fit.intervals()["mu"] == (None, None)

@@ -107,7 +107,7 @@ def test_largest_error_is_where_it_is_stated(name, table):
 def test_splines_keep_the_bounds_of_the_law(name, table):
     """|Q| <= mu P and 0 <= beta <= 1 beside the kink at delta_star, where a cubic spline alone overshoots."""
     axes = schema.axes_of(table)
-    fine = {axis: np.linspace(*table[axis].values[[0, -1]], 16) for axis in axes}
+    fine = {axis: np.linspace(*table[axis].values[[0, -1]], 60) for axis in axes}
     fine["delta"] = np.linspace(-0.04, 0.04, 801)
     found = vr.tables.interpolate(
         table, ("Q", "beta"), **dict(zip(axes, np.meshgrid(*fine.values(), indexing="ij", sparse=True), strict=True))

@@ -11,7 +11,7 @@ from pipeline.validation.states import random_state_checks, random_states
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-SMALL = {"states": 200, "stress_states": 3, "table_points": 300, "times": 20}
+SMALL = {"states": 2000, "stress_states": 3, "table_points": 300, "times": 20}
 
 
 @pytest.fixture(scope="module")
