@@ -103,12 +103,8 @@ def described_error(name: str, found: str, allowed: str) -> ParameterError:
     return ParameterError(name, found, allowed, f"{name} {found}: must be {allowed}")
 
 
-def dimensionless_error(name: str, value: Any, allowed: str, sentence: str | None = None) -> ParameterError:
-    """Return the error of a dimensionless number, which a cylinder may have been given in SI units.
-
-    name, value, allowed, sentence: as for :class:`ParameterError`.
-    """
-    error = ParameterError(name, value, allowed, sentence)
+def mark_dimensionless(error: ParameterError) -> ParameterError:
+    """Mark an error whose sentence states dimensionless numbers, which a cylinder was given in SI units; return it."""
     error.is_dimensionless = True
     return error
 

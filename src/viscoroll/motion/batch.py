@@ -12,7 +12,7 @@ from ..contact_law.parameters import Parameters
 from ..core.array_types import Booleans, Floats, Integers
 from ..core.blocks import broadcast_vector, run_blocks
 from ..core.checks import extent
-from ..core.errors import MotionStatus, ParameterError, dimensionless_error
+from ..core.errors import MotionStatus, ParameterError, mark_dimensionless
 from ..core.scale import TIME_POWERS
 from ..kernels.flow.records import Motions
 from ..materials.bodies import Bodies
@@ -116,7 +116,7 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
     if speed is None:
         speed = max((abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0)
     elif (speed := speed * unit) > SPEED_RANGE[1]:
-        raise dimensionless_error("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]")
+        raise mark_dimensionless(ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]"))
     if not speed > 0.0:
         return None
     chosen = flow_map(scene, speed, threads=batch.threads)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array, check_integer, check_number, extent
-from ..core.errors import ParameterError, dimensionless_error, shape_error
+from ..core.errors import ParameterError, mark_dimensionless, shape_error
 from ..core.scale import Scale, Units
 
 #: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no longer proportional.
@@ -108,13 +108,13 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0
         if abs(fastest) > high:
-            raise dimensionless_error(name, fastest, f"at most {high:g} in magnitude")
+            raise mark_dimensionless(ParameterError(name, fastest, f"at most {high:g} in magnitude"))
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer((V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16):
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
         tiny = larger[(larger > 0.0) & (larger < low)]
         if tiny.size:
-            raise dimensionless_error("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {low:g}")
+            raise mark_dimensionless(ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {low:g}"))
     return V, omega
 
 

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from ..core.array_types import Floats
 from ..core.checks import check_array
-from ..core.errors import dimensionless_error, shape_error
+from ..core.errors import ParameterError, mark_dimensionless, shape_error
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.
@@ -229,7 +229,7 @@ def fit_callable(
     if resolve is not None:
         if resolve * MOST < end:
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
-            raise dimensionless_error("resolve", resolve, allowed)
+            raise mark_dimensionless(ParameterError("resolve", resolve, allowed))
         samples = max(math.ceil(end / resolve), SAMPLES)
     sampled = _Sampled(name, function, end, rtol, low, samples)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
@@ -268,7 +268,7 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
                 f"({sampled.taken} values of it were taken)"
             )
             allowed = "smooth except for jumps and corners; give it as a Schedule"
-            raise dimensionless_error(sampled.name, found, allowed)
+            raise mark_dimensionless(ParameterError(sampled.name, found, allowed))
         left, right = cut or (0.5 * (start + stop),) * 2
         open_intervals += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
     return pieces

@@ -11,7 +11,7 @@ import numpy as np
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array
 from ..core.drive import Feedback, slope_tan_cos
-from ..core.errors import ParameterError, described_error, dimensionless_error, exactly_one_error
+from ..core.errors import ParameterError, described_error, exactly_one_error, mark_dimensionless
 from ..kernels.motion.records import (
     COL_COEFFICIENTS,
     N_DRIVE_FUNCTIONS,
@@ -267,7 +267,9 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
     if stated is not None and not (np.abs(check_array(f"{name}0", stated) - start) <= _START * scale).all():
-        raise dimensionless_error(f"{name}0", stated, f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0")
+        raise mark_dimensionless(
+            ParameterError(f"{name}0", stated, f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0")
+        )
     if start.size > 1:
         return start
     return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..core.array_types import Floats
 from ..core.checks import check_array
 from ..core.drive import Feedback, Schedule, require_time_argument
-from ..core.errors import dimensionless_error, shape_error
+from ..core.errors import described_error, mark_dimensionless, shape_error
 from ..kernels.motion.records import COL_COEFFICIENTS, COL_SCALE, COL_START
 from .drive_fit import fit_callable
 
@@ -167,8 +167,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
     if jumps.any():
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
-        found, allowed = f"jumps at t = {when:.6g}", "continuous, as a prescribed speed"
-        raise dimensionless_error(name, found, allowed, f"{name} {found}: must be {allowed}")
+        raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", "continuous, as a prescribed speed"))
     order = np.arange(1, speed.terms.shape[-1])
     dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
     terms = speed.terms[..., 1:] * order * dx_dt[..., None]
