@@ -148,7 +148,7 @@ def check_number(
     Raises
     ------
     ParameterError
-        As there, and for an array.
+        A value that is no finite number, that is outside these limits or in another unit; an array.
     """
     if type(value) is float and above < value < high and low <= value:
         return value

@@ -48,9 +48,9 @@ def roll(
     roller : a :class:`Scene`; or a :class:`Cylinder`, in SI units per m of its length: s, m/s, rad/s, m, N, N m, J.
         One, no arrays.  Below, "divided by" is the unit of a scene, whose unit of time is T_ref (T_epsilon of an
         ``alpha``); with a cylinder the SI unit takes its place.
-    V0 : initial speed of the axis, divided by R/T_ref or in m/s, of any sign; None is allowed with ``V``.  The larger
+    V0 : initial speed of the axis, divided by R/T_ref or in m/s, of any sign; left out (None) with ``V``.  The larger
         of |V0| and R |omega0| is 0, or in [1e-300, 1e100] R/T_ref.
-    omega0 : initial angular velocity, divided by 1/T_ref or in rad/s, of any sign; None is allowed with ``omega``.
+    omega0 : initial angular velocity, divided by 1/T_ref or in rad/s, of any sign; left out (None) with ``omega``.
         Limits as for V0.
     t : output times, (times,), >= 0, ascending, divided by T_ref or in s; one number: the final state only, and
         ``course`` of the result is the whole motion.
@@ -75,9 +75,9 @@ def roll(
     drag : torque of a bearing against omega, for each unit of omega, >= 0, a number, divided by P R T_ref or in
         N m s/m.  It is part of ``torque`` of the result.
     omega : prescribed angular velocity, in place of ``torque``: a number, a Schedule or a callable of t, continuous;
-        ``omega0`` is then None or its value at t = 0.
-    V : prescribed speed of the axis, in place of ``force``, of the same kinds; ``V0`` is then None or its value at
-        t = 0.
+        ``omega0`` is then left out (None) or its value at t = 0.
+    V : prescribed speed of the axis, in place of ``force``: kinds as for ``omega``, continuous; ``V0`` is then left
+        out (None) or its value at t = 0.
     rest : a speed, divided by R/T_ref or in m/s; None: none.  End the motion where max(|V|, R |omega|) falls below
         this once nothing drives any more; refused where something drives to the end.  Nothing stops in finite time: at
         small V the speed decays like exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha

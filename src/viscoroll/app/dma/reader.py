@@ -201,11 +201,11 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
                 if columns.keys() >= {*pair}:
                     others |= unused
                     return _Choice(mode, pair, columns)
-    problems = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
+    reasons = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
     headings = ", ".join(map(repr, filter(None, table.headings)))
     raise FileError(
         table.path,
-        f"{problem}{problems}; headings: {headings}; name the columns by columns={{...}}",
+        f"{problem}{reasons}; headings: {headings}; name the columns by columns={{...}}",
     )
 
 
