@@ -198,19 +198,21 @@ def fit_relaxation(
 
 
 def _mode(mode: Any) -> Mode:
-    """Return which modulus was measured; raise ParameterError for another text."""
+    """Check which modulus was measured and return it; raise ParameterError for anything but "tension" or "shear"."""
     check_choice("mode", mode, "tension", "shear")
     return mode
 
 
 def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
-    """Fit a series to measured moduli.
+    """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation` have in common.
 
     curve : measured moduli over frequency or time, all points.
     modes : largest number of modes; None: as few as the misfit needs.
-    misfit : root mean square of the relative errors that each modulus may have.
-    Returns (the data that were fitted, perhaps thinned; the fields of a fit that state its data and its series, by
-    name; the root mean square of the relative errors of each modulus).
+    misfit : root mean square of the relative errors that each modulus may have, > 0. Returns (the data that were
+    fitted, thinned if they have more than 1000 points; the arguments of :class:`.fit_results.SeriesFit` that state
+    data and series, by name; the root mean square of the relative errors of each modulus, (storage, loss) or
+    (relaxation,)). Raises ParameterError for ``misfit`` or ``modes`` out of range, points that spread over more than
+    :data:`MOST_SPREAD`, and data without a long-time modulus.
     """
     target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
