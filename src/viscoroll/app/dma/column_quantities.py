@@ -45,8 +45,8 @@ class Column(NamedTuple):
     def quantity(self) -> str:
         """Name of what its numbers are converted to, as "storage" or "frequency".
 
-        An angular frequency counts as a frequency, a compliance as the modulus of the same name, a phase angle as
-        tan delta; "reduced" stays in the name.
+        An angular frequency counts as a frequency, a compliance as the modulus of the same name, a phase angle as tan
+        delta; "reduced" stays in the name.
         """
         name = self.name.replace("angular ", "").removesuffix(" compliance")
         return "tan delta" if name == "phase angle" else name
@@ -55,15 +55,15 @@ class Column(NamedTuple):
 def columns_of(
     table: Table, named: Mapping[str, str], overruling: Mapping[str, str], defaults: Mapping[str, str]
 ) -> tuple[list[Column], dict[str, str]]:
-    """Find the columns of a table whose quantity is known: the user named it, or the heading says it and its unit
-    fits.
+    """Find the columns of a table whose quantity is known: the user named it, or the heading says it and its unit fits.
 
     table : table with headings.
     named : quantity -> heading, of columns that the user named; keys of :data:`.vocabulary.UNITS`, here and below.
     overruling : quantity -> unit in place of that of the file.
-    defaults : quantity -> unit where the file gives none. Returns (the columns of known quantities, in the order of
-    the table; heading of each other column -> why it is left out, "" where no quantity is known of it). Raises
-    ParameterError for a heading that the table does not have.
+    defaults : quantity -> unit where the file gives none.
+    Returns (the columns of known quantities, in the order of the table; heading of each other column -> why it is left
+    out, "" where no quantity is known of it).
+    Raises ParameterError for a heading that the table does not have.
     """
     owners = {_index(table, heading): name for name, heading in named.items()}
     columns: list[Column] = []
@@ -127,10 +127,11 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     Logarithms become numbers, frequencies in cycles angular ones, and phase angles their tangents.
 
     table : the table that has the column.
-    column : a column whose quantity is known. Returns :class:`Numbers` in rad/s, Pa, 1/Pa, degrees Celsius, or
-    dimensionless for tan delta: the values, (n,), and half a unit of the last digit that the file states of each,
-    converted in the same way, (n,). Raises FileError for cells that are no numbers, and for a unit that is missing
-    and cannot be assumed: of compliances, of temperatures above 200, and of phase angles that may be in radians.
+    column : a column whose quantity is known.
+    Returns :class:`Numbers` in rad/s, Pa, 1/Pa, degrees Celsius, or dimensionless for tan delta: the values, (n,), and
+    half a unit of the last digit that the file states of each, converted in the same way, (n,).
+    Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed: of
+    compliances, of temperatures above 200, and of phase angles that may be in radians.
     """
     name, unit = column.name, column.unit
     values, half = table.numbers(column.position)

@@ -69,8 +69,9 @@ class Curve(NamedTuple):
     def responses(self, tau: Floats) -> Floats:
         """Return the responses of modes of strength 1, z^2/(1 + z^2) and z/(1 + z^2) with z = omega tau.
 
-        tau : times of the modes, s, shape (modes,). Returns them dimensionless, shape (2, n, modes): row 0 of the
-        storage, row 1 of the loss modulus, at the n points.
+        tau : times of the modes, s, shape (modes,).
+        Returns them dimensionless, shape (2, n, modes): row 0 of the storage, row 1 of the loss modulus, at the n
+        points.
         """
         z = self.omega[:, None] * tau
         loss = 1.0 / (z + 1.0 / z)
@@ -116,8 +117,7 @@ class Relaxation(NamedTuple):
     def shortest(self) -> float:
         """Shortest time of a mode that the data determine, s: half of the first time.
 
-        A mode whose time is a tenth of the first time has fallen to exp(-10) there: noise alone would set its
-        strength.
+        A mode whose time is a tenth of the first time has fallen to exp(-10) there: noise alone would set its strength.
         """
         return 0.5 * float(self.t[0])
 
@@ -161,8 +161,7 @@ class KramersKronig(NamedTuple):
     omega : angular frequency, rad/s, ascending, shape (n,).
     ratio : E''/((pi/2) dE'/d ln omega), dimensionless, shape (n,); infinite where E' does not rise, NaN where the
         neighbours of a point are all of one frequency, so that there is no slope.
-    median : median of the ratios that are not NaN, NaN if all are; near 1 where the spectrum is broad and the data
-    are
+    median : median of the ratios that are not NaN, NaN if all are; near 1 where the spectrum is broad and the data are
         sound.
     """
 
@@ -212,11 +211,12 @@ def thinned(data: _Data) -> _Data:
     """Average a curve of more than :data:`MOST_POINTS` points in logarithmic bins, so that fits of long records stay
     fast.
 
-    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of measurement that
-    is 0 on average stays so.
+    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of measurement that is 0
+    on average stays so.
 
-    data : a :class:`Curve` or a :class:`Relaxation`, ascending. Returns a curve of the same class with one point for
-    each of the 500 bins that has points; ``data`` itself if it has no more than :data:`MOST_POINTS` points.
+    data : a :class:`Curve` or a :class:`Relaxation`, ascending.
+    Returns a curve of the same class with one point for each of the 500 bins that has points; ``data`` itself if it has
+    no more than :data:`MOST_POINTS` points.
     """
     x = np.log(data[0])
     if x.size <= MOST_POINTS:
@@ -232,13 +232,13 @@ def thinned(data: _Data) -> _Data:
 def kramers_kronig(curve: Curve) -> KramersKronig:
     """Compare the loss modulus with the local form of the Kramers-Kronig relations, E'' = (pi/2) dE'/d ln omega.
 
-    It shows whether storage and loss modulus can be of one material.  The form is exact for a power law in the limit
-    of small exponents, and good where E' bends little within a decade (H. C. Booij and G. P. J. M. Thoone,
-    Rheologica Acta 21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is that of a straight line in ln E' over ln
-    omega through the neighbours of a point: those within a quarter of a decade, and at least the five nearest.
+    It shows whether storage and loss modulus can be of one material.  The form is exact for a power law in the limit of
+    small exponents, and good where E' bends little within a decade (H. C. Booij and G. P. J. M. Thoone, Rheologica Acta
+    21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is that of a straight line in ln E' over ln omega through the
+    neighbours of a point: those within a quarter of a decade, and at least the five nearest.
 
-    curve : storage and loss modulus, n points. Returns :class:`KramersKronig`: the measured divided by the computed
-    loss modulus at each point, and their median.
+    curve : storage and loss modulus, n points.
+    Returns :class:`KramersKronig`: the measured divided by the computed loss modulus at each point, and their median.
     """
     x, y = np.log(curve.omega), np.log(curve.storage)
     ratio, nearest = np.empty_like(x), min(_NEIGHBOURS, x.size) - 1

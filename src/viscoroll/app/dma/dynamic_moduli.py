@@ -63,11 +63,11 @@ class DynamicModuli(Result):
         return self.temperature is None or float(np.ptp(self.temperature)) <= SAME_TEMPERATURE
 
     def __iter__(self) -> Iterator[Floats]:
-        """Return an iterator over omega, storage and loss, (n,) each, so that ``omega, storage, loss =
-        read_dma(path)`` works.
+        """Return an iterator over omega, storage and loss, (n,) each, so that ``omega, storage, loss = read_dma(path)``
+        works.
 
-        Warns with ModelWarning where the record has several temperatures or moduli of shear, which these arrays do
-        not state.
+        Warns with ModelWarning where the record has several temperatures or moduli of shear, which these arrays do not
+        state.
         """
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
@@ -94,8 +94,8 @@ class DynamicModuli(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the points as a dataset.
 
-        Its variables are omega (rad s-1), storage and loss (Pa) and, where the file has one, temperature (degC),
-        each over the dimension ``point``; its attributes are title, mode, source and notes.
+        Its variables are omega (rad s-1), storage and loss (Pa) and, where the file has one, temperature (degC), each
+        over the dimension ``point``; its attributes are title, mode, source and notes.
 
         Examples
         --------
@@ -124,8 +124,8 @@ class DynamicModuli(Result):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return title and rows of the printed report.
 
-        Returns (source, number of points, range of omega, mode and temperatures in one line; two rows: the columns
-        with their units, and the notes).
+        Returns (source, number of points, range of omega, mode and temperatures in one line; two rows: the columns with
+        their units, and the notes).
         """
         words = [f"{self.omega.size} points", f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s"]
         words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")

@@ -208,10 +208,11 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
 
     curve : measured moduli over frequency or time, all points.
     modes : largest number of modes; None: as few as the misfit needs.
-    misfit : root mean square of the relative errors that each modulus may have, > 0. Returns (the data that were
-    fitted, thinned if they have more than 1000 points; the arguments of :class:`.fit_results.SeriesFit` that state
-    data and series, by name; the root mean square of the relative errors of each modulus, (storage, loss) or
-    (relaxation,)). Raises ParameterError for ``misfit`` or ``modes`` out of range, points that spread over more than
+    misfit : root mean square of the relative errors that each modulus may have, > 0.
+    Returns (the data that were fitted, thinned if they have more than 1000 points; the arguments of
+    :class:`.fit_results.SeriesFit` that state data and series, by name; the root mean square of the relative errors of
+    each modulus, (storage, loss) or (relaxation,)).
+    Raises ParameterError for ``misfit`` or ``modes`` out of range, points that spread over more than
     :data:`MOST_SPREAD`, and data without a long-time modulus.
     """
     target = check_number("misfit", misfit, above=0.0)

@@ -19,9 +19,9 @@ _NU = 0.49
 def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
     """Return the title and the lines that ``print(fit)`` shows.
 
-    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`. Returns (title, a sentence with the number of modes and
-    points and the range of the data; the lines below, in order). The lines on wider grids are computed at the first
-    call.
+    fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    Returns (title, a sentence with the number of modes and points and the range of the data; the lines below, in
+    order). The lines on wider grids are computed at the first call.
     """
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
@@ -71,9 +71,10 @@ def of_dynamic(fit: Any) -> list[SummaryRow]:
     """Return the lines of the report on the consistency of storage and loss modulus, and on the shifts of a master
     curve.
 
-    fit : a :class:`viscoroll.Fit`. Returns a list of :class:`SummaryRow`: one on Kramers-Kronig; of curves at two or
-    more temperatures also the shift factors, combined temperatures, the mismatch of neighbours where shifts were
-    found by their overlap, and each shift that the overlap leaves open.
+    fit : a :class:`viscoroll.Fit`.
+    Returns a list of :class:`SummaryRow`: one on Kramers-Kronig; of curves at two or more temperatures also the shift
+    factors, combined temperatures, the mismatch of neighbours where shifts were found by their overlap, and each shift
+    that the overlap leaves open.
     """
     symbol = symbol_of(fit)
     rows = [SummaryRow(f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol))]
@@ -107,7 +108,7 @@ def _kramers_kronig(median: float, symbol: str) -> str:
     """Return a sentence on whether storage and loss modulus can be of one material.
 
     median : median of the Kramers-Kronig ratio, measured over computed loss modulus; NaN where it could not be
-    computed.
+        computed.
     symbol : "E" or "G".
     """
     if np.isnan(median):

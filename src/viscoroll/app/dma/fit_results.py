@@ -48,7 +48,7 @@ class SeriesFit(Result):
     E : long-time modulus, in the unit of the data; of tension or of shear, as ``mode`` says.
     T_ref : the longest time, s; times of ``prony`` are in units of it.  1 where the series has no mode.
     prony : the series, strengths divided by E, the same for both moduli, since Poisson's ratio is taken constant in
-    time.
+        time.
     mode : "tension" (E', E'', E(t)) or "shear" (G', G'', G(t)): the modulus of the data, of E and of
         :meth:`modulus`.
     target : the misfit that was requested, a root mean square of relative errors, dimensionless.
@@ -61,8 +61,7 @@ class SeriesFit(Result):
     temperature : temperature of the fit, degrees Celsius, None where it is not known.
     source : source of the data, in words.
     misfit : root mean square of the relative errors, dimensionless: a :class:`Misfit` of storage and loss, or one
-    number
-        of relaxation.
+        number of relaxation.
     """
 
     E: float
@@ -120,8 +119,8 @@ class SeriesFit(Result):
 
         They show what the data leave open outside their range.  Each is a
         :class:`.spectrum_sensitivity.ExtendedGridFit` with ``decades``, ``E``, ``alpha``, ``prony`` and, at
-        dimensionless speeds ``V`` (kappa V) at which the transit frequency lies within the data, ``M`` (kappa M)
-        beside ``M_fit`` at the same load.  They are computed at the first access.
+        dimensionless speeds ``V`` (kappa V) at which the transit frequency lies within the data, ``M`` (kappa M) beside
+        ``M_fit`` at the same load.  They are computed at the first access.
         """
         from .spectrum_sensitivity import fit_on_extended_grid
 
@@ -138,8 +137,8 @@ class SeriesFit(Result):
     def material(
         self, nu: float = 0.49, *, name: str = "", density: float | None = None, thickness: float | None = None
     ) -> Material:
-        """Return the fit as a :class:`viscoroll.Material` with its ``measured`` band and ``temperature``; the data
-        must be in Pa.
+        """Return the fit as a :class:`viscoroll.Material` with its ``measured`` band and ``temperature``; the data must
+        be in Pa.
 
         A shear modulus becomes Young's by E = 2 (1 + nu) G; ``measured.source`` then says so.
 
@@ -226,8 +225,8 @@ class SeriesFit(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the data, the fit and its series as a dataset.
 
-        Over omega (rad/s) or t (s): storage, loss and storage_fit, loss_fit, or relaxation and relaxation_fit, in
-        the unit of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.  Attributes:
+        Over omega (rad/s) or t (s): storage, loss and storage_fit, loss_fit, or relaxation and relaxation_fit, in the
+        unit of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.  Attributes:
         E_long, T_ref, title, modulus ("tension" or "shear"), and misfit_storage and misfit_loss, or misfit.
         """
         import xarray as xr

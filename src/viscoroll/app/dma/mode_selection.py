@@ -28,13 +28,13 @@ _CANDIDATES = 3
 
 
 def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum, tuple[float, float], bool]:
-    """Find the spectrum of fewest modes that reaches a misfit, or comes within 5 % of the best one where none
-    reaches it.
+    """Find the spectrum of fewest modes that reaches a misfit, or comes within 5 % of the best one where none reaches
+    it.
 
     data : measured moduli, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`.
     target : largest misfit of each row of the data, a root mean square of relative errors, dimensionless.
-    modes : number of modes, of which fewer are used only where more have no strength; None: as few as the target
-    needs. Returns (the spectrum; (shortest, longest time) of its grid, s; whether every row has a misfit <= target).
+    modes : number of modes, of which fewer are used only where more have no strength; None: as few as the target needs.
+    Returns (the spectrum; (shortest, longest time) of its grid, s; whether every row has a misfit <= target).
 
     Raises
     ------
@@ -69,9 +69,9 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, t
     The slow end of a grid is shortened until the fit has a long-time modulus; a grid without one is left out.
 
     data : measured moduli.
-    target : largest misfit of each row, dimensionless; None: all grids are fitted. Returns [(spectrum, (shortest,
-    longest time of its grid, s)), ...], in the order of the grids.  If a grid reaches the target it is the last; the
-    list is empty where no grid leaves a long-time modulus.
+    target : largest misfit of each row, dimensionless; None: all grids are fitted.
+    Returns [(spectrum, (shortest, longest time of its grid, s)), ...], in the order of the grids.  If a grid reaches
+    the target it is the last; the list is empty where no grid leaves a long-time modulus.
     """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
     low, high = data.band
@@ -108,8 +108,11 @@ def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
 
 
 def _size(data: Data, spectrum: Spectrum) -> float:
-    """Return one number by which fits are compared: the root of the sum of the squared misfits of all rows,
-    dimensionless.
+    """Return the root of the sum of the squared misfits of all rows, by which fits are compared.
+
+    data : measured moduli.
+    spectrum : the fit.
+    Returns a dimensionless number.
     """
     return math.hypot(*misfits(data, spectrum))
 
@@ -123,9 +126,8 @@ def _leave_out_mode(
     spectrum : spectrum of the data from which a mode is left out.
     ends : (shortest, longest) time that is allowed, s.
     good : function of a spectrum that returns whether it is acceptable; None: any is, and the best is returned.
-    Returns the first acceptable one of the three best candidates, with times refined unless the best is acceptable
-    as it is; None if none of them is.  Modes without strength are left out too, so that more than one may be
-    missing.
+    Returns the first acceptable one of the three best candidates, with times refined unless the best is acceptable as
+    it is; None if none of them is.  Modes without strength are left out too, so that more than one may be missing.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
@@ -138,8 +140,7 @@ def _leave_out_mode(
 
 
 def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
-    """Return the candidates for one mode less: times with one left out, or with two neighbours replaced by their
-    mean.
+    """Return the candidates for one mode less: times with one left out, or with two neighbours replaced by their mean.
 
     spectrum : the spectrum, of n modes, n >= 1; means are of the logarithms of its times, weighted by strength.
     Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each.

@@ -130,8 +130,7 @@ class _Choice(NamedTuple):
 
     mode : "tension", "shear", or "" where no heading says.
     pair : the two quantities that give the moduli, a key of :data:`.moduli_from_pair.PAIRS`.
-    columns : quantity (:attr:`.column_quantities.Column.quantity`) -> its columns, one or more, which must then
-    agree;
+    columns : quantity (:attr:`.column_quantities.Column.quantity`) -> its columns, one or more, which must then agree;
         those of ``mode`` or of no mode, and all of moduli or all of compliances.
     """
 
@@ -146,8 +145,8 @@ def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
     units : argument ``units`` of :func:`read_dma`: None; (unit of frequencies, unit of moduli), as ("Hz", "MPa"); or
         quantity -> unit, with the keys of :data:`.vocabulary.UNITS`.
     Returns two dicts quantity -> unit: the first replaces what the file says, the second holds where the file gives
-    none. One of them is empty: the first for a pair, the second for quantity -> unit, and both for None. Raises
-    ParameterError for another form, an unknown quantity, a unit that is unknown or of another dimension.
+    none. One of them is empty: the first for a pair, the second for quantity -> unit, and both for None.
+    Raises ParameterError for another form, an unknown quantity, a unit that is unknown or of another dimension.
     """
     by_name = isinstance(units, Mapping)
     allowed = "(frequency, moduli), as ('Hz', 'MPa'), or quantity -> unit"
@@ -185,8 +184,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
 
     table : the table of the file; it is used for the error message only.
     found : columns of known quantities, in the order of the file.
-    others : heading -> why the column is left out, "" for an unknown quantity.  It is changed: columns of another
-    mode
+    others : heading -> why the column is left out, "" for an unknown quantity.  It is changed: columns of another mode
         or kind than the pair, and measured frequencies beside reduced ones, are added.
     Returns the :class:`_Choice`.
     Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
@@ -221,8 +219,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
 
 
 def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
-    """Return the numbers of the first of several columns of one quantity, after a check that the others agree with
-    it.
+    """Return the numbers of the first of several columns of one quantity, after a check that the others agree with it.
 
     Frequencies agree to 0.1 %, moduli and tan delta to 1 %, temperatures to 1 K, each beside the rounding of the
     digits.
@@ -268,8 +265,8 @@ def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     """Refuse what is not one frequency sweep at each temperature.
 
-    These are: rows that are all of one frequency; several tables in the file without a column of temperatures; at
-    one temperature two rows of one frequency whose moduli differ by more than a factor of 1.25.
+    These are: rows that are all of one frequency; several tables in the file without a column of temperatures; where
+    all rows are of one temperature, two of one frequency whose storage moduli differ by more than a factor of 1.25.
 
     table : the table from which the record was read; its lines are named in the message.
     record : the moduli in the order of the rows.

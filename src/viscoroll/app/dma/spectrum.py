@@ -38,8 +38,9 @@ class Spectrum(NamedTuple):
     def modulus(self, data: Data) -> Floats:
         """Return the moduli of the spectrum at the frequencies or times of the data, in the unit of E.
 
-        data : measured moduli at n points; only their frequencies or times are used. Returns the shape of
-        ``data.values``: (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of relaxation.
+        data : measured moduli at n points; only their frequencies or times are used.
+        Returns the shape of ``data.values``: (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of
+        relaxation.
         """
         return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
 
@@ -58,10 +59,9 @@ def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
     """Return the matrix of the least squares: responses of a constant and of modes, divided by the measured moduli.
 
     data : measured moduli, ``rows`` of them (2 of storage and loss, 1 of relaxation) at n points.
-    constant : long-time modulus whose response is the first column, in the unit of the data; 1.0 for a unit
-    response.
-    modes : responses of the modes, in the unit of the data, shape (rows, n, modes). Returns shape (rows n, 1 +
-    modes), dimensionless; the column of the constant is the first.
+    constant : long-time modulus whose response is the first column, in the unit of the data; 1.0 for a unit response.
+    modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
+    Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
     """
     found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
     found[..., 0], found[..., 1:] = np.multiply(constant, data.constant)[:, None], modes
@@ -73,8 +73,8 @@ def _residuals(data: Data, values: Floats) -> Floats:
     """Return the relative errors of all moduli, one row after the other.
 
     data : measured moduli, ``rows`` of them at n points.
-    values : [long-time modulus, strengths, times], the first two in the unit of the data, times in s; (1 + 2
-    modes,). Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
+    values : [long-time modulus, strengths, times], the first two in the unit of the data, times in s; (1 + 2 modes,).
+    Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
     """
     count = values.size // 2
     return _relative_columns(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
@@ -95,9 +95,9 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
     """Solve the least squares with non-negative strengths on fixed times; modes without strength are left out.
 
     data : measured moduli.
-    tau : times of modes, s, in any order, shape (modes,). Returns the spectrum, its times descending; its long-time
-    modulus is at least :data:`FLOOR` of the lowest modulus, and its number of modes may be smaller than that of
-    ``tau``, down to 0.
+    tau : times of modes, s, in any order, shape (modes,).
+    Returns the spectrum, its times descending; its long-time modulus is at least :data:`FLOOR` of the lowest modulus,
+    and its number of modes may be smaller than that of ``tau``, down to 0.
     """
     from scipy.optimize import nnls
 
@@ -111,8 +111,7 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
 
 def has_plateau(data: Data, spectrum: Spectrum) -> bool:
-    """Return whether the data determine the long-time modulus of a fit, which is then above the least that is
-    allowed.
+    """Return whether the data determine the long-time modulus of a fit, which is then above the least that is allowed.
 
     data : measured moduli.
     spectrum : fit of the data, as of :func:`on_times`.
@@ -126,8 +125,9 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     data : measured moduli.
     spectrum : spectrum from which the search starts, all strengths > 0.
     ends : (shortest, longest) time that is allowed, s.
-    calls : largest number of evaluations of the residuals. Returns the refined spectrum, from which modes without
-    strength are left out; ``spectrum`` itself if it has no modes.
+    calls : largest number of evaluations of the residuals.
+    Returns the refined spectrum, from which modes without strength are left out; ``spectrum`` itself if it has no
+    modes.
     """
     count = spectrum.tau.size
     if not count:

@@ -51,8 +51,8 @@ class ExtendedGridFit:
 def fit_on_extended_grid(
     data: Data, prony: Prony, E: float, T_ref: float, grid: tuple[float, float], decades: float
 ) -> ExtendedGridFit:
-    """Fit strengths on the times of a fit and on a wider grid together, to see what the data leave open outside
-    their range.
+    """Fit strengths on the times of a fit and on a wider grid together, to see what the data leave open outside their
+    range.
 
     No mode is left out: a fit with as few modes as possible would leave out those outside the data first, though the
     data allow them.
@@ -74,8 +74,7 @@ def fit_on_extended_grid(
 
 
 def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats, Floats]:
-    """Compute the rolling moment of free rolling at speeds whose transit frequency |V|/(lam l0) lies within the
-    data.
+    """Compute the rolling moment of free rolling at speeds whose transit frequency |V|/(lam l0) lies within the data.
 
     prony : series of the fit.
     slow, fast : lowest and highest frequency of the data, times T_ref.

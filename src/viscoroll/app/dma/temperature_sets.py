@@ -37,10 +37,10 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
 
     temperature : temperature of all points, one number; of each point, (n,); or of each curve, (curves,); degrees
         Celsius.
-    *columns : omega, storage and loss, three, each (n,), or each a list of ``curves`` vectors, one a curve. Returns
-    (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, in rad/s and the unit of
-    the moduli; index of the first point of each curve, (curves,), or None where the columns are no lists). Raises
-    ParameterError for shapes that do not go together, and for temperatures that are no finite numbers.
+    *columns : omega, storage and loss, three, each (n,), or each a list of ``curves`` vectors, one a curve.
+    Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, in rad/s and the unit
+    of the moduli; index of the first point of each curve, (curves,), or None where the columns are no lists).
+    Raises ParameterError for shapes that do not go together, and for temperatures that are no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
     columns = tuple(to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
@@ -68,8 +68,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
 
     temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
     first : index of the first point of each curve, (curves,), as of :func:`points_of`; None: each set counts as a
-    curve,
-        in the order in which their first points come.
+        curve, in the order in which their first points come.
     Returns the :class:`Sets`.
 
     Raises
@@ -100,8 +99,8 @@ def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
 
     temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
     unshifted : temperatures at which the given shift is 1, degrees Celsius; empty, or NaN, where none is known.
-    Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the highest set, else
-    the temperature of the middle set, of an even number the warmer one.
+    Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the highest set, else the
+    temperature of the middle set, of an even number the warmer one.
     """
     low, high = temperatures[0], temperatures[-1]
     return next((T for T in unshifted if low <= T <= high), float(temperatures[temperatures.size // 2]))
@@ -123,13 +122,12 @@ def nearest(base: float, temperatures: Floats, name: str) -> int:
 
 
 def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, float]:
-    """Return shift factors that the user lists as factors of the sets, which are 1 at the reference, and the
-    reference.
+    """Return shift factors that the user lists as factors of the sets, which are 1 at the reference, and the reference.
 
     shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves.
     sets : the sets of the points.
-    base : reference, degrees Celsius; None: the temperature of a set whose factor is 1, else the middle set. Returns
-    (factors of the sets, dimensionless, (sets,), divided by that of the reference; reference, degrees Celsius).
+    base : reference, degrees Celsius; None: the temperature of a set whose factor is 1, else the middle set.
+    Returns (factors of the sets, dimensionless, (sets,), divided by that of the reference; reference, degrees Celsius).
     Raises ParameterError for factors that are not > 0, of another number than the curves, or different at one
     temperature, and for a reference that is at none of the sets.
     """

@@ -102,9 +102,9 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
     """Return all quantities that a heading may name, the likeliest first.
 
     heading : text of the heading, with its unit or without, as "E' [MPa]" or "Speichermodul".
-    row : the cell of a row of units for this column, "" without. Returns a list of :class:`Meaning`, one for each
-    way to part the heading into name and unit whose name is understood; an empty list where a word of the heading is
-    not in the vocabulary.
+    row : the cell of a row of units for this column, "" without.
+    Returns a list of :class:`Meaning`, one for each way to part the heading into name and unit whose name is
+    understood; an empty list where a word of the heading is not in the vocabulary.
     """
     found = [(_quantity(name), unit, log) for name, unit, log in readings(heading, row)]
     return [Meaning(*quantity, unit, log) for quantity, unit, log in found if quantity]
@@ -134,8 +134,8 @@ def _quantity(name: str) -> tuple[str, str] | None:
 def _parts(word: str) -> list[str]:
     """Split a word that is composed of words of the vocabulary, as "storagemodulus".
 
-    word : letters or digits, in lower case but for one-letter signs. Returns the words that it is composed of;
-    [word] if it is in the vocabulary itself or is not composed of such words.
+    word : letters, in lower case, or digits.
+    Returns the words that it is composed of; [word] if it is in the vocabulary itself or is not composed of such words.
     """
     if word in _KINDS or not (found := _COMPOUND.fullmatch(word)):
         return [word]
