@@ -94,14 +94,11 @@ class Record:
 
     @staticmethod
     def unit(name: str) -> str:
-        """Return the SI unit of a coordinate or quantity by its name, as "m s-1" of V; "" of a creepage, which has
-        none.
-        """
+        """Return the SI unit of a coordinate or quantity by its name, as "m s-1" of V; "1" of a creepage."""
         return si_unit("force" if name == "F" else name)
 
     def label(self, name: str) -> str:
-        """Return the name of a field as it stands in messages, "RECORD: FIELD"; an unnamed record has that of its kind.
-        """
+        """Return the name of a field in messages, "RECORD: FIELD"; an unnamed record has the name of its kind."""
         return f"{self.name or self.LABEL}: {name}"
 
     def _sigmas(self) -> dict[str, Any]:
@@ -311,8 +308,8 @@ class Coastdown(Record):
 
         R : radius of the cylinder, m.
         Returns name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high) where the record
-        leaves it open, None where it gives it), in s, m/s and rad/s.  The initial t0 is 0, or the end of its range
-        nearest to 0.
+        leaves it open, None where it gives it), in s, m/s and rad/s.  A t0 that is open starts at 0, or at the end of
+        its range nearest to 0.
         Raises ParameterError where an open start does not show in the data.
         """
         ends: Any = np.ravel(self.t0)

@@ -190,13 +190,18 @@ def cylinder_of(
 
 
 def _bodies(cylinder: Cylinder) -> dict[str, Material]:
-    """Return the bodies that deform: "material" or "base" -> its :class:`Material`; a rigid one has no unknowns."""
+    """Return the bodies that deform; a rigid one has no unknowns.
+
+    cylinder : the cylinder; its half-space is another body only where its material is.
+    Returns "material" or "base" -> :class:`Material`.
+    """
     bodies = zip(_PREFIX, (cylinder.pair.cylinder, cylinder.pair.base), strict=True)
     return {section: body for section, body in bodies if not (body is None or body.is_rigid)}
 
 
 def _inputs(body: Material) -> dict[str, float]:
-    """Return all inputs of a body that may be unknown: E (Pa), nu, T_ref (s), and E_1, tau_1, ... of its modes.
+    """Return all inputs of a body that may be unknown, by name: E (Pa), nu, T_ref (s), and E_1, tau_1, ... of its
+    modes.
 
     Strengths and times of modes are dimensionless, divided by E and T_ref; mode 1 is the longest.
     """
