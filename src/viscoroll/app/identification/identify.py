@@ -111,10 +111,12 @@ def identify(
 
 
 def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
-    """Return the records by name; those without a name get that of their kind.
+    """Return the records by name; those without a name get that of their kind, as "resistance", then "resistance 2".
 
-    data : records.
-    Raises ParameterError for what is no record, two records of one name, and a mixture of data and plans.
+    data : records, all with values or all without.
+    Returns name -> record, in the order of ``data``.
+    Raises ParameterError for what is no record, no records, two records of one name, a plan without sigma, and a
+    mixture of data and plans.
     """
     found: dict[str, Record] = {}
     for record in data:
@@ -138,11 +140,14 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
 def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Minimum]:
     """Return the best minimum of chi2, and other minima that are nearly as good and lie in other valleys of chi2.
 
+    The standard deviations of ``problem`` that were not given are estimated on the way, and are those of the best
+    minimum at the end.
+
     problem : the least squares.
-    count : number of searches, the first from the start of the problem.
+    count : number of searches, the first from the start of the problem; if that goes far, two more are added.
     seed : seed of the other starts.
-    progress : whether a progress bar is drawn.
-    Returns the minima, the best first.
+    progress : whether a progress bar is drawn on standard error, after one second.
+    Returns a list of :class:`.problem.Minimum`, the best first, each with chi2 less than 15 above it.
     """
     from tqdm import tqdm
 
@@ -168,7 +173,7 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
     """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
 
     problem : the least squares.
-    count : number of starts plus 1, as the first search began from the start of the problem.
+    count : number of starts plus 1, as the first search began from the start of the problem; 1: nothing is yielded.
     seed : seed of the hypercube.
     Yields coordinates of a start, (unknowns,).
     """
@@ -188,8 +193,9 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     Other valleys of chi2 lie beyond ridges across that direction.
 
     problem : the least squares.
-    u : coordinates of the minimum.
-    Returns two vectors of coordinates, (unknowns,).
+    u : coordinates of the minimum, (unknowns,).
+    Returns two vectors of coordinates within the ranges, (unknowns,) each; [] where the minimum is within 0.6 of the
+    start in every coordinate, and is then taken to be the only one.
     """
     if np.abs(u - problem.start).max() < _NEAR:
         return []
@@ -200,11 +206,13 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
 
 
 def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
-    """Return whether chi2 has no ridge between two minima.
+    """Return whether chi2 has no ridge between two minima, so that they count as one.
+
+    At three points between them chi2 is minimised with the coordinate that differs most fixed and all others free; a
+    ridge is a minimum 0.5 above the higher of the two.
 
     problem : the least squares.
-    first, other : the minima. At three points between them chi2 is minimised with the coordinate that differs most
-    fixed and all others free.
+    first, other : the minima; True if their coordinates are the same to 0.01.
     """
     difference = other.u - first.u
     largest = int(np.argmax(np.abs(difference)))
