@@ -56,8 +56,7 @@ class _StoreOnce(argparse.Action):
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, name: str | None = None
     ) -> None:
-        """Store the value of an option or a positional argument; raise ArgumentError where the option had one
-        before.
+        """Store the value of an option or a positional argument; an option that had one before is an error.
 
         The signature is that of ``argparse.Action``.
 
@@ -65,6 +64,7 @@ class _StoreOnce(argparse.Action):
         namespace: values of all arguments; its ``stored`` is the set of those that have a value.
         values: the value.
         name: name of the option; None of a positional argument.
+        Raises ArgumentError for the second value of an option.
         """
         stored = vars(namespace).setdefault("stored", set())
         if name is not None and self.dest in stored:
@@ -88,7 +88,10 @@ def _convert_argument(kind: type, words: str, text: str) -> Any:
 
 
 def parser() -> Parser:
-    """Return the parser of the whole command line."""
+    """Return the parser of the whole command line, with a subparser for each command of :data:`.arguments.COMMANDS`.
+
+    The namespace that it returns has the arguments of the command, and ``run``, the function that takes it.
+    """
     program = Parser(
         prog="viscoroll",
         description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
@@ -117,10 +120,11 @@ def parser() -> Parser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the program.
+    """Run the program; its errors and warnings are printed, each in one line, on standard error.
 
-    argv: arguments; default: those of the process.
-    Returns the exit code: 0 success, 1 a check failed, 2 an error.
+    argv: arguments, without the name of the program; None: those of the process.
+    Returns the exit code: 0 success, 1 a check failed, 2 an error, 130 an interrupt by SIGINT, 141 a standard output
+    that was closed by its reader.
     """
     if sys.stdout is None:  # closed by the shell
         sys.stdout = io.StringIO()
@@ -149,8 +153,9 @@ def _run(argv: Sequence[str]) -> int:
     """Parse the arguments and run the command.
 
     argv: the words of the command line without the name of the program.
-    Returns the exit code of the command, 0 or 1.  Raises what the command raises; UsageError where the line does not
-    parse.
+    Returns the exit code of the command, 0 or 1; 0 after --help and --version.
+    Raises what the command raises; UsageError where the line does not parse; ParameterError for a wrong
+    $VISCOROLL_THREADS.
     """
     try:
         arguments = parser().parse_args(argv)
@@ -184,7 +189,7 @@ def _print_error(error: object) -> int:
 
 
 def _print_line(message: object) -> None:
-    """Print a message in one line on standard error, unless it is closed or full.
+    """Print a message in one line on standard error, behind "viscoroll:"; nothing if that is closed or full.
 
     message: an object whose text is printed, its line breaks as blanks.
     """
