@@ -183,12 +183,13 @@ class SeriesFit(Result):
         ----------
         cylinder : one cylinder, or a series of cylinders, whose material or base is ``material()`` of this fit, at any
             temperature.
-        V : speed of the axis, m/s, any sign.
+        V : speed of the axis, m/s, any sign, a number or an array of any shape.
 
         Returns
         -------
         Assumption
-            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``, of the shape of V.
+            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``: whether it lies within the data and
+            the misfit is small enough, of the shape of V.
 
         Raises
         ------
@@ -258,11 +259,11 @@ class Fit(SeriesFit):
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
         as of ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
-    misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
-    kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
-        ``.ratio``, ``.median``.
-    shifts : shift factors of curves at several temperatures, else None.
-    omega, storage, loss : the data, sorted and shifted; rad/s and the unit given.
+    misfit : root mean square of the relative errors, dimensionless, ``.storage`` and ``.loss``.
+    kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``, rad/s,
+        ``.ratio`` at these, dimensionless, and ``.median``, near 1 for sound data.
+    shifts : shift factors (:class:`.master_curve.Shifts`) where temperatures were given, else None.
+    omega, storage, loss : the data, sorted and shifted, (n,) each; rad/s and the unit given.
 
     Examples
     --------
@@ -286,11 +287,12 @@ class Fit(SeriesFit):
         return Curve(self.omega, self.storage, self.loss)
 
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
-        """Return storage and loss modulus of the fit in the unit of the data, of the shape of ``omega``.
+        """Return storage and loss modulus of the fit in the unit of the data.
 
         They are E' and E'', or G' and G'' where ``mode`` is "shear".
 
-        omega : angular frequencies, rad/s.
+        omega : angular frequencies, rad/s, of any shape.
+        Returns (storage, loss), each of the shape of ``omega``.
 
         Examples
         --------
@@ -314,9 +316,9 @@ class RelaxationFit(SeriesFit):
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
         as of ``SeriesFit``, the base class.
-    misfit : root mean square of the relative errors.
-    t : times of the data, ascending, s.
-    relaxation : relaxation modulus of the data, in the unit given.
+    misfit : root mean square of the relative errors, dimensionless.
+    t : times of the data, ascending, s, (n,).
+    relaxation : relaxation modulus of the data, in the unit given, (n,).
 
     Examples
     --------

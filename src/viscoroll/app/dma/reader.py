@@ -54,7 +54,8 @@ def read_dma(
     Returns
     -------
     DynamicModuli
-        In the order of the file; ``print`` shows in three lines what was understood.  It unpacks as before:
+        ``omega`` in rad/s, ``storage`` and ``loss`` in Pa and ``temperature`` in degrees Celsius or None, (n,) each, in
+        the order of the file; ``print`` shows in three lines what was understood.  It unpacks into three arrays:
         ``omega, storage, loss = read_dma(path)``.
 
     Raises
@@ -63,7 +64,7 @@ def read_dma(
         A file that cannot be read, columns that are missing, ambiguous or contradict each other, units that are
         unknown or of another dimension, gaps and separators of thousands; rows of several temperatures without them.
     ParameterError
-        ``columns``, ``units``, ``decimal`` or ``encoding`` that are none.
+        Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file.
 
     Warns
     -----

@@ -40,8 +40,9 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     Parameters
     ----------
     given : a :class:`viscoroll.Cylinder`, whose numbers become the start values; or a material, pair, cover, law of
-        :func:`viscoroll.load_law` or alpha, for which radius, load, mass and friction are set in the tool.
-    path : file to write; a file of that name is replaced.
+        :func:`viscoroll.load_law` or alpha (a number >= 1), for which radius, load, mass and friction are set in the
+        tool.
+    path : file to write, with the suffix .fmu by custom; a file of that name is replaced.
     model : "Roller", from drive force and torque to v, omega and x: co-simulation with its own step-size control, and
         model exchange; or "ContactElement", from v, omega and load to force, torque and moments: model exchange.
     version : version of the FMI standard, 2 or 3.
@@ -53,7 +54,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     MissingDependencyError
         No fmpy, which brings the headers of the standard, or no C compiler ``cc``.
     FileError
-        If the file cannot be written.
+        If the file cannot be written, or the compiler fails.
 
     Examples
     --------

@@ -132,7 +132,7 @@ class Identification(Result):
         """Return the interval of each unknown by its profile: (low, high), None on a side that is open.
 
         All other unknowns are free while one is varied, until chi2 has risen as ``level`` asks: 3.84 at 0.95 where
-        sigma was given, by F where it was estimated.  A side is open where it does not rise up to the end of the
+        sigma was given, by F where it was estimated.  A side is open where it does not rise so far up to the end of the
         range.  If another branch is found beyond an end, the interval includes it.
 
         Parameters
@@ -142,7 +142,8 @@ class Identification(Result):
         Returns
         -------
         dict of str to (float or None, float or None)
-            Name of the unknown -> ends of its interval, SI units.
+            Name of the unknown -> (low, high) of its interval, SI units; None on a side that is open, (None, None) of
+            an unknown that does not act.
 
         Raises
         ------
@@ -190,22 +191,24 @@ class Identification(Result):
 
         Parameters
         ----------
-        record : coordinates, load and temperature; for a motion with V0, which may be another than those fitted.
-        draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
-            unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
+        record : a :class:`Resistance`, :class:`Traction` or :class:`Coastdown` with coordinates, and load and
+            temperature; a motion needs V0, which may be another than those fitted.  Its values are not used.
+        draws : number of random values of the unknowns to take the bands from, at most 100000; 0: from slopes, which
+            takes two computations an unknown.  Either by the normal law within the ranges: of what is undetermined a
+            band is a guess.
         level : confidence level of the bands, in (0, 0.9999].
         seed : seed of the draws, >= 0.
 
         Returns
         -------
         Prediction
-            ``.M``, ``.F``, ``.Q``, ``.V``, ``.omega``, ``.x``, as of the record, each with ``.value``, ``.low`` and
-            ``.high``.
+            ``.M`` and ``.F``, ``.Q``, or ``.V``, ``.omega`` and ``.x``, as of the kind of record, each with ``.value``,
+            ``.low`` and ``.high`` over its points, SI.
 
         Raises
         ------
         ParameterError
-            A record without a start, draws, level or seed out of range.
+            What is no record, a motion without V0, omega0 or t0, draws, level or seed out of range.
 
         Examples
         --------

@@ -44,32 +44,39 @@ def identify(
 
     Parameters
     ----------
-    cylinder : the cylinder with all known parameters, and with the start values of the unknown ones.
+    cylinder : the :class:`Cylinder`, without arrays, with all known parameters, and with the start values of the
+        unknown ones.
     unknown : name -> range (low, high) of each unknown parameter, SI, by the names of run files: R, m, mu, j, g, load;
         E, nu, T_ref of the material; E_1, tau_1 of its first, longest mode, divided by E and T_ref; the same of another
         half-space as base_E, base_E_1; brake, a constant torque of the bearing, N m/m, and drag, a torque for each unit
         of omega, N m s/m, both >= 0; V0, omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole
         relaxation curve and T_ref all its times: with mu they are all unknowns of a material that a DMA has measured.
-    data : records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.  All have values, or none has: then
-        the result states the standard deviations to expect if the cylinder, without a bearing, is the truth.
-    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand; the standard deviation is
-        that of the logarithm, but for brake, drag, nu and unknowns of records.
-    shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function, 1 at the temperature
-        of the cylinder; where its bodies differ {"material": ..., "base": ...}.
+    data : records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.  All have values, or none has (a
+        plan): then the result states the standard deviations to expect if the cylinder, without a bearing, is the
+        truth.
+    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand, SI, None without; the
+        standard deviation is that of the natural logarithm, dimensionless, but for brake, drag, nu and unknowns of
+        records, of which it is that of the value, SI.
+    shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function that takes degrees
+        Celsius and returns a_T, 1 at the temperature of the cylinder; None without temperatures of records; where its
+        bodies differ {"material": ..., "base": ...}.
     robust : let outliers count less, as |r| in place of r^2, of data and prior.
-    starts : number of searches, the first from the cylinder, the others from points spread over the ranges.
+    starts : number of searches, >= 1, the first from the cylinder, the others from points spread over the ranges; of a
+        plan only the first.
     seed : seed of these points.
     progress : draw a progress bar if it takes longer than a second.
 
     Returns
     -------
     Identification
+        Values, standard deviations and intervals of the unknowns; ``print`` shows a report.
 
     Raises
     ------
     ParameterError
         An unknown name, a range that does not contain the start value, more unknowns than points, records without
-        standard deviations where values are missing, records with and without values, two records of one name.
+        standard deviations where values are missing, records with and without values, two records of one name, a
+        temperature of a record without ``shift``.
 
     Examples
     --------
