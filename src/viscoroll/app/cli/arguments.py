@@ -64,9 +64,10 @@ def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFun
 
 
 def option(*names: str, **settings: Any) -> Option:
-    """Return an argument of a command.
+    """Return an argument of a command, in the form of :func:`command`.
 
-    names, settings: as of ``ArgumentParser.add_argument``.
+    names: positional name, or names of the option with dashes, as of ``ArgumentParser.add_argument``.
+    settings: keywords of ``ArgumentParser.add_argument``, as type and help.
     """
     return Option(names, settings)
 
@@ -133,9 +134,10 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
     """
 
     def path(text: str) -> Path:
-        """Return the path of an argument; raises ArgumentTypeError for another suffix or a file that cannot be written.
+        """Convert an argument to the path of the output file, which is not created.
 
-        text: the argument.
+        text: the argument; of a .zarr folder a "/" at its end is left out.
+        Raises ArgumentTypeError for another suffix, a folder that does not exist, and a directory other than a .zarr.
         """
         text = text.rstrip("/") if text.endswith(".zarr/") else text  # as shells complete the name of a folder
         if Path(text).suffix.lower() not in suffixes:

@@ -39,6 +39,10 @@ class Parser(argparse.ArgumentParser):
     """A parser that raises UsageError instead of exiting, and prints help texts as they are written."""
 
     def __init__(self, **options: Any) -> None:
+        """Set up the parser; abbreviations of options are refused.
+
+        options: keywords of ``argparse.ArgumentParser``.
+        """
         super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
         # argparse takes a value like -1:1:5 or -1e-3 for an option unless it matches this
         self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
@@ -47,6 +51,10 @@ class Parser(argparse.ArgumentParser):
         self.register("action", None, _StoreOnce)
 
     def error(self, message: str) -> NoReturn:
+        """Raise UsageError, with a hint at --help, in place of an exit.
+
+        message: what does not parse.
+        """
         raise UsageError(f"{message} (see {self.prog} --help)")
 
 
@@ -74,12 +82,13 @@ class _StoreOnce(argparse.Action):
 
 
 def _convert_argument(kind: type, words: str, text: str) -> Any:
-    """Convert the text of an argument to a value; raises ArgumentTypeError where that fails.
+    """Convert the text of an argument to a number; it is the type of numeric arguments in argparse.
 
-    kind: type of the value.
-    words: the type in words, for the error.
+    kind: ``float`` or ``int``, which is called with the text.
+    words: the type in words, for the error, as "a number".
     text: the argument.
     Returns the value, of the type ``kind``.
+    Raises ArgumentTypeError where the text is no such value.
     """
     try:
         return kind(text)
@@ -170,7 +179,7 @@ def _run(argv: Sequence[str]) -> int:
 
 
 def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning in one line.
+    """Print a warning in one line on standard error.
 
     Other arguments are not used: the signature is that of ``warnings.showwarning``.
 
@@ -180,7 +189,7 @@ def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def _print_error(error: object) -> int:
-    """Print an error in one line and return its exit code, 2.
+    """Print an error in one line on standard error and return its exit code, 2.
 
     error: an exception, or its text.
     """

@@ -25,12 +25,12 @@ _ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
 class Column(NamedTuple):
     """A column of a known quantity.
 
-    position, heading : index and heading in its table.
+    position, heading : index from 0 and heading in its table.
     name : name of its quantity, a key of :data:`.vocabulary.UNITS`.
     mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
     log : whether its numbers are logarithms to base 10.
-    unit : unit in which its numbers are.
-    stated : whether the file or the user gives the unit, or it is assumed.
+    unit : unit in which its numbers are written, of the file, the user, or assumed; "" where none can be assumed.
+    stated : whether the file or the user gives the unit; False: it is assumed.
     """
 
     position: int

@@ -51,19 +51,21 @@ class Curve(NamedTuple):
 
     @property
     def shortest(self) -> float:
-        """Shortest time of a mode that the data determine, s: any, since the loss modulus of a mode falls as omega
-        only.
+        """Shortest time of a mode that the data determine, s: 0, which allows any.
+
+        The loss modulus of a fast mode is proportional to omega far below its peak, so that even such a mode shows in
+        data.
         """
         return 0.0
 
     @property
     def values(self) -> Floats:
-        """The measured moduli, a row each, shape (2, n)."""
+        """The measured moduli, in the unit of the data, shape (2, n): row 0 is the storage, row 1 the loss modulus."""
         return np.array(self[1:])
 
     @property
     def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1 in each row."""
+        """Response of a long-time modulus of 1 in each row of ``values``: 1 in the storage, 0 in the loss modulus."""
         return 1.0, 0.0
 
     def responses(self, tau: Floats) -> Floats:
@@ -123,10 +125,12 @@ class Relaxation(NamedTuple):
 
     @property
     def values(self) -> Floats:
+        """The relaxation modulus, in the unit of the data, shape (1, n)."""
         return np.array(self[1:])
 
     @property
     def constant(self) -> tuple[float, ...]:
+        """Response of a long-time modulus of 1 in the row of ``values``: 1."""
         return (1.0,)
 
     def responses(self, tau: Floats) -> Floats:
@@ -148,6 +152,7 @@ class Relaxation(NamedTuple):
 
     @property
     def fluid(self) -> ParameterError:
+        """The ParameterError, not raised here, for data of which no fit has a long-time modulus."""
         found = f"has no plateau at long times ({self.relaxation[-1]:g} at t = {self.t[-1]:g})"
         return described_error("relaxation", found, "that of a solid, whose long-time modulus is positive")
 

@@ -112,7 +112,9 @@ class DynamicModuli(Result):
         return xr.Dataset(data, attrs=about)
 
     def _figure(self) -> Figure:
-        """Return the figure of storage and loss modulus over angular frequency, both axes logarithmic."""
+        """Return the matplotlib figure of storage and loss modulus, Pa, over angular frequency, rad/s, both axes
+        logarithmic.
+        """
         from ...core.plots.style import new_figure
 
         figure, axes = new_figure(f"{self.source or 'Dynamic moduli'}, {self.mode}")

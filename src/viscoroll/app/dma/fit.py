@@ -28,7 +28,7 @@ _Curve = TypeVar("_Curve", Curve, Relaxation)
 
 
 class _Options(TypedDict, total=False):
-    """Options of :func:`fit_prony` that hold for columns and for records alike."""
+    """Options of :func:`fit_prony`, described there, that hold for columns and for records alike."""
 
     misfit: float
     temperature: Numbers | None

@@ -30,7 +30,10 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 
 
 def _rows(fit: Any) -> Iterator[SummaryRow]:
-    """Yield the lines of the report below its title, as :class:`SummaryRow`.
+    """Yield the lines of the report below its title, each a :class:`SummaryRow`.
+
+    They are: constants, thinning, misfit, the lines of this kind of fit, modes outside the data, fits on wider grids,
+    and the table of modes with strengths divided by the long-time modulus and times in s.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """
@@ -98,7 +101,10 @@ def of_dynamic(fit: Any) -> list[SummaryRow]:
 
 
 def of_relaxation(fit: Any) -> list[SummaryRow]:
-    """Return the line on the error of the loss modulus of a ``fit``, a :class:`viscoroll.RelaxationFit`."""
+    """Return the line of the report on the error of the loss modulus, in a list of one :class:`SummaryRow`.
+
+    fit : a :class:`viscoroll.RelaxationFit`.
+    """
     symbol = symbol_of(fit)
     text = f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more"
     return [SummaryRow("", text)]

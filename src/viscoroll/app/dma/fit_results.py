@@ -81,12 +81,12 @@ class SeriesFit(Result):
 
     @property
     def data(self) -> Data:
-        """The data that were fitted."""
+        """The data that were fitted, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`."""
         raise NotImplementedError
 
     @property
     def symbols(self) -> list[str]:
-        """Symbols of the measured moduli: E' and E'', or E(t); G in place of E where they are of shear."""
+        """Symbols of the measured moduli: ["E'", "E''"] or ["E(t)"]; G in place of E where they are of shear."""
         signs = ["(t)"] if self.data._fields[0] == "t" else ["'", "''"]
         return [symbol_of(self) + sign for sign in signs]
 
@@ -100,12 +100,12 @@ class SeriesFit(Result):
 
     @property
     def largest_misfit(self) -> float:
-        """The misfit; of storage and loss the larger one."""
+        """The misfit, a root mean square of relative errors, dimensionless; of storage and loss the larger one."""
         return float(np.max(self.misfit))
 
     @property
     def alpha(self) -> float:
-        """Instantaneous over long-time modulus."""
+        """Instantaneous divided by long-time modulus, dimensionless."""
         return self.prony.alpha
 
     @property
@@ -130,7 +130,9 @@ class SeriesFit(Result):
 
     @property
     def measured(self) -> Measured:
-        """The frequencies of the data, the larger misfit and the source, which a material keeps."""
+        """What a material keeps of the data, a :class:`Measured`: the frequencies, rad/s, the larger misfit, and the
+        source.
+        """
         source = self.source or f"{self.points} points"
         return Measured(*self.band, self.largest_misfit, source)
 
@@ -283,7 +285,7 @@ class Fit(SeriesFit):
 
     @property
     def data(self) -> Curve:
-        """The data that were fitted."""
+        """The data that were fitted, as a :class:`.curve.Curve`."""
         return Curve(self.omega, self.storage, self.loss)
 
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
@@ -336,7 +338,7 @@ class RelaxationFit(SeriesFit):
 
     @property
     def data(self) -> Relaxation:
-        """The data that were fitted."""
+        """The data that were fitted, as a :class:`.curve.Relaxation`."""
         return Relaxation(self.t, self.relaxation)
 
     def modulus(self, t: ArrayLike) -> Floats:

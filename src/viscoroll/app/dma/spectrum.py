@@ -24,11 +24,11 @@ Data = Curve | Relaxation
 
 
 class Spectrum(NamedTuple):
-    """A discrete spectrum in the units of the data.
+    """A discrete spectrum in the units of the data: long-time modulus and modes of a generalised Maxwell solid.
 
     E : long-time modulus.
-    strength : strength of each mode, shape (modes,).
-    tau : time of each mode, descending, shape (modes,).
+    strength : strength of each mode, in the unit of E, shape (modes,).
+    tau : time of each mode, s, descending, shape (modes,); modes may be 0.
     """
 
     E: float

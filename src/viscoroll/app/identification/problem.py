@@ -261,14 +261,17 @@ class Problem:
         whole = np.clip(u, self.low, self.high)
 
         def at(v: Floats) -> Floats:
+            """Return all coordinates, (unknowns,), from those that are free, v."""
             inside = whole.copy()
             inside[free] = v
             return inside
 
         def residuals(v: Floats) -> Floats:
+            """Return the residuals at the free coordinates v, and those of the rule that keeps the combination."""
             return np.append(self.residuals(at(v)), rule @ (v - u[free]))
 
         def jacobian(v: Floats) -> Floats:
+            """Return the derivatives of these residuals by the free coordinates, (rows, free), at v."""
             return np.vstack([self.slopes(self.residuals, at(v), free, _ONE_SIDED_STEP), rule])
 
         if free:

@@ -211,8 +211,9 @@ class Likelihood:
         Exponents are rounded as far as the points keep nearly the same spread.
 
         which : indices of the unknowns.
-        delta_chi2 : bound of the rise of chi2 above the best.
-        Yields powers of the coordinates, shape (unknowns,), the best determined combination first.
+        delta_chi2 : bound of the rise of chi2 above the best, within which points fit.
+        Yields powers of the coordinates, shape (unknowns,), the largest 1 and those of other unknowns 0; the best
+        determined combination first.
         """
         axes = self.axes(delta_chi2)
         within = np.concatenate([axes[i].within for i in which])[:, which]
@@ -247,7 +248,12 @@ class ProfileWalk:
     """
 
     def __init__(self, likelihood: Likelihood, powers: Floats, delta_chi2: float) -> None:
-        """Begin at the best minimum; the arguments are the attributes of these names."""
+        """Begin at the best minimum.
+
+        likelihood : chi2 about the best minimum.
+        powers : powers of the combination whose profile is computed, (unknowns,).
+        delta_chi2 : bound of the rise of chi2 above the best, dimensionless.
+        """
         self.likelihood, self.problem, self.best = likelihood, likelihood.problem, likelihood.best
         self.powers, self.delta_chi2, along = powers, delta_chi2, likelihood.cov @ powers
         self.sd, self.slope = math.sqrt(powers @ along), along / (powers @ along)
@@ -279,10 +285,10 @@ class ProfileWalk:
         return self.visited[-1]
 
     def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
-        """Return whether the rise of chi2 at a minimum is below a part of the bound.
+        """Return whether the rise of chi2 from the best minimum to another is below a part of the bound ``delta_chi2``.
 
-        minimum : the minimum.
-        part : factor of the bound.
+        minimum : the other minimum.
+        part : factor of the bound, dimensionless.
         """
         return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
 
@@ -321,6 +327,11 @@ class ProfileWalk:
         step, found = min(goal * self.sd, _FIRST_STEP), {d: start}
 
         def excess(d: float) -> float:  # the root of the rise is proportional to the distance near the best
+            """Return the root of the rise of chi2 at the distance d minus the root of the bound; 0.0 where they are
+            nearly equal.
+
+            The root of the rise is proportional to the distance near the best.
+            """
             if d not in found:
                 b, *more = sorted(found, key=lambda b: abs(d - b))
                 u = found[b].u

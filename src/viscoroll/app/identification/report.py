@@ -152,7 +152,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
 
 
 def _values_text(values: dict[str, float]) -> str:
-    """Return values by name in one line."""
+    """Return values by name in one line, as "E = 1e+06, mu = 0.3"."""
     return ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
 
 

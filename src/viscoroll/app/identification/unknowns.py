@@ -69,15 +69,17 @@ class Unknown(NamedTuple):
         return {"unit": si_unit(kind.removeprefix(_PREFIX["base"]))} | bound
 
     def to_u(self, value: Any) -> Any:
-        """Return the coordinate of a value."""
+        """Return the coordinate of a value, SI, a number or an array: its logarithm, or value/unit if linear."""
         return np.log(value) if self.unit is None else value / self.unit
 
     def to_value(self, u: Any) -> Any:
-        """Return the value at a coordinate."""
+        """Return the value, SI, at a coordinate u, a number or an array."""
         return np.exp(u) if self.unit is None else u * self.unit
 
     def slope(self, value: float) -> float:
-        """Return the derivative of the value by the coordinate, at a value."""
+        """Return the derivative of the value by the coordinate, SI, at a value: the value itself, or the unit if
+        linear.
+        """
         return value if self.unit is None else self.unit
 
 
@@ -236,5 +238,8 @@ def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) ->
 
 @lru_cache(maxsize=256)
 def _series(strengths: tuple[float, ...], times: tuple[float, ...]) -> Prony:
-    """Return a series, the same object for the same values, so that its table of the law is made once."""
+    """Return a series, the same object for the same values, so that its table of the law is made once.
+
+    strengths, times : of each mode, divided by E and T_ref, as tuples that the cache can look up.
+    """
     return Prony(strengths, times)
