@@ -48,11 +48,12 @@ COMMANDS: dict[str, Command] = {}
 
 
 def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
-    """Return a decorator that adds a function to :data:`COMMANDS`.
+    """Return a decorator that adds a function to :data:`COMMANDS`, so that the program has it as a command.
 
     words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.
     options: options of the command, in the order of its help; a list of them is a group of which one at most may be
-    given.
+        given.
+    Returns a decorator that takes the function of the command and returns it unchanged.
     """
 
     def add(run: CommandFunction) -> CommandFunction:
@@ -63,19 +64,21 @@ def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFun
 
 
 def option(*names: str, **settings: Any) -> Option:
-    """Return an argument of a command.
+    """Return an argument of a command, in the form of :func:`command`.
 
-    names, settings: as of ``ArgumentParser.add_argument``.
+    names: positional name, or names of the option with dashes, as of ``ArgumentParser.add_argument``.
+    settings: keywords of ``ArgumentParser.add_argument``, as type and help.
     """
     return Option(names, settings)
 
 
 def numbers(text: str) -> Any:
-    """Return a float, or an array (n,), of an argument: NUMBER, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or a list of
-    these.
+    """Convert an argument to a float or an array: NUMBER, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or a list of these.
 
     text: the argument; the members of a list are separated by commas.
-    Raises ArgumentTypeError.
+    Returns a float for one NUMBER, else an array (n,) of the numbers of all members in their order; ranges have both
+    ends.
+    Raises ArgumentTypeError for any other form.
     """
     import numpy as np
 
@@ -84,10 +87,11 @@ def numbers(text: str) -> Any:
 
 
 def _numbers_of_member(text: str) -> Any:
-    """Return a float, or the array of a range; raise ArgumentTypeError.
+    """Convert one member of the list of :func:`numbers`.
 
-    text: a member of the list of :func:`numbers`.
-    Returns a float, or an array (n,).
+    text: NUMBER, LOW:HIGH:COUNT or LOW:HIGH:COUNT:log.
+    Returns a float, or of a range an array (COUNT,) in equal steps or, with log, equal ratios.
+    Raises ArgumentTypeError for any other form, and for a range that does not ascend.
     """
     try:
         low, *rest = text.split(":")
@@ -103,9 +107,10 @@ def _numbers_of_member(text: str) -> Any:
 
 
 def roller_of_argument(text: str) -> Any:
-    """Return the scene or the cylinder of a TOML file, or the preset of a name.
+    """Return the roller of an argument: the scene or the cylinder of a TOML file, or the preset of a name.
 
-    text: path of the file, or the name.
+    text: path of the file, or the name, as "paper-section-5".
+    Returns a :class:`viscoroll.Scene`, dimensionless, or a :class:`viscoroll.Cylinder`, in SI units.
     Raises ParameterError for an unknown preset; FileError for a file that cannot be read, or whose name does not end in
     .toml.
     """
@@ -121,16 +126,18 @@ def roller_of_argument(text: str) -> Any:
 def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
     """Return the option of an output file; a path that cannot be written is refused before any work.
 
-    suffixes: allowed suffixes.
+    suffixes: allowed suffixes, with the dot and in lower case.
     name: name of the option; without its dashes it names the argument, "output" for -o.
-    required: whether it must be given.
+    required: whether it must be given; if it need not and is not, the argument is None.
     more: text behind the suffixes in the help.
+    Returns an :class:`Option`, whose argument becomes a Path; nothing is written.
     """
 
     def path(text: str) -> Path:
-        """Return the path of an argument; raises ArgumentTypeError for another suffix or a file that cannot be written.
+        """Convert an argument to the path of the output file, which is not created.
 
-        text: the argument.
+        text: the argument; of a .zarr folder a "/" at its end is left out.
+        Raises ArgumentTypeError for another suffix, a folder that does not exist, and a directory other than a .zarr.
         """
         text = text.rstrip("/") if text.endswith(".zarr/") else text  # as shells complete the name of a folder
         if Path(text).suffix.lower() not in suffixes:

@@ -26,7 +26,7 @@ def doctor(arguments: Namespace) -> int:
     """Print the lines of a problem report: versions, cache, threads, a check of the law, packages.
 
     arguments: parsed command line, not used.
-    Returns 1 if a required package is missing, else 0.
+    Returns True, exit code 1, if a required package is missing, else False, exit code 0.
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()
     names = [re.split(r"[^\w-]", requirement)[0] for requirement in required if "extra ==" not in requirement]
@@ -38,7 +38,12 @@ def doctor(arguments: Namespace) -> int:
 
 
 def _lines() -> Iterator[tuple[str, str]]:
-    """Yield (name, value) of each line of the report but the last, which :func:`doctor` prints."""
+    """Yield (name, text) of each line of the problem report but the last, which :func:`doctor` prints.
+
+    They are: version and folder of the package, Python, system, optional libraries, threads, cache of compiled
+    functions, and a call as a check.
+    Raises ParameterError for a wrong $VISCOROLL_THREADS.
+    """
     from ...core.blocks import thread_count
     from ...kernels.compile.cache import sources_digest
     from ...kernels.compile.folder import cache_root
@@ -91,9 +96,10 @@ def _version(name: str) -> str | None:
 
 
 def _fault_of_cache(folder: Path) -> str:
-    """Return why the cache of compiled functions is not used or cannot be written; "" if it can.
+    """Return why the cache of compiled functions is not used or cannot be written, as the end of a line of the report.
 
     folder: folder of the compiled functions, which need not exist.
+    Returns a text that begins with ";", or "" if the cache is in order.
     """
     from ...kernels.compile.folder import refuse_writable_by_others
 

@@ -21,8 +21,9 @@ from .arguments import FIGURES, command, option, output
 def show(arguments: Namespace) -> None:
     """Print the moduli, relaxation modes and creep modes of each material of a file.
 
-    arguments: parsed command line with file, a TOML file with [material] or [base], or the netCDF of a material.
-    Raises FileError.
+    arguments: parsed command line with file, path of a TOML file with [material] or [base], or of the netCDF of a
+        material.
+    Raises FileError for a file that cannot be read.
     """
     import pandas as pd
 
@@ -67,13 +68,19 @@ def show(arguments: Namespace) -> None:
     output(".toml", ".nc", required=False),
 )  # fmt: skip
 def fit(arguments: Namespace) -> int:
-    """Fit a Prony series to a DMA, print the fit, and write its material if that is wanted.
+    """Fit a Prony series to a DMA, print the fit, and write its material if a path is given.
 
-    arguments: parsed command line with data, units, column, decimal, encoding and mode, as of
-    :func:`viscoroll.read_dma`; temperature, reference, on, modes and misfit, as of :func:`viscoroll.fit_prony`; wlf,
-    three numbers with commas between; nu and name of the material; output, a .toml or .nc path or None; force, whether
-    to write a fit that misses the misfit. Returns 1 if the fit misses the misfit, or has an error above 5 %, and force
-    is not given; else 0. Raises ParameterError and FileError.
+    arguments: parsed command line with
+        data, path of the text file; decimal, "." or ",", and encoding, each None for the default;
+        units, "F,M", and column, a list of "NAME=HEADING", each None without;
+        mode, "tension", "shear" or None; temperature and reference, degrees Celsius, or None; wlf, "C1,C2,T0" or None;
+        on, "both" or "storage"; modes, largest number or None; misfit, root mean square of relative errors;
+        nu, Poisson's ratio, and name of the material;
+        output, path that is written, .toml or .nc, or None; force, whether a fit that misses the misfit is written too,
+        with a mark in its source.
+    Returns 1, and writes nothing, if the fit misses the misfit, or has an error above 5 %, and force is not given; else
+    0.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
@@ -107,9 +114,11 @@ def fit(arguments: Namespace) -> int:
 
 
 def _columns(texts: list[str] | None) -> dict[str, str]:
-    """Return the options --column as a dict, quantity -> heading; raise ParameterError for another form.
+    """Return the options --column as a dict, quantity -> heading.
 
     texts: the options, each "NAME=HEADING"; None without.
+    Returns {} for None.
+    Raises ParameterError for another form; whether NAME is a quantity is checked by :func:`viscoroll.read_dma`.
     """
     pairs = [text.partition("=") for text in texts or ()]
     for name, sign, heading in pairs:
@@ -119,9 +128,10 @@ def _columns(texts: list[str] | None) -> dict[str, str]:
 
 
 def _wlf(text: str) -> vr.WLF:
-    """Return the shift of --wlf C1,C2,T0; raise ParameterError.
+    """Return the shift of the option --wlf.
 
-    text: the option.
+    text: "C1,C2,T0", T0 and C2 in degrees Celsius and K, C1 dimensionless.
+    Raises ParameterError for another form.
     """
     try:
         C1, C2, T0 = (float(part) for part in text.split(","))
@@ -140,11 +150,13 @@ def _wlf(text: str) -> vr.WLF:
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),
 )  # fmt: skip
 def identify(arguments: Namespace) -> None:
-    """Fit the unknowns of a cylinder to measurements, print the report, and write report and figure if wanted.
+    """Fit the unknowns of a cylinder to measurements, print the report, and write report and figure if paths are given.
 
-    arguments: parsed command line with file, a TOML file of measurements; robust, starts and seed, as of
-    :func:`viscoroll.identify`; output, a .txt, .json or .nc path or None; plot, path of a figure or None. Raises
-    ParameterError and FileError.
+    arguments: parsed command line with
+        file, path of a TOML file of measurements;
+        starts, number of searches, seed of their random points, robust, whether outliers count less;
+        output, path of the report, .txt, .json or .nc, or None; plot, path of a figure or None.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ..identification.measurements_toml import read_measurements
     from ..identification.report import as_json

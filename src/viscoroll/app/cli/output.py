@@ -16,10 +16,12 @@ if TYPE_CHECKING:
 def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     """Print or write a result by its ``to_xarray`` and ``to_pandas``.
 
-    arguments: parsed arguments with output and format.
-    result: a result of the library.
-    heading: first line of the text; default: the title of the data.
-    Raises FileError as :func:`deliver`.
+    In the table codes are replaced by their meanings, and rows of equilibria that a load does not have are left out.
+
+    arguments: parsed command line with output and format, as of :func:`deliver`.
+    result: a result of the library that has both methods, as of ``contact``, ``roll`` or ``steady``.
+    heading: first lines of the text; "": the title of the data.
+    Raises FileError if the file cannot be written.
     """
     import numpy as np
 
@@ -38,10 +40,11 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
 def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading: str) -> None:
     """Print a table in the required format, or write it or the dataset in the format of the suffix.
 
-    arguments: parsed command line with output (a path or None) and format.
-    data: dataset for netCDF, which has the meanings of the variables.
-    frame: the same as a table.
-    heading: first line of the text.
+    arguments: parsed command line with output, a path that ends in .txt, .csv or .nc, or None; and format of standard
+        output without a path, "text", "csv" or "json".
+    data: dataset for netCDF, whose ``long_name`` are the meanings of the variables in the text.
+    frame: the same as a table, a row a state.
+    heading: first lines of the text; csv and json have none.
     Raises FileError if the file cannot be written.
     """
     path = arguments.output
@@ -64,11 +67,12 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
 
 
 def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
-    """Return a table as aligned columns below a heading.
+    """Return a table as aligned columns below a heading, or a single row as one line for each number.
 
     frame: the table; without rows the heading stands alone.
     heading: first lines.
-    meanings: name -> meaning; with these a single row is printed as one line for each number.
+    meanings: name of a column without its unit -> meaning, behind the number of a single row; None: always columns.
+    Returns the text, which ends with a line break.
     """
     if frame.empty:
         return f"{heading}\n"

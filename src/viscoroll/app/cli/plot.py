@@ -22,9 +22,10 @@ _SPEEDS = 301
     "plot", option("what", metavar="WHAT", help="FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"), output(*FIGURES)
 )
 def plot(arguments: Namespace) -> None:
-    """Draw a file and write the figure.
+    """Draw the content of a file and write the figure.
 
-    arguments: parsed command line with what, path of the file, a .nc, .toml or .zarr; output, path of the figure.
+    arguments: parsed command line with what, path of the file, a .nc, .toml or .zarr; output, path of the figure, whose
+        suffix is the format: .png, .pdf or .svg.
     Raises ParameterError for another suffix, FileError for a file that cannot be read or written.
     """
     from ...core.plots.style import save
@@ -38,9 +39,10 @@ def plot(arguments: Namespace) -> None:
 
 
 def _figure_of_netcdf(path: str) -> Any:
-    """Return the figure of a result or a material; raise FileError for any other file.
+    """Return the matplotlib figure of a result or of a material.
 
     path: path of a netCDF file.
+    Raises FileError for a file that does not exist, cannot be read, or is no netCDF.
     """
     import xarray as xr
 
@@ -59,10 +61,13 @@ def _figure_of_netcdf(path: str) -> Any:
 
 
 def _figure_of_toml(path: str) -> Any:
-    """Return the figure of the contact law around the extrema of M; of a file without a scene that of its material.
+    """Return the matplotlib figure of what a TOML file describes.
 
-    path: path of a TOML file.
-    Raises FileError.
+    Of a scene or cylinder it is the contact in free rolling over speed, from a thirtieth of the speed of the first
+    extremum of M to thirty times that of the last; of a file without them it is the material.
+
+    path: path of a TOML file with [scene], [cylinder], preset or [material].
+    Raises FileError for a file that cannot be read, ParameterError for an unknown preset.
     """
     import numpy as np
 

@@ -39,6 +39,10 @@ class Parser(argparse.ArgumentParser):
     """A parser that raises UsageError instead of exiting, and prints help texts as they are written."""
 
     def __init__(self, **options: Any) -> None:
+        """Set up the parser; abbreviations of options are refused.
+
+        options: keywords of ``argparse.ArgumentParser``.
+        """
         super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
         # argparse takes a value like -1:1:5 or -1e-3 for an option unless it matches this
         self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
@@ -47,6 +51,10 @@ class Parser(argparse.ArgumentParser):
         self.register("action", None, _StoreOnce)
 
     def error(self, message: str) -> NoReturn:
+        """Raise UsageError, with a hint at --help, in place of an exit.
+
+        message: what does not parse.
+        """
         raise UsageError(f"{message} (see {self.prog} --help)")
 
 
@@ -56,8 +64,7 @@ class _StoreOnce(argparse.Action):
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, name: str | None = None
     ) -> None:
-        """Store the value of an option or a positional argument; raise ArgumentError where the option had one
-        before.
+        """Store the value of an option or a positional argument; an option that had one before is an error.
 
         The signature is that of ``argparse.Action``.
 
@@ -65,6 +72,7 @@ class _StoreOnce(argparse.Action):
         namespace: values of all arguments; its ``stored`` is the set of those that have a value.
         values: the value.
         name: name of the option; None of a positional argument.
+        Raises ArgumentError for the second value of an option.
         """
         stored = vars(namespace).setdefault("stored", set())
         if name is not None and self.dest in stored:
@@ -74,12 +82,13 @@ class _StoreOnce(argparse.Action):
 
 
 def _convert_argument(kind: type, words: str, text: str) -> Any:
-    """Convert the text of an argument to a value; raises ArgumentTypeError where that fails.
+    """Convert the text of an argument to a number; it is the type of numeric arguments in argparse.
 
-    kind: type of the value.
-    words: the type in words, for the error.
+    kind: ``float`` or ``int``, which is called with the text.
+    words: the type in words, for the error, as "a number".
     text: the argument.
     Returns the value, of the type ``kind``.
+    Raises ArgumentTypeError where the text is no such value.
     """
     try:
         return kind(text)
@@ -88,7 +97,10 @@ def _convert_argument(kind: type, words: str, text: str) -> Any:
 
 
 def parser() -> Parser:
-    """Return the parser of the whole command line."""
+    """Return the parser of the whole command line, with a subparser for each command of :data:`.arguments.COMMANDS`.
+
+    The namespace that it returns has the arguments of the command, and ``run``, the function that takes it.
+    """
     program = Parser(
         prog="viscoroll",
         description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
@@ -117,10 +129,11 @@ def parser() -> Parser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the program.
+    """Run the program; its errors and warnings are printed, each in one line, on standard error.
 
-    argv: arguments; default: those of the process.
-    Returns the exit code: 0 success, 1 a check failed, 2 an error.
+    argv: arguments, without the name of the program; None: those of the process.
+    Returns the exit code: 0 success, 1 a check failed, 2 an error, 130 an interrupt by SIGINT, 141 a standard output
+    that was closed by its reader.
     """
     if sys.stdout is None:  # closed by the shell
         sys.stdout = io.StringIO()
@@ -149,8 +162,9 @@ def _run(argv: Sequence[str]) -> int:
     """Parse the arguments and run the command.
 
     argv: the words of the command line without the name of the program.
-    Returns the exit code of the command, 0 or 1.  Raises what the command raises; UsageError where the line does not
-    parse.
+    Returns the exit code of the command, 0 or 1; 0 after --help and --version.
+    Raises what the command raises; UsageError where the line does not parse; ParameterError for a wrong
+    $VISCOROLL_THREADS.
     """
     try:
         arguments = parser().parse_args(argv)
@@ -165,7 +179,7 @@ def _run(argv: Sequence[str]) -> int:
 
 
 def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning in one line.
+    """Print a warning in one line on standard error.
 
     Other arguments are not used: the signature is that of ``warnings.showwarning``.
 
@@ -175,7 +189,7 @@ def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def _print_error(error: object) -> int:
-    """Print an error in one line and return its exit code, 2.
+    """Print an error in one line on standard error and return its exit code, 2.
 
     error: an exception, or its text.
     """
@@ -184,7 +198,7 @@ def _print_error(error: object) -> int:
 
 
 def _print_line(message: object) -> None:
-    """Print a message in one line on standard error, unless it is closed or full.
+    """Print a message in one line on standard error, behind "viscoroll:"; nothing if that is closed or full.
 
     message: an object whose text is printed, its line breaks as blanks.
     """

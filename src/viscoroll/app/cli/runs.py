@@ -25,9 +25,15 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
 def ensemble(arguments: Namespace) -> None:
     """Roll the motions of a run file and print their summaries; without a store estimate time and memory.
 
-    arguments: parsed command line with run_file, a TOML file; output, folder of the results or None; cluster and
-    threads, as of :func:`viscoroll.runs.run_ensemble`.
-    Raises ParameterError and FileError.
+    Blocks of motions that the store already has are not computed again.
+
+    arguments: parsed command line with
+        run_file, path of a TOML file;
+        output, folder of the results, which is written, or None: a trial alone;
+        cluster, "local", "tcp://host:port" or None for threads of this process;
+        threads, number of threads or of local processes, or None for that of the cores.
+    Raises ParameterError for values that are not allowed, as cluster without output; FileError for a file that cannot
+    be read or written.
     """
     run = vr.runs.read_run(arguments.run_file)
     if arguments.output is None:
@@ -52,7 +58,8 @@ def verify(arguments: Namespace) -> int:
     """Compare the files of a results store with their SHA-256 and print the verdict.
 
     arguments: parsed command line with store, folder of the results.
-    Returns 1 if a file differs or is missing, else 0.  Raises FileError for a folder that is no store.
+    Returns True, exit code 1, if a file differs or is missing, else False, exit code 0.
+    Raises FileError for a folder that is no store.
     """
     verdict = vr.runs.verify(arguments.store)
     print(f"{arguments.store}: {verdict}")
@@ -68,9 +75,12 @@ def verify(arguments: Namespace) -> int:
 def sensitivity(arguments: Namespace) -> None:
     """Compute the Sobol indices of a run file, and print or write them.
 
-    arguments: parsed command line with run_file, a TOML file; n, number of base points; output and format, as of
-    :func:`.output.deliver`.
-    Raises ParameterError and FileError.
+    arguments: parsed command line with
+        run_file, path of a TOML file;
+        n, number of base points, which is rounded up to a power of two;
+        output, path or None (standard output), and format, as of :func:`.output.deliver`; beside a file the table is
+        printed too.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ...io.runs.sensitivity import sobol_indices, table
 

@@ -21,9 +21,9 @@ _V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
-    """Return the arguments of a command on a contact: (scene, V, delta, omega).
+    """Return the options that commands on a contact have in common: scene, --V, --delta and --omega.
 
-    kind: type of a speed, a function of the argument's text.
+    kind: function that converts the text of a speed or creepage, as ``float`` or :func:`.arguments.numbers`.
     """
     return (
         SCENE,
@@ -37,9 +37,10 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 def contact(arguments: Namespace) -> None:
     """Print or write the state of the contact for all pairs of speed and creepage.
 
-    arguments: parsed command line with scene, a file or a preset; V, and delta or omega, each a number or a vector;
-    output and format, as of :func:`.output.deliver`.
-    Raises ParameterError and FileError.
+    arguments: parsed command line with scene, path of a TOML file or name of a preset; V, speed, and delta, creepage,
+        or omega, angular velocity, the other None: each a number or (n,), in SI units of a cylinder, else
+        dimensionless; output, path or None (standard output), and format, as of :func:`.output.deliver`.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     import numpy as np
 
@@ -50,11 +51,12 @@ def contact(arguments: Namespace) -> None:
 
 @command("stress", *_speeds(float), TABLE)
 def stress(arguments: Namespace) -> None:
-    """Print or write pressure and shear stress at positions from one end of the contact to the other.
+    """Print or write pressure and shear stress at 101 positions from one end of the contact to the other.
 
-    arguments: parsed command line with scene, a file or a preset; V, and delta or omega, numbers; output and format, as
-    of :func:`.output.deliver`.
-    Raises ParameterError and FileError.
+    arguments: parsed command line with scene, path of a TOML file or name of a preset; V, speed, and delta, creepage,
+        or omega, angular velocity, the other None: numbers, in SI units of a cylinder, else dimensionless; output, path
+        or None (standard output), and format, as of :func:`.output.deliver`.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     import numpy as np
 
@@ -79,9 +81,13 @@ def stress(arguments: Namespace) -> None:
 def roll(arguments: Namespace) -> None:
     """Integrate a motion without a drive, and print or write it.
 
-    arguments: parsed command line with scene, a file or a preset; V0 and omega0, start speeds; t, output times; output
-    and format, as of :func:`.output.deliver`.
-    Raises ParameterError and FileError.
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V0 and omega0, speed and angular velocity at the start, and t, output times, a number or (n,): in SI units of a
+        cylinder, else dimensionless;
+        output, path or None (standard output), and format, as of :func:`.output.deliver`; beside a file the summary of
+        the motion is printed.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
@@ -104,11 +110,14 @@ def roll(arguments: Namespace) -> None:
 def steady(arguments: Namespace) -> None:
     """Print or write the equilibria of rolling under each load, and why a load has none.
 
-    A load without an equilibrium is a warning where the output is no text.
+    The reasons, of at most three loads, stand above the table; where the output is a file, csv or json they are
+    warnings.
 
-    arguments: parsed command line with scene, a file or a preset; force, torque, slope and V, numbers, vectors or None;
-    output and format, as of :func:`.output.deliver`.
-    Raises ParameterError and FileError.
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        force, torque, V, in SI units of a cylinder, else dimensionless, and slope, rad: numbers, (n,) or None;
+        output, path or None (standard output), and format, as of :func:`.output.deliver`.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     import numpy as np
 
@@ -132,8 +141,8 @@ def steady(arguments: Namespace) -> None:
 def validity(arguments: Namespace) -> None:
     """Print which assumptions of the model hold.
 
-    arguments: parsed command line with scene, a file or a preset; V, speed of the axis; omega, angular velocity or
-    None.
-    Raises ParameterError and FileError.
+    arguments: parsed command line with scene, path of a TOML file or name of a preset; V, speed of the axis, and omega,
+        angular velocity, or None: numbers, in SI units of a cylinder, else dimensionless.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read.
     """
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

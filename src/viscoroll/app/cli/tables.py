@@ -17,9 +17,10 @@ _GRID = (".nc", ".cdf", ".csv", ".txt", ".mat")
 
 
 def _low_high(text: str) -> tuple[float, ...]:
-    """Return the numbers of an argument LOW:HIGH; raise ArgumentTypeError.
+    """Convert an argument LOW:HIGH to a tuple of its numbers; their count and order are checked later.
 
     text: the argument.
+    Raises ArgumentTypeError for a part that is no number.
     """
     try:
         return tuple(map(float, text.split(":")))
@@ -44,11 +45,14 @@ def _print_size(path: Path) -> None:
     output(*_LAW),
 )  # fmt: skip
 def law(arguments: Namespace) -> None:
-    """Write the law of a material, pair or cover, or of every alpha of a range.
+    """Write the law of a material, pair or cover, or of every alpha of a range, and print the size of the file.
 
-    arguments: parsed command line with file, of the material, or None; alpha, (low, high), or None; output, path whose
-    suffix is the format.
-    Raises ParameterError and FileError.
+    arguments: parsed command line with
+        file, path of a TOML file or of the netCDF of a material, or None;
+        alpha, (low, high) of alpha, dimensionless, in place of file, or None;
+        output, path that is written; its suffix is the format: .nc, .cdf, .h or .json.
+    Raises ParameterError for both or none of file and alpha, or a range out of bounds; FileError for a file that cannot
+    be read or written.
     """
     from ...io.config import read_law_source
 
@@ -67,10 +71,16 @@ def law(arguments: Namespace) -> None:
     output(*_GRID),
 )  # fmt: skip
 def build(arguments: Namespace) -> None:
-    """Compute a grid of the contact and write it.
+    """Compute a grid of the contact over speed and creepage, write it, and print the size of the file.
 
-    arguments: parsed command line with scene, a file or a preset; V, delta and alpha, nodes of the axes, alpha perhaps
-    None; method, "table" or "direct"; output, path whose suffix is the format. Raises ParameterError and FileError.
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V, delta and alpha, nodes of the axes, each a number or (n,), alpha None without a third axis; V is in m/s of a
+        cylinder, dimensionless of a scene, delta and alpha are dimensionless;
+        method, "table" or "direct";
+        output, path that is written; its suffix is the format: .nc, .cdf, .csv, .txt or .mat.
+    Raises ParameterError for nodes or a method that are not allowed, FileError for a file that cannot be read or
+    written.
     """
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
     vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
@@ -79,10 +89,10 @@ def build(arguments: Namespace) -> None:
 
 @command("tables info", FILE)
 def info(arguments: Namespace) -> None:
-    """Print what a table file contains.
+    """Print what a table file contains, on standard output.
 
     arguments: parsed command line with file, path of a law or a grid.
-    Raises FileError.
+    Raises FileError for a file that cannot be read or is no table.
     """
     print(vr.tables.info(arguments.file))
 
@@ -94,7 +104,8 @@ def validate(arguments: Namespace) -> int:
     """Check a table file at random points and print the differences.
 
     arguments: parsed command line with file, path of a law or a grid; n, number of points.
-    Returns 1 if an error is larger than the file states, else 0.  Raises ParameterError and FileError.
+    Returns True, exit code 1, if an error is larger than the file states, else False, exit code 0.
+    Raises ParameterError for n, FileError for a file that cannot be read or is no table.
     """
     from ...io.tables.check import Report, check_table
 
@@ -106,10 +117,13 @@ def validate(arguments: Namespace) -> int:
 
 @command("export", FILE, output(*dict.fromkeys(_LAW + _GRID)))
 def export(arguments: Namespace) -> None:
-    """Write the results of a run, or a table, in another format.
+    """Write the results of a run, or a table, in another format, and print the size of the new file.
 
-    arguments: parsed command line with file, a results store or a table file; output, path whose suffix is the format.
-    Raises ParameterError for a suffix that the content does not have, and FileError.
+    arguments: parsed command line with
+        file, path of a folder with the results of a run, or of a law or a grid;
+        output, path that is written; its suffix is the format, .nc for results.
+    Raises ParameterError for a suffix that the content does not have; FileError for a file that cannot be read or
+    written.
     """
     path = arguments.output
     if not Path(arguments.file).is_dir():
@@ -131,13 +145,17 @@ def export(arguments: Namespace) -> None:
     output(".fmu"),
 )  # fmt: skip
 def fmu(arguments: Namespace) -> None:
-    """Build an FMU of a cylinder or a law.
+    """Build an FMU of a cylinder or a law, and print the size of the file.
 
-    A dimensionless scene gives its law alone, with a warning.
+    Of a dimensionless scene the FMU has the law alone, with a warning.
 
-    arguments: parsed command line with file, of a cylinder, a material or a law; model, "Roller" or "ContactElement";
-    fmi, 2 or 3; output, path of the FMU.
-    Raises ParameterError, FileError and MissingDependencyError.
+    arguments: parsed command line with
+        file, path of a TOML file with a cylinder, a material or a scene, of a law, or of the netCDF of a material;
+        model, "Roller" or "ContactElement";
+        fmi, version of the standard, 2 or 3;
+        output, path of the FMU that is written.
+    Raises ParameterError for another model or version, FileError for a file that cannot be read or written, and
+    MissingDependencyError without fmpy or a C compiler.
     """
     from ...core.sections import read_toml
     from ...io.config import SCENES, read_law_source, read_roller

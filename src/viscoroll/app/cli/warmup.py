@@ -14,7 +14,7 @@ from .arguments import command
 
 @command("warmup")
 def warm_up(arguments: Namespace) -> None:
-    """Compile all kernels into the cache by small calls, with a progress bar.
+    """Compile all kernels into the cache by small calls, with a progress bar, and print their number and the time.
 
     arguments: parsed command line, not used.
     """
@@ -37,7 +37,8 @@ def warm_up(arguments: Namespace) -> None:
 def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """Yield (name, call) of small calls that together use all kernels.
 
-    Motions use the kernels of contacts, and all motions have one integrator.
+    Motions use the kernels of contacts, and all motions have one integrator.  A call takes no arguments; its result is
+    not used.
     """
     from ...motion import flow
 

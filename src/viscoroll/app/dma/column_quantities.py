@@ -25,12 +25,12 @@ _ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
 class Column(NamedTuple):
     """A column of a known quantity.
 
-    position, heading : index and heading in its table.
+    position, heading : index from 0 and heading in its table.
     name : name of its quantity, a key of :data:`.vocabulary.UNITS`.
     mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
     log : whether its numbers are logarithms to base 10.
-    unit : unit in which its numbers are.
-    stated : whether the file or the user gives the unit, or it is assumed.
+    unit : unit in which its numbers are written, of the file, the user, or assumed; "" where none can be assumed.
+    stated : whether the file or the user gives the unit; False: it is assumed.
     """
 
     position: int
@@ -43,7 +43,11 @@ class Column(NamedTuple):
 
     @property
     def quantity(self) -> str:
-        """What its numbers become: frequency of an angular one, modulus of a compliance, tan delta of a phase angle."""
+        """Name of what its numbers are converted to, as "storage" or "frequency".
+
+        An angular frequency counts as a frequency, a compliance as the modulus of the same name, a phase angle as tan
+        delta; "reduced" stays in the name.
+        """
         name = self.name.replace("angular ", "").removesuffix(" compliance")
         return "tan delta" if name == "phase angle" else name
 
@@ -51,13 +55,14 @@ class Column(NamedTuple):
 def columns_of(
     table: Table, named: Mapping[str, str], overruling: Mapping[str, str], defaults: Mapping[str, str]
 ) -> tuple[list[Column], dict[str, str]]:
-    """Find the columns whose quantity is known.
+    """Find the columns of a table whose quantity is known: the user named it, or the heading says it and its unit fits.
 
     table : table with headings.
-    named : quantity -> heading, of columns that the user named.
-    overruling : quantity -> unit that overrules the file.
+    named : quantity -> heading, of columns that the user named; keys of :data:`.vocabulary.UNITS`, here and below.
+    overruling : quantity -> unit in place of that of the file.
     defaults : quantity -> unit where the file gives none.
-    Returns the columns, and headings of the others -> why they are left out ("": no quantity is known of them).
+    Returns (the columns of known quantities, in the order of the table; heading of each other column -> why it is left
+    out, "" where no quantity is known of it).
     Raises ParameterError for a heading that the table does not have.
     """
     owners = {_index(table, heading): name for name, heading in named.items()}
@@ -82,7 +87,12 @@ def columns_of(
 
 
 def _index(table: Table, heading: str) -> int:
-    """Return the index of the column with a heading, with its unit or without; raise ParameterError without one."""
+    """Return the index of the column that the user named by its heading.
+
+    table : table with headings.
+    heading : the heading, with its unit or without.
+    Raises ParameterError, with the headings of the table, where none is it.
+    """
     found = find_column(table, heading)
     if found is None:
         allowed = f"one of {', '.join(map(repr, table.headings))}{suggestion(str(heading), table.headings)}"
@@ -91,10 +101,11 @@ def _index(table: Table, heading: str) -> int:
 
 
 def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
-    """Return why the unit of a heading contradicts the quantity that the heading may name, "" where it does not.
+    """Return why the unit of a heading contradicts the quantity that the heading may name.
 
-    meaning : the quantity and its unit.
-    overruling : quantity -> unit that overrules the file.
+    meaning : the quantity that the heading may name, with the unit that stands in the heading.
+    overruling : quantity -> unit that the user gives in place of that of the file; these are not checked.
+    Returns a text for the user; "" where the unit fits, is missing, or is replaced by the user.
     """
     name, _, unit, _ = meaning
     if name in overruling or unit in NO_UNIT:
@@ -111,12 +122,16 @@ def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
 
 
 def numbers_of(table: Table, column: Column) -> Numbers:
-    """Return the numbers of a column in the unit of its quantity: rad/s, Pa, 1/Pa, 1 (tan delta) or degC.
+    """Return the numbers of a column, converted to the unit of its quantity.
+
+    Logarithms become numbers, frequencies in cycles angular ones, and phase angles their tangents.
 
     table : the table that has the column.
     column : a column whose quantity is known.
-    Returns :class:`Numbers`, (n,): the values, and half of the last digit that the file states of each.
-    Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed.
+    Returns :class:`Numbers` in rad/s, Pa, 1/Pa, degrees Celsius, or dimensionless for tan delta: the values, (n,), and
+    half a unit of the last digit that the file states of each, converted in the same way, (n,).
+    Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed: of
+    compliances, of temperatures above 200, and of phase angles that may be in radians.
     """
     name, unit = column.name, column.unit
     values, half = table.numbers(column.position)

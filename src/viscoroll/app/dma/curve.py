@@ -34,7 +34,11 @@ _APART = 1e-12
 
 
 class Curve(NamedTuple):
-    """Storage and loss modulus over angular frequency, ascending, all positive."""
+    """Storage and loss modulus over angular frequency, ascending, all positive.
+
+    omega : angular frequencies, rad/s, ascending, shape (n,); they may repeat.
+    storage, loss : moduli at these, shape (n,), both in the unit that the caller used.
+    """
 
     omega: Floats
     storage: Floats
@@ -47,26 +51,29 @@ class Curve(NamedTuple):
 
     @property
     def shortest(self) -> float:
-        """Shortest time of a mode that the data determine, s: any, since the loss modulus of a mode falls as omega
-        only.
+        """Shortest time of a mode that the data determine, s: 0, which allows any.
+
+        The loss modulus of a fast mode is proportional to omega far below its peak, so that even such a mode shows in
+        data.
         """
         return 0.0
 
     @property
     def values(self) -> Floats:
-        """The measured moduli, a row each, shape (2, n)."""
+        """The measured moduli, in the unit of the data, shape (2, n): row 0 is the storage, row 1 the loss modulus."""
         return np.array(self[1:])
 
     @property
     def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1 in each row."""
+        """Response of a long-time modulus of 1 in each row of ``values``: 1 in the storage, 0 in the loss modulus."""
         return 1.0, 0.0
 
     def responses(self, tau: Floats) -> Floats:
         """Return the responses of modes of strength 1, z^2/(1 + z^2) and z/(1 + z^2) with z = omega tau.
 
         tau : times of the modes, s, shape (modes,).
-        Returns them for each row, dimensionless, shape (2, n, modes).
+        Returns them dimensionless, shape (2, n, modes): row 0 of the storage, row 1 of the loss modulus, at the n
+        points.
         """
         z = self.omega[:, None] * tau
         loss = 1.0 / (z + 1.0 / z)
@@ -75,23 +82,27 @@ class Curve(NamedTuple):
     def slopes(self, tau: Floats, responses: Floats) -> Floats:
         """Return the derivatives of the responses by ln tau.
 
-        tau : times of the modes, s, shape (modes,).
-        responses : ``responses(tau)``.
-        Returns them in the shape of the responses.
+        tau : times of the modes, s, shape (modes,); not used, as the responses suffice.
+        responses : what :meth:`responses` returns for these times, shape (2, n, modes).
+        Returns the derivatives, dimensionless, shape (2, n, modes).
         """
         storage, loss = responses
         return np.array([2.0 * loss * loss, loss * (1.0 - 2.0 * storage)])
 
     @property
     def fluid(self) -> ParameterError:
-        """The error where no long-time modulus is left."""
+        """The ParameterError, not raised here, for data of which no fit has a long-time modulus."""
         found = f"has no plateau at low frequencies ({self.storage[0]:g} at omega = {self.omega[0]:g})"
         return described_error("storage", found, "that of a solid, whose long-time modulus is positive")
 
 
 class Relaxation(NamedTuple):
-    """Relaxation modulus over time, ascending, all positive.  Properties and methods are those of :class:`Curve`,
-    one row.
+    """Relaxation modulus over time, ascending, all positive.
+
+    Properties and methods are those of :class:`Curve`, with one row in place of two.
+
+    t : times since the strain was applied, s, ascending, shape (n,).
+    relaxation : relaxation modulus at these, shape (n,), in the unit that the caller used.
     """
 
     t: Floats
@@ -99,32 +110,49 @@ class Relaxation(NamedTuple):
 
     @property
     def band(self) -> tuple[float, float]:
+        """Reciprocals of the last and of the first time, 1/s, which stand for the lowest and the highest angular
+        frequency.
+        """
         return float(1.0 / self.t[-1]), float(1.0 / self.t[0])
 
     @property
     def shortest(self) -> float:
-        """Half of the first time, s: of a mode of a tenth exp(-10) is left there, and noise alone would set its
-        strength.
+        """Shortest time of a mode that the data determine, s: half of the first time.
+
+        A mode whose time is a tenth of the first time has fallen to exp(-10) there: noise alone would set its strength.
         """
         return 0.5 * float(self.t[0])
 
     @property
     def values(self) -> Floats:
+        """The relaxation modulus, in the unit of the data, shape (1, n)."""
         return np.array(self[1:])
 
     @property
     def constant(self) -> tuple[float, ...]:
+        """Response of a long-time modulus of 1 in the row of ``values``: 1."""
         return (1.0,)
 
     def responses(self, tau: Floats) -> Floats:
-        """Return exp(-t/tau), shape (1, n, modes)."""
+        """Return the responses of modes of strength 1, exp(-t/tau).
+
+        tau : times of the modes, s, shape (modes,).
+        Returns them dimensionless, shape (1, n, modes).
+        """
         return np.exp(-self.t[:, None] / tau)[None]
 
     def slopes(self, tau: Floats, responses: Floats) -> Floats:
+        """Return the derivatives of the responses by ln tau, (t/tau) exp(-t/tau).
+
+        tau : times of the modes, s, shape (modes,).
+        responses : what :meth:`responses` returns for these times.
+        Returns the derivatives, dimensionless, shape (1, n, modes).
+        """
         return (self.t[:, None] / tau) * responses
 
     @property
     def fluid(self) -> ParameterError:
+        """The ParameterError, not raised here, for data of which no fit has a long-time modulus."""
         found = f"has no plateau at long times ({self.relaxation[-1]:g} at t = {self.t[-1]:g})"
         return described_error("relaxation", found, "that of a solid, whose long-time modulus is positive")
 
@@ -135,9 +163,11 @@ _Data = TypeVar("_Data", Curve, Relaxation)
 class KramersKronig(NamedTuple):
     """Ratio of the measured loss modulus to the one that the slope of the storage modulus gives.
 
-    omega : angular frequency, rad/s, shape (n,).
-    ratio : E''/((pi/2) dE'/d ln omega); infinite where E' does not rise, NaN where there is no slope, shape (n,).
-    median : median of the ratios; near 1 where the spectrum is broad and the data are sound.
+    omega : angular frequency, rad/s, ascending, shape (n,).
+    ratio : E''/((pi/2) dE'/d ln omega), dimensionless, shape (n,); infinite where E' does not rise, NaN where the
+        neighbours of a point are all of one frequency, so that there is no slope.
+    median : median of the ratios that are not NaN, NaN if all are; near 1 where the spectrum is broad and the data are
+        sound.
     """
 
     omega: Floats
@@ -146,12 +176,13 @@ class KramersKronig(NamedTuple):
 
 
 def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_POINTS) -> _Data:
-    """Check columns and sort them by the first.
+    """Check measured columns and return them as a curve, sorted by frequency or time.
 
     kind : :class:`Curve` or :class:`Relaxation`.
-    columns : fields of the curve by the names under which the caller gave them, in the order of ``kind``.
+    columns : name -> numbers, (n,) or with units, in the order of the fields of ``kind``.  The names are keys of
+        :data:`UNITS`: omega in rad/s, t in s; moduli without a unit may be in any, as long as it is the same.
     fewest : least number of points.
-    Returns the curve.
+    Returns the curve, of the class ``kind``, points of one frequency or time in the order in which they were given.
 
     Raises
     ------
@@ -170,23 +201,27 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
 
 
 def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int = FEWEST_POINTS) -> Curve:
-    """Return storage and loss modulus as a curve.
+    """Check storage and loss modulus and return them as a curve, sorted by frequency.
 
-    omega : angular frequencies, rad/s, shape (n,).
+    omega : angular frequencies, rad/s, shape (n,), in any order.
     storage, loss : moduli in one unit, shape (n,).
     fewest : least number of points.
-    Raises the errors of :func:`data_of`.
+    Returns the :class:`Curve`.
+    Raises ParameterError for values that are not positive or not finite, other shapes, and too few points.
     """
     return data_of(Curve, {"omega": omega, "storage": storage, "loss": loss}, fewest)
 
 
 def thinned(data: _Data) -> _Data:
-    """Average a curve of more than :data:`MOST_POINTS` points in logarithmic bins; return a shorter curve as it is.
+    """Average a curve of more than :data:`MOST_POINTS` points in logarithmic bins, so that fits of long records stay
+    fast.
 
     In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of measurement that is 0
     on average stays so.
 
-    data : a curve.
+    data : a :class:`Curve` or a :class:`Relaxation`, ascending.
+    Returns a curve of the same class with one point for each of the 500 bins that has points; ``data`` itself if it has
+    no more than :data:`MOST_POINTS` points.
     """
     x = np.log(data[0])
     if x.size <= MOST_POINTS:
@@ -202,12 +237,13 @@ def thinned(data: _Data) -> _Data:
 def kramers_kronig(curve: Curve) -> KramersKronig:
     """Compare the loss modulus with the local form of the Kramers-Kronig relations, E'' = (pi/2) dE'/d ln omega.
 
-    curve : storage and loss modulus.
-    Returns :class:`KramersKronig`, the ratio of both sides at each point.
+    It shows whether storage and loss modulus can be of one material.  The form is exact for a power law in the limit of
+    small exponents, and good where E' bends little within a decade (H. C. Booij and G. P. J. M. Thoone, Rheologica Acta
+    21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is that of a straight line in ln E' over ln omega through the
+    neighbours of a point: those within a quarter of a decade, and at least the five nearest.
 
-    The form is exact for a power law in the limit of small exponents, and good where E' bends little within a decade
-    (H. C. Booij and G. P. J. M. Thoone, Rheologica Acta 21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is
-    that of a straight line in ln E' through the neighbours of a point.
+    curve : storage and loss modulus, n points.
+    Returns :class:`KramersKronig`: the measured divided by the computed loss modulus at each point, and their median.
     """
     x, y = np.log(curve.omega), np.log(curve.storage)
     ratio, nearest = np.empty_like(x), min(_NEIGHBOURS, x.size) - 1

@@ -63,9 +63,11 @@ class DynamicModuli(Result):
         return self.temperature is None or float(np.ptp(self.temperature)) <= SAME_TEMPERATURE
 
     def __iter__(self) -> Iterator[Floats]:
-        """Yield omega, storage and loss, so that ``omega, storage, loss = read_dma(path)`` works; three arrays (n,).
+        """Return an iterator over omega, storage and loss, (n,) each, so that ``omega, storage, loss = read_dma(path)``
+        works.
 
-        Warns where the record has temperatures or moduli of shear, which these three arrays do not state.
+        Warns with ModelWarning where the record has several temperatures or moduli of shear, which these arrays do not
+        state.
         """
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
@@ -81,13 +83,19 @@ class DynamicModuli(Result):
         return 3
 
     def __getitem__(self, name: Any) -> Any:
-        """A field by its name, or omega, storage, loss by their place."""
+        """Return a field by its name, or omega, storage, loss by their place.
+
+        name : name of a field; 0, 1 or 2; or a slice, which gives a tuple of the arrays.
+        """
         if isinstance(name, (int, slice)):
             return (self.omega, self.storage, self.loss)[name]
         return super().__getitem__(name)
 
     def to_xarray(self) -> xr.Dataset:
-        """Return all columns over ``point`` as a dataset, with their units; mode, source and notes are attributes.
+        """Return the points as a dataset.
+
+        Its variables are omega (rad s-1), storage and loss (Pa) and, where the file has one, temperature (degC), each
+        over the dimension ``point``; its attributes are title, mode, source and notes.
 
         Examples
         --------
@@ -104,7 +112,9 @@ class DynamicModuli(Result):
         return xr.Dataset(data, attrs=about)
 
     def _figure(self) -> Figure:
-        """Return the figure of storage and loss modulus over angular frequency, both axes logarithmic."""
+        """Return the matplotlib figure of storage and loss modulus, Pa, over angular frequency, rad/s, both axes
+        logarithmic.
+        """
         from ...core.plots.style import new_figure
 
         figure, axes = new_figure(f"{self.source or 'Dynamic moduli'}, {self.mode}")
@@ -114,7 +124,11 @@ class DynamicModuli(Result):
         return figure
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report: the points, the columns that they are from, the notes."""
+        """Return title and rows of the printed report.
+
+        Returns (source, number of points, range of omega, mode and temperatures in one line; two rows: the columns with
+        their units, and the notes).
+        """
         words = [f"{self.omega.size} points", f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s"]
         words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")
         if self.temperature is not None:

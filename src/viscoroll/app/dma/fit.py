@@ -28,7 +28,7 @@ _Curve = TypeVar("_Curve", Curve, Relaxation)
 
 
 class _Options(TypedDict, total=False):
-    """Options of :func:`fit_prony` that hold for columns and for records alike."""
+    """Options of :func:`fit_prony`, described there, that hold for columns and for records alike."""
 
     misfit: float
     temperature: Numbers | None
@@ -61,25 +61,28 @@ def fit_prony(
 ) -> Fit:
     """Fit a Prony series to storage and loss modulus.
 
-    Non-negative least squares of the relative errors of both, on times from half a decade to a decade beyond the
-    data; as few modes as the misfit needs, then their times are moved too.
+    Non-negative least squares of the relative errors of both, on times that reach half a decade or a decade beyond the
+    data (at the slow end less, down to half a decade inside, where else no long-time modulus is left); as few modes as
+    the misfit needs, then their times are moved too.
 
     Parameters
     ----------
-    omega : angular frequencies, rad/s, in any order, repeated or not; or what :func:`viscoroll.read_dma` returns,
-        alone: its moduli, temperatures, mode and source are then taken.
-    storage, loss : storage and loss modulus at them, > 0, both in one unit.
+    omega : angular frequencies, rad/s, > 0, (n,), in any order, repeated or not; or what :func:`viscoroll.read_dma`
+        returns, alone: its moduli, temperatures, mode and source are then taken.
+    storage, loss : storage and loss modulus at them, > 0, (n,), both in one unit.
     modes : largest number of modes; fewer are returned only where non-negative strengths have no use for more.
         Default: as few as ``misfit`` needs, or, where it cannot be reached, as few as come within 5 % of the best.
-    misfit : root mean square of the relative errors that E' and E'' may each have.
-    temperature : degrees Celsius: one of all points, one a point as measured (those within 0.5 K of one another are one
-        curve), or one a curve where the columns are lists of curves.  The curves are shifted to ``reference`` first.
-    reference : temperature of the master curve, at which its times are.  Default: where a given shift is 1 (T0 of a
-        :class:`WLF`, the temperature of a factor of 1), if it is among the temperatures; else the middle one of the
-        curves.  With a list of factors it must be one of the curves' temperatures.
-    shift : factors a_T, one a curve in the order of the curves (of points: in the order in which the temperatures
-        come), or a function of the temperature.  They are divided by that of the reference, so that constants may be
-        those of another temperature.  Default: found from the overlap of neighbouring curves.
+    misfit : root mean square of the relative errors that E' and E'' may each have, dimensionless (0.01 is 1 %).
+    temperature : degrees Celsius: one number of all points; one a point, (n,), as measured (those within 0.5 K of one
+        another are one curve); or one a curve, (curves,), where the columns are lists of curves.  None: not known, the
+        points are of one curve.  The curves are shifted to ``reference`` first.
+    reference : temperature of the master curve, degrees Celsius, at which its times are.  Default: where a given shift
+        is 1 (T0 of a :class:`WLF`, the temperature of a factor of 1), if it is among the temperatures; else the middle
+        one of the curves.  With a list of factors it must be one of the curves' temperatures.
+    shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves (of points: in the order in which the
+        temperatures come), or a function that takes a temperature in degrees Celsius and returns a_T.  They are divided
+        by that of the reference, so that constants may be those of another temperature.  None: found from the overlap
+        of neighbouring curves.
     on : "both", or "storage" to find the shifts from the overlap of the storage modulus alone, where the loss modulus
         is noisy or does not shift alike.
     mode : "tension" (default) or "shear", where the moduli are G' and G''; :meth:`Fit.material` makes E of them.
@@ -88,14 +91,15 @@ def fit_prony(
     Returns
     -------
     Fit
-        ``print`` shows a report.
+        ``print`` shows a report; E, G, storage and loss are in the unit of the data, times in s.
 
     Raises
     ------
     ParameterError
-        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a curve that does
-        not level off at low frequencies; neighbouring curves that do not overlap; factors that rise with the
-        temperature; a reference of which the factors say nothing.
+        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a curve that does not
+        level off at low frequencies; neighbouring curves that do not overlap; factors that rise with the temperature; a
+        reference of which the factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode`` that are not allowed;
+        ``reference`` or ``shift`` without ``temperature``; another ``mode`` than that of the record.
 
     Warns
     -----
@@ -158,12 +162,15 @@ def fit_relaxation(
 
     Parameters
     ----------
-    t : times since the strain was applied, s, > 0, in any order.  Leave out those of the ramp: E(t) is that of a step.
-    relaxation : relaxation modulus, stress over strain, > 0, in one unit.
-    modes, source : as of :func:`fit_prony`.
-    misfit : root mean square of the relative errors that E(t) may have.  Rolling resistance is made of E'', which
-        follows from the slope of E(t): of the usual slopes 1 % of E(t) leaves 10 to 30 % of E'' open, 0.3 % some 5 %.
-    temperature : temperature of the test, degrees Celsius; it stays with the material.
+    t : times since the strain was applied, s, > 0, (n,), in any order.  Leave out those of the ramp: E(t) is that of a
+        step.
+    relaxation : relaxation modulus at them, stress over strain, > 0, (n,), in one unit.
+    modes : largest number of modes; None: as few as ``misfit`` needs, or as few as come within 5 % of the best.
+    source : source of the data, in words; it stays with the material.
+    misfit : root mean square of the relative errors that E(t) may have, dimensionless (0.003 is 0.3 %).  Rolling
+        resistance is made of E'', which follows from the slope of E(t): of the usual slopes 1 % of E(t) leaves
+        10 to 30 % of E'' open, 0.3 % some 5 %.
+    temperature : temperature of the test, degrees Celsius, or None where it is not known; it stays with the material.
     mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
 
     Returns
@@ -176,7 +183,7 @@ def fit_relaxation(
     ------
     ParameterError
         Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a modulus that rises,
-        or does not level off at long times.
+        or does not level off at long times; ``modes``, ``misfit`` or ``mode`` that are not allowed.
 
     Examples
     --------
@@ -198,19 +205,22 @@ def fit_relaxation(
 
 
 def _mode(mode: Any) -> Mode:
-    """Return which modulus was measured; raise ParameterError for another text."""
+    """Check which modulus was measured and return it; raise ParameterError for anything but "tension" or "shear"."""
     check_choice("mode", mode, "tension", "shear")
     return mode
 
 
 def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
-    """Fit a series to measured moduli.
+    """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation` have in common.
 
     curve : measured moduli over frequency or time, all points.
     modes : largest number of modes; None: as few as the misfit needs.
-    misfit : root mean square of the relative errors that each modulus may have.
-    Returns (the data that were fitted, perhaps thinned; the fields of a fit that state its data and its series, by
-    name; the root mean square of the relative errors of each modulus).
+    misfit : root mean square of the relative errors that each modulus may have, > 0.
+    Returns (the data that were fitted, thinned if they have more than 1000 points; the arguments of
+    :class:`.fit_results.SeriesFit` that state data and series, by name; the root mean square of the relative errors of
+    each modulus, (storage, loss) or (relaxation,)).
+    Raises ParameterError for ``misfit`` or ``modes`` out of range, points that spread over more than
+    :data:`MOST_SPREAD`, and data without a long-time modulus.
     """
     target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)

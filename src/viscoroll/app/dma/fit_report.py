@@ -20,6 +20,8 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
     """Return the title and the lines that ``print(fit)`` shows.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    Returns (title, a sentence with the number of modes and points and the range of the data; the lines below, in
+    order). The lines on wider grids are computed at the first call.
     """
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
@@ -28,7 +30,10 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 
 
 def _rows(fit: Any) -> Iterator[SummaryRow]:
-    """Yield the lines of the report below its title, as :class:`SummaryRow`.
+    """Yield the lines of the report below its title, each a :class:`SummaryRow`.
+
+    They are: constants, thinning, misfit, the lines of this kind of fit, modes outside the data, fits on wider grids,
+    and the table of modes with strengths divided by the long-time modulus and times in s.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """
@@ -61,12 +66,19 @@ def _rows(fit: Any) -> Iterator[SummaryRow]:
 
 
 def symbol_of(fit: Any) -> str:
-    """Return E, or G where the data are of shear."""
+    """Return the symbol of the modulus of a ``fit``: "G" where ``fit.mode`` is "shear", else "E"."""
     return "G" if fit.mode == "shear" else "E"
 
 
 def of_dynamic(fit: Any) -> list[SummaryRow]:
-    """Return the lines on Kramers-Kronig and shifts of a ``fit``, a :class:`viscoroll.Fit`."""
+    """Return the lines of the report on the consistency of storage and loss modulus, and on the shifts of a master
+    curve.
+
+    fit : a :class:`viscoroll.Fit`.
+    Returns a list of :class:`SummaryRow`: one on Kramers-Kronig; of curves at two or more temperatures also the shift
+    factors, combined temperatures, the mismatch of neighbours where shifts were found by their overlap, and each shift
+    that the overlap leaves open.
+    """
     symbol = symbol_of(fit)
     rows = [SummaryRow(f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol))]
     if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
@@ -89,17 +101,21 @@ def of_dynamic(fit: Any) -> list[SummaryRow]:
 
 
 def of_relaxation(fit: Any) -> list[SummaryRow]:
-    """Return the line on the error of the loss modulus of a ``fit``, a :class:`viscoroll.RelaxationFit`."""
+    """Return the line of the report on the error of the loss modulus, in a list of one :class:`SummaryRow`.
+
+    fit : a :class:`viscoroll.RelaxationFit`.
+    """
     symbol = symbol_of(fit)
     text = f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more"
     return [SummaryRow("", text)]
 
 
 def _kramers_kronig(median: float, symbol: str) -> str:
-    """Return a sentence on whether storage and loss modulus go together.
+    """Return a sentence on whether storage and loss modulus can be of one material.
 
-    median : median of the Kramers-Kronig ratio.
-    symbol : E or G.
+    median : median of the Kramers-Kronig ratio, measured over computed loss modulus; NaN where it could not be
+        computed.
+    symbol : "E" or "G".
     """
     if np.isnan(median):
         return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
@@ -109,7 +125,7 @@ def _kramers_kronig(median: float, symbol: str) -> str:
 
 
 def _outside(fit: Any) -> str:
-    """Return a sentence on the modes whose times lie outside the data.
+    """Return a sentence on the modes whose times lie outside the data, with their share of the sum of all strengths.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """

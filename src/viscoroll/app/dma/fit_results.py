@@ -35,7 +35,7 @@ Mode = Literal["tension", "shear"]
 
 
 class Misfit(NamedTuple):
-    """Root mean square of the relative errors of storage and loss modulus."""
+    """Root mean square of the relative errors of storage and loss modulus, dimensionless (0.01 is 1 %)."""
 
     storage: float
     loss: float
@@ -46,20 +46,22 @@ class SeriesFit(Result):
     """A Prony series fitted to measured moduli: the base of :class:`Fit` and :class:`RelaxationFit`.
 
     E : long-time modulus, in the unit of the data; of tension or of shear, as ``mode`` says.
-    T_ref : the longest time, s; times of ``prony`` are in units of it.
-    prony : the series, the same for both moduli, since Poisson's ratio is taken constant in time.
+    T_ref : the longest time, s; times of ``prony`` are in units of it.  1 where the series has no mode.
+    prony : the series, strengths divided by E, the same for both moduli, since Poisson's ratio is taken constant in
+        time.
     mode : "tension" (E', E'', E(t)) or "shear" (G', G'', G(t)): the modulus of the data, of E and of
-    :meth:`modulus`.
-    target : the misfit that was requested.
+        :meth:`modulus`.
+    target : the misfit that was requested, a root mean square of relative errors, dimensionless.
     reached : whether it is reached.
-    outside : for each mode of ``prony`` whether its time lies outside the data.
+    outside : for each mode of ``prony`` whether its time lies outside the data, shape (modes,).
     band : first and last angular frequency of the data, rad/s; of relaxation the reciprocal times.
     points : number of points that were measured; above 1000 the means of 500 logarithmic bins were fitted, and they
         are the data and the misfit here.
     grid : shortest and longest time that the fit was allowed, s.
     temperature : temperature of the fit, degrees Celsius, None where it is not known.
     source : source of the data, in words.
-    misfit : root mean square of the relative errors, of each modulus.
+    misfit : root mean square of the relative errors, dimensionless: a :class:`Misfit` of storage and loss, or one
+        number of relaxation.
     """
 
     E: float
@@ -79,28 +81,31 @@ class SeriesFit(Result):
 
     @property
     def data(self) -> Data:
-        """The data that were fitted."""
+        """The data that were fitted, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`."""
         raise NotImplementedError
 
     @property
     def symbols(self) -> list[str]:
-        """Symbols of the measured moduli: E' and E'', or E(t); G in place of E where they are of shear."""
+        """Symbols of the measured moduli: ["E'", "E''"] or ["E(t)"]; G in place of E where they are of shear."""
         signs = ["(t)"] if self.data._fields[0] == "t" else ["'", "''"]
         return [symbol_of(self) + sign for sign in signs]
 
     def misfit_text(self, digits: int) -> str:
-        """Return the misfit of each modulus in per cent with a number of ``digits`` behind the decimal point."""
+        """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
+
+        digits : number of digits behind the decimal point of the per cent.
+        """
         pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
         return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
 
     @property
     def largest_misfit(self) -> float:
-        """The misfit; of storage and loss the larger one."""
+        """The misfit, a root mean square of relative errors, dimensionless; of storage and loss the larger one."""
         return float(np.max(self.misfit))
 
     @property
     def alpha(self) -> float:
-        """Instantaneous over long-time modulus."""
+        """Instantaneous divided by long-time modulus, dimensionless."""
         return self.prony.alpha
 
     @property
@@ -110,12 +115,12 @@ class SeriesFit(Result):
 
     @cached_property
     def wider(self) -> tuple[Any, ...]:
-        """Return two fits on grids of times that are one and two decades wider on either side, with a mode at every
-        time.
+        """Two fits on grids of times that are one and two decades wider on either side, with a mode at every time.
 
-        For each ``decades``, ``E``, ``alpha``, ``prony`` and, at speeds ``V`` in R/T_ref whose transit times lie within
-        the data, ``M`` beside ``M_fit`` at the same load (:class:`.spectrum_sensitivity.ExtendedGridFit`).  They are
-        computed at the first access.
+        They show what the data leave open outside their range.  Each is a
+        :class:`.spectrum_sensitivity.ExtendedGridFit` with ``decades``, ``E``, ``alpha``, ``prony`` and, at
+        dimensionless speeds ``V`` (kappa V) at which the transit frequency lies within the data, ``M`` (kappa M) beside
+        ``M_fit`` at the same load.  They are computed at the first access.
         """
         from .spectrum_sensitivity import fit_on_extended_grid
 
@@ -125,7 +130,9 @@ class SeriesFit(Result):
 
     @property
     def measured(self) -> Measured:
-        """The frequencies of the data, the larger misfit and the source, which a material keeps."""
+        """What a material keeps of the data, a :class:`Measured`: the frequencies, rad/s, the larger misfit, and the
+        source.
+        """
         source = self.source or f"{self.points} points"
         return Measured(*self.band, self.largest_misfit, source)
 
@@ -147,7 +154,7 @@ class SeriesFit(Result):
         Raises
         ------
         ParameterError
-            As there.
+            A value that is not finite or out of the range of :class:`viscoroll.Material`.
 
         Examples
         --------
@@ -178,12 +185,13 @@ class SeriesFit(Result):
         ----------
         cylinder : one cylinder, or a series of cylinders, whose material or base is ``material()`` of this fit, at any
             temperature.
-        V : speed of the axis, m/s, any sign.
+        V : speed of the axis, m/s, any sign, a number or an array of any shape.
 
         Returns
         -------
         Assumption
-            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``, of the shape of V.
+            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``: whether it lies within the data and
+            the misfit is small enough, of the shape of V.
 
         Raises
         ------
@@ -210,16 +218,19 @@ class SeriesFit(Result):
     def _moduli(self, x: ArrayLike) -> Floats:
         """Return the moduli of the fit, in the unit of the data.
 
-        x : angular frequencies, rad/s, or times, s, of any shape.
-        Returns a row for storage and one for loss, or one for relaxation, each of the shape of x.
+        x : angular frequencies, rad/s, or of a fit of relaxation times, s, of any shape.
+        Returns shape (2, *x.shape), storage and loss, or (1, *x.shape), relaxation.
         """
         points = np.asarray(x, np.float64)
         data = self.data._replace(**{self.data._fields[0]: points.ravel()})
         return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 
     def to_xarray(self) -> xr.Dataset:
-        """Return a dataset of data and fit over omega or t, of the series over ``mode``, and of the constants as
-        attributes.
+        """Return the data, the fit and its series as a dataset.
+
+        Over omega (rad/s) or t (s): storage, loss and storage_fit, loss_fit, or relaxation and relaxation_fit, in the
+        unit of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.  Attributes:
+        E_long, T_ref, title, modulus ("tension" or "shear"), and misfit_storage and misfit_loss, or misfit.
         """
         import xarray as xr
 
@@ -236,7 +247,9 @@ class SeriesFit(Result):
     _summary, _figure = summarize_fit, series_fit
 
     def _rows(self) -> list[SummaryRow]:
-        """Return the lines of the report on misfit and data."""
+        """Return the lines of the report on misfit and data that only this kind of fit has, as a list of
+        :class:`SummaryRow`.
+        """
         raise NotImplementedError
 
 
@@ -248,11 +261,11 @@ class Fit(SeriesFit):
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
         as of ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
-    misfit : root mean square of the relative errors, ``.storage`` and ``.loss``.
-    kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``,
-        ``.ratio``, ``.median``.
-    shifts : shift factors of curves at several temperatures, else None.
-    omega, storage, loss : the data, sorted and shifted; rad/s and the unit given.
+    misfit : root mean square of the relative errors, dimensionless, ``.storage`` and ``.loss``.
+    kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus: ``.omega``, rad/s,
+        ``.ratio`` at these, dimensionless, and ``.median``, near 1 for sound data.
+    shifts : shift factors (:class:`.master_curve.Shifts`) where temperatures were given, else None.
+    omega, storage, loss : the data, sorted and shifted, (n,) each; rad/s and the unit given.
 
     Examples
     --------
@@ -272,15 +285,16 @@ class Fit(SeriesFit):
 
     @property
     def data(self) -> Curve:
-        """The data that were fitted."""
+        """The data that were fitted, as a :class:`.curve.Curve`."""
         return Curve(self.omega, self.storage, self.loss)
 
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
-        """Return storage and loss modulus of the fit in the unit of the data, of the shape of ``omega``.
+        """Return storage and loss modulus of the fit in the unit of the data.
 
         They are E' and E'', or G' and G'' where ``mode`` is "shear".
 
-        omega : angular frequencies, rad/s.
+        omega : angular frequencies, rad/s, of any shape.
+        Returns (storage, loss), each of the shape of ``omega``.
 
         Examples
         --------
@@ -304,9 +318,9 @@ class RelaxationFit(SeriesFit):
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
         as of ``SeriesFit``, the base class.
-    misfit : root mean square of the relative errors.
-    t : times of the data, ascending, s.
-    relaxation : relaxation modulus of the data, in the unit given.
+    misfit : root mean square of the relative errors, dimensionless.
+    t : times of the data, ascending, s, (n,).
+    relaxation : relaxation modulus of the data, in the unit given, (n,).
 
     Examples
     --------
@@ -324,7 +338,7 @@ class RelaxationFit(SeriesFit):
 
     @property
     def data(self) -> Relaxation:
-        """The data that were fitted."""
+        """The data that were fitted, as a :class:`.curve.Relaxation`."""
         return Relaxation(self.t, self.relaxation)
 
     def modulus(self, t: ArrayLike) -> Floats:

@@ -36,16 +36,16 @@ LARGEST_FREEDOM = 1.0
 
 
 class Shifts(NamedTuple):
-    """Shift factors of the curves.
+    """Shift factors that lay the curves of several temperatures on one.
 
-    temperature : temperature of each curve, ascending, degrees Celsius; the median of those of its points.
-    a_T : ratio of times at this temperature to those at the reference.
+    temperature : temperature of each curve, ascending, degrees Celsius, (curves,); the median of those of its points.
+    a_T : ratio of times at this temperature to those at the reference, by which frequencies are multiplied, (curves,).
     reference : degrees Celsius; a_T is 1 there.
-    mismatch : between each curve and its warmer neighbour, rms of the difference of ln E' and ln E''; NaN where
-        they do not overlap or the factors were given.
-    freedom : between the same, decades over which the shift may be moved before the mismatch rises by 1 %: large
-    where
-        the curves are flat (a plateau fixes no shift); NaN where the factors were given.
+    mismatch : between each curve and its warmer neighbour, root mean square of the differences of ln E' and ln E''
+        after the shift, (curves - 1,); NaN where the factors were given.
+    freedom : between the same, decades over which the shift may be moved before the mismatch rises by 0.01 (1 % of the
+        moduli), (curves - 1,): large where the curves are flat (a plateau fixes no shift); NaN where the factors were
+        given.
     distinct : number of different temperatures that were given.
     """
 
@@ -70,16 +70,18 @@ def master_curve(
 
     Parameters
     ----------
-    omega, storage, loss : columns of one length, or lists of curves; rad/s, and one unit of moduli.
-    temperature : degrees Celsius, one of all points, one a point, or one a curve.
-    reference : degrees Celsius; default: where a given shift is 1, else the middle one of the curves.
-    shift : factors in the order of the curves, a function of the temperature, or None: by the overlap of neighbours.
-    on : the moduli by whose overlap shifts are found.
+    omega, storage, loss : columns, (n,), or lists of curves, one vector a temperature; rad/s, and one unit of moduli.
+    temperature : degrees Celsius, one of all points, one a point, (n,), or one a curve, (curves,).
+    reference : degrees Celsius; None: where a given shift is 1, else the middle one of the curves.
+    shift : factors a_T > 0 in the order of the curves, (curves,); a function of the temperature in degrees Celsius that
+        returns a_T; or None: found by the overlap of neighbouring curves.
+    on : "both" or "storage": the moduli by whose overlap shifts are found.
 
     Returns
     -------
     tuple
-        The master curve, a :class:`Curve` at the reference temperature; the :class:`Shifts` of the temperatures.
+        The master curve, a :class:`Curve` of all n points at the reference temperature, sorted by frequency; the
+        :class:`Shifts` of the temperatures.
 
     Raises
     ------
@@ -129,9 +131,11 @@ def master_curve(
 
 
 def undetermined_shifts(shifts: Shifts) -> list[str]:
-    """Return the pairs of neighbours whose shift the overlap leaves open: both temperatures and the range, in words.
+    """Return the pairs of neighbouring curves whose shift their overlap leaves open, in words for a report.
 
     shifts : shift factors of the curves.
+    Returns a text for each pair whose ``freedom`` is above :data:`LARGEST_FREEDOM` decades, with both temperatures and
+    the range of the shift; an empty list where there is none, as of factors that were given.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
     return [
@@ -145,10 +149,11 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
     """Find the shifts of neighbouring curves by their overlap.
 
     curves : one for each temperature, the coldest first.
-    temperatures : temperatures of the curves, degrees Celsius.
-    Returns (ln a_T of each curve relative to the coldest, (curves,); root mean square difference of each pair of
-    neighbours, (curves - 1,); decades by which the shift of each pair may vary, (curves - 1,)).
-    Raises ParameterError for neighbours that do not overlap.
+    temperatures : temperatures of the curves, degrees Celsius, (curves,).
+    Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; root mean square difference of ln
+    E' and ln E'' of each pair of neighbours, (curves - 1,); decades by which the shift of each pair may vary, (curves -
+    1,)).
+    Raises ParameterError for neighbours that do not overlap, or differ by more than 0.3 in ln E' and ln E''.
     """
     found = [_align(*pair) for pair in pairwise(curves)]
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
@@ -160,15 +165,17 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
 
 
 class _LogCurve:
-    """Logarithms of moduli over ln omega, with an interpolant.
+    """Logarithms of moduli over ln omega, with an interpolant, of the curve of one temperature.
 
     x : ln omega, ascending, each once, shape (n,).
-    y : ln E' and, unless the shift is found on the storage modulus alone, ln E''; the mean at repeated frequencies.
-    interpolate : the interpolant of y.
+    y : ln E' and, unless the shift is found on the storage modulus alone, ln E'', shape (n, 2) or (n, 1); the mean at
+        repeated frequencies.
+    interpolate : the interpolant of y: a function of ln omega, (k,), that returns shape (k, 2) or (k, 1).
     """
 
     def __init__(self, curve: Curve, on: str) -> None:
-        """Average repeated frequencies and interpolate.
+        """Take logarithms, average repeated frequencies, and interpolate: by a cubic spline, of two or three points by
+        PCHIP.
 
         curve : storage and loss modulus.
         on : "storage" or "both": the moduli that are kept.
@@ -186,9 +193,11 @@ class _LogCurve:
 
 
 class _Alignment(NamedTuple):
-    """The shift that lays the warm curve on the cold one.
+    """The shift that lays the warm curve on the cold one; all three are NaN where no shift leaves an overlap.
 
-    step : shift of ln omega; mismatch : rms after the shift; freedom : decades over which the shift is open.
+    step : what is added to ln omega of the warm curve, signed.
+    mismatch : root mean square difference of ln E' and ln E'' after the shift.
+    freedom : decades over which the shift may be moved before the mismatch rises by :data:`_EQUALLY_GOOD`.
     """
 
     step: float
@@ -197,10 +206,11 @@ class _Alignment(NamedTuple):
 
 
 def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
-    """Find the shift of a pair of curves by a search over all shifts that leave an overlap.
+    """Find the shift of a pair of curves: by a search in steps over all shifts that leave an overlap, then by Brent's
+    method.
 
-    cold, warm : the curves.
-    Returns the alignment, of NaN where no shift leaves an overlap.
+    cold, warm : curve of the lower and of the higher temperature.
+    Returns the :class:`_Alignment`, of NaN where no shift leaves enough overlap.
     """
     from scipy.optimize import minimize_scalar
 
@@ -220,11 +230,13 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
 
 
 def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> float:
-    """Return the mean square difference of two curves where they overlap, each at its points.
+    """Return the mean square difference of two curves where they overlap, each at its points against the other's
+    interpolant.
 
-    step : shift of ln omega of the warm curve.
-    cold, warm : the curves.
-    Returns :data:`_NONE` where they do not overlap enough.
+    step : what is added to ln omega of the warm curve.
+    cold, warm : curve of the lower and of the higher temperature.
+    Returns the mean of the squared differences of ln E' and ln E'', dimensionless; :data:`_NONE` where they overlap by
+    less than 15 % of the shorter range, or with fewer than three points of both together.
     """
     low, high = max(cold.x[0], warm.x[0] + step), min(cold.x[-1], warm.x[-1] + step)
     if high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0]):

@@ -28,18 +28,18 @@ _CANDIDATES = 3
 
 
 def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum, tuple[float, float], bool]:
-    """Find the spectrum of fewest modes that reaches a misfit, or the best one.
+    """Find the spectrum of fewest modes that reaches a misfit, or comes within 5 % of the best one where none reaches
+    it.
 
-    data : the curve.
-    target : largest misfit of each row, dimensionless.
-    modes : number of modes, of which fewer are used only where more have no strength; None: as few as the target
-    needs.
-    Returns (the spectrum, the shortest and the longest time of its grid, whether the target is reached).
+    data : measured moduli, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`.
+    target : largest misfit of each row of the data, a root mean square of relative errors, dimensionless.
+    modes : number of modes, of which fewer are used only where more have no strength; None: as few as the target needs.
+    Returns (the spectrum; (shortest, longest time) of its grid, s; whether every row has a misfit <= target).
 
     Raises
     ------
     ParameterError
-        If no grid of times leaves a long-time modulus.
+        If no grid of times leaves a long-time modulus: the data are of a fluid.
     """
     starts = _fit_wider_grids(data, None if modes else target)
     if not starts:
@@ -66,12 +66,12 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
 def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:
     """Fit spectra on wider and wider, denser and denser grids of times until one reaches the target.
 
-    The slow end of a grid is shortened until the fit has a long-time modulus.
+    The slow end of a grid is shortened until the fit has a long-time modulus; a grid without one is left out.
 
-    data : the curve.
+    data : measured moduli.
     target : largest misfit of each row, dimensionless; None: all grids are fitted.
-    Returns [(spectrum, (shortest, longest time of its grid)), ...], in the order of the grids; the last reaches the
-    target.
+    Returns [(spectrum, (shortest, longest time of its grid, s)), ...], in the order of the grids.  If a grid reaches
+    the target it is the last; the list is empty where no grid leaves a long-time modulus.
     """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
     low, high = data.band
@@ -87,11 +87,11 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, t
 
 
 def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
-    """Return times from the longest down, both ends among them.
+    """Return times of modes between two ends, from the longest down, both ends among them.
 
-    ends : shortest and longest time, s.
-    density : number of times in a decade.
-    Returns times in equal ratios, s, shape (times,).
+    ends : (shortest, longest) time, s.
+    density : number of times in a decade; the number of all is rounded, and at least 2.
+    Returns times in equal ratios, descending, s, shape (times,).
     """
     decades = math.log10(ends[1] / ends[0])
     return np.geomspace(ends[1], ends[0], max(2, 1 + round(decades * density)))
@@ -100,27 +100,34 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
 def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
     """Return whether no row of the data has a misfit above the target.
 
-    data : the curve.
+    data : measured moduli.
     spectrum : the fit.
-    target : largest misfit of each row, dimensionless.
+    target : largest misfit of each row, a root mean square of relative errors, dimensionless.
     """
     return max(misfits(data, spectrum)) <= target
 
 
 def _size(data: Data, spectrum: Spectrum) -> float:
-    """Return the norm of the misfits of all rows."""
+    """Return the root of the sum of the squared misfits of all rows, by which fits are compared.
+
+    data : measured moduli.
+    spectrum : the fit.
+    Returns a dimensionless number.
+    """
     return math.hypot(*misfits(data, spectrum))
 
 
 def _leave_out_mode(
     data: Data, spectrum: Spectrum, ends: tuple[float, float], good: Callable[[Spectrum], bool] | None
 ) -> Spectrum | None:
-    """Return a spectrum with one mode less; None if none of the best candidates, with refined times, is acceptable.
+    """Return a spectrum with one mode less, with a mode left out or two neighbours merged, or None.
 
-    data : the curve.
-    spectrum : spectrum of the curve from which a mode is left out.
-    ends : shortest and longest time that is allowed.
-    good : function that returns whether a spectrum is acceptable; None: any is.
+    data : measured moduli.
+    spectrum : spectrum of the data from which a mode is left out.
+    ends : (shortest, longest) time that is allowed, s.
+    good : function of a spectrum that returns whether it is acceptable; None: any is, and the best is returned.
+    Returns the first acceptable one of the three best candidates, with times refined unless the best is acceptable as
+    it is; None if none of them is.  Modes without strength are left out too, so that more than one may be missing.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
@@ -135,8 +142,8 @@ def _leave_out_mode(
 def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
     """Return the candidates for one mode less: times with one left out, or with two neighbours replaced by their mean.
 
-    spectrum : the spectrum, of n modes; means are of the logarithms of its times, weighted by strength.
-    Returns a list of 2 n - 1 arrays of times, s, shape (n - 1,) each.
+    spectrum : the spectrum, of n modes, n >= 1; means are of the logarithms of its times, weighted by strength.
+    Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each.
     """
     tau, strength = spectrum.tau, spectrum.strength
     without = [np.delete(tau, n) for n in range(tau.size)]

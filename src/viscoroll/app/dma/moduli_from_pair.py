@@ -28,13 +28,16 @@ _ROUNDED = 0.05
 
 @np.errstate(all="ignore")  # where a pair has no solution there is NaN or infinity, which is refused
 def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Numbers]) -> tuple[Floats, Floats]:
-    """Return storage and loss from a pair of quantities; all others must agree with them.
+    """Return storage and loss from two measured quantities, after a check that all others agree with them.
 
-    table : the table that has the columns.
-    pair : a key of :data:`PAIRS`.
-    columns : quantity (storage, loss, tan delta, modulus) -> numbers, those that the file has.
-    Returns (storage, loss), both of shape (n,); raises FileError where a third column contradicts, or the digits of the
-    file leave storage or loss uncertain by more than 5 %.
+    table : the table that has the columns; its lines are named in the error message.
+    pair : the two quantities, a key of :data:`PAIRS`.
+    columns : quantity ("storage", "loss", "tan delta", "modulus") -> its numbers, (n,) each, those that the file has;
+        all in Pa or all in 1/Pa, tan delta dimensionless.
+    Returns (storage, loss), (n,) each, in the unit of the columns: compliances of compliances.
+    Raises FileError, with the line, where a further column differs by more than 1 % beside its rounding, where a
+    magnitude is not above the storage or loss beside it, or where the digits of the file leave storage or loss
+    uncertain by more than 5 %.
     """
     storage, loss = PAIRS[pair](*(columns[name].values for name in pair))
     exact = {"storage": storage, "loss": loss, "tan delta": loss / storage, "modulus": np.hypot(storage, loss)}

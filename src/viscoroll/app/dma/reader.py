@@ -54,7 +54,8 @@ def read_dma(
     Returns
     -------
     DynamicModuli
-        In the order of the file; ``print`` shows in three lines what was understood.  It unpacks as before:
+        ``omega`` in rad/s, ``storage`` and ``loss`` in Pa and ``temperature`` in degrees Celsius or None, (n,) each, in
+        the order of the file; ``print`` shows in three lines what was understood.  It unpacks into three arrays:
         ``omega, storage, loss = read_dma(path)``.
 
     Raises
@@ -63,7 +64,7 @@ def read_dma(
         A file that cannot be read, columns that are missing, ambiguous or contradict each other, units that are
         unknown or of another dimension, gaps and separators of thousands; rows of several temperatures without them.
     ParameterError
-        ``columns``, ``units``, ``decimal`` or ``encoding`` that are none.
+        Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file.
 
     Warns
     -----
@@ -126,11 +127,12 @@ def read_dma(
 
 
 class _Choice(NamedTuple):
-    """The columns that are read.
+    """The columns that :func:`read_dma` reads, as :func:`_choose_columns` chose them.
 
     mode : "tension", "shear", or "" where no heading says.
     pair : the two quantities that give the moduli, a key of :data:`.moduli_from_pair.PAIRS`.
-    columns : quantity -> its columns, of this mode or of none, and of moduli where the pair is, or of compliances.
+    columns : quantity (:attr:`.column_quantities.Column.quantity`) -> its columns, one or more, which must then agree;
+        those of ``mode`` or of no mode, and all of moduli or all of compliances.
     """
 
     mode: str
@@ -139,11 +141,13 @@ class _Choice(NamedTuple):
 
 
 def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
-    """Split the argument ``units`` into those that overrule the file and those that supplement it.
+    """Split the argument ``units`` into units that replace those of the file and units for columns that have none.
 
-    units : argument ``units`` of :func:`read_dma`.
-    Returns (quantity -> unit in place of that of the file, quantity -> unit where the file gives none).
-    Raises ParameterError for another form, a unit that is unknown or of another dimension.
+    units : argument ``units`` of :func:`read_dma`: None; (unit of frequencies, unit of moduli), as ("Hz", "MPa"); or
+        quantity -> unit, with the keys of :data:`.vocabulary.UNITS`.
+    Returns two dicts quantity -> unit: the first replaces what the file says, the second holds where the file gives
+    none. One of them is empty: the first for a pair, the second for quantity -> unit, and both for None.
+    Raises ParameterError for another form, an unknown quantity, a unit that is unknown or of another dimension.
     """
     by_name = isinstance(units, Mapping)
     allowed = "(frequency, moduli), as ('Hz', 'MPa'), or quantity -> unit"
@@ -161,24 +165,30 @@ def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
 
 
 def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
-    """Return whether cells are headings: two of them name quantities, or one was named by the user.
+    """Return whether a line of the file is the one with the headings, which :func:`.read_table` looks for.
 
-    cells : cells of a line.
-    named : quantity -> heading, of columns that the user named.
+    It is if its cells name two different known quantities, or if a cell is a heading that the user gave.
+
+    cells : texts of the cells of the line, with units or without.
+    named : quantity -> heading, the argument ``columns`` of :func:`read_dma`; empty where the user named none.
     """
     quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
     return len(quantities) > 1 or not set(named.values()).isdisjoint(filter(None, cells))
 
 
 def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
-    """Choose the columns that are read.
+    """Choose the columns from which frequency and moduli are read: one mode, one pair of quantities, one kind of
+    frequency.
 
-    table : the table that has the columns; the message lists its headings.
-    found : columns of known quantities.
-    others : headings of the other columns, and why they are left out; those of another mode or kind than the pair, and
-        measured frequencies beside reduced ones, are added.
-    Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
+    Tension comes before shear, moduli before compliances, and the pairs in the order of
+    :data:`.moduli_from_pair.PAIRS`.
+
+    table : the table of the file; it is used for the error message only.
+    found : columns of known quantities, in the order of the file.
+    others : heading -> why the column is left out, "" for an unknown quantity.  It is changed: columns of another mode
+        or kind than the pair, and measured frequencies beside reduced ones, are added.
     Returns the :class:`_Choice`.
+    Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
     quantities = {column.quantity for column in found}
@@ -210,13 +220,17 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
 
 
 def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
-    """Return the numbers of the first of several columns of one quantity; the others must agree with it.
+    """Return the numbers of the first of several columns of one quantity, after a check that the others agree with it.
+
+    Frequencies agree to 0.1 %, moduli and tan delta to 1 %, temperatures to 1 K, each beside the rounding of the
+    digits.
 
     table : the table that has the columns.
-    quantity : name of their quantity.
-    alike : the columns.
-    others : headings of columns that are left out, and why; all but the first are added.
-    Raises FileError with the line where they contradict each other.
+    quantity : name of their quantity (:attr:`.column_quantities.Column.quantity`), as "frequency" or "storage".
+    alike : the columns of this quantity, at least one.
+    others : heading -> why the column is left out.  It is changed: all columns but the first are added.
+    Returns :class:`Numbers`, (n,), in rad/s, Pa, 1/Pa, degrees Celsius or, of tan delta, dimensionless.
+    Raises FileError with the line where two columns contradict each other, or where a cell is no number.
     """
     first = numbers_of(table, alike[0])
     for column in alike[1:]:
@@ -231,10 +245,10 @@ def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: 
 
 
 def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
-    """Warn of columns whose unit neither the file nor the user gives.
+    """Warn of columns whose unit neither the file nor the user gives; there is no warning where all units are given.
 
-    table : the table that has the columns.
-    taken : the columns.
+    table : the table of the file, for the messages.
+    taken : the columns that are read.
     Raises FileError for a modulus or frequency without a unit beside one that has it.
     """
     assumed = []
@@ -250,10 +264,14 @@ def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
 
 
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
-    """Raise FileError for rows of one frequency, and for several sweeps without the temperature of each.
+    """Refuse what is not one frequency sweep at each temperature.
 
-    table : the table from which the record was read.
+    These are: rows that are all of one frequency; several tables in the file without a column of temperatures; where
+    all rows are of one temperature, two of one frequency whose storage moduli differ by more than a factor of 1.25.
+
+    table : the table from which the record was read; its lines are named in the message.
     record : the moduli in the order of the rows.
+    Raises FileError for each of the three; returns nothing.
     """
     omega, n = record.omega, record.omega.size
     if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():

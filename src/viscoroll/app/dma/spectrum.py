@@ -24,11 +24,11 @@ Data = Curve | Relaxation
 
 
 class Spectrum(NamedTuple):
-    """A discrete spectrum in the units of the data.
+    """A discrete spectrum in the units of the data: long-time modulus and modes of a generalised Maxwell solid.
 
     E : long-time modulus.
-    strength : strength of each mode, shape (modes,).
-    tau : time of each mode, descending, shape (modes,).
+    strength : strength of each mode, in the unit of E, shape (modes,).
+    tau : time of each mode, s, descending, shape (modes,); modes may be 0.
     """
 
     E: float
@@ -36,15 +36,20 @@ class Spectrum(NamedTuple):
     tau: Floats
 
     def modulus(self, data: Data) -> Floats:
-        """Return the moduli at the frequencies or times of the data, in the shape of ``data.values``."""
+        """Return the moduli of the spectrum at the frequencies or times of the data, in the unit of E.
+
+        data : measured moduli at n points; only their frequencies or times are used.
+        Returns the shape of ``data.values``: (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of
+        relaxation.
+        """
         return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
 
 
 def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
-    """Return the spectrum of a series.
+    """Return the spectrum, in the units of the data, of a dimensionless series.
 
     prony : strengths divided by the long-time modulus, times over T_ref.
-    E : long-time modulus.
+    E : long-time modulus, in the unit of the data.
     T_ref : unit of the times of the series, s.
     """
     return Spectrum(E, prony.E * E, prony.tau * T_ref)
@@ -53,8 +58,8 @@ def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
 def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
     """Return the matrix of the least squares: responses of a constant and of modes, divided by the measured moduli.
 
-    data : the curve, with ``rows`` moduli at n points.
-    constant : long-time modulus, in the unit of the data.
+    data : measured moduli, ``rows`` of them (2 of storage and loss, 1 of relaxation) at n points.
+    constant : long-time modulus whose response is the first column, in the unit of the data; 1.0 for a unit response.
     modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
     Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
     """
@@ -67,20 +72,20 @@ def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
 def _residuals(data: Data, values: Floats) -> Floats:
     """Return the relative errors of all moduli, one row after the other.
 
-    data : the curve.
-    values : long-time modulus and strengths in the unit of the data, times in s; shape (1 + 2 modes,).
-    Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,): ``rows`` moduli at n points.
+    data : measured moduli, ``rows`` of them at n points.
+    values : [long-time modulus, strengths, times], the first two in the unit of the data, times in s; (1 + 2 modes,).
+    Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
     """
     count = values.size // 2
     return _relative_columns(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count] - 1.0
 
 
 def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
-    """Return the root mean square of the relative error of each row.
+    """Return the misfit of each row of the data: the root mean square of its relative errors.
 
-    data : the curve.
+    data : measured moduli.
     spectrum : the fit.
-    Returns a number for each row, dimensionless.
+    Returns dimensionless numbers: (storage, loss) of a :class:`.curve.Curve`, (relaxation,) of relaxation.
     """
     errors = _residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(len(data.constant), -1)
     return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
@@ -89,9 +94,10 @@ def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
 def on_times(data: Data, tau: Floats) -> Spectrum:
     """Solve the least squares with non-negative strengths on fixed times; modes without strength are left out.
 
-    data : the curve.
-    tau : times of modes, shape (modes,).
-    Returns the spectrum.
+    data : measured moduli.
+    tau : times of modes, s, in any order, shape (modes,).
+    Returns the spectrum, its times descending; its long-time modulus is at least :data:`FLOOR` of the lowest modulus,
+    and its number of modes may be smaller than that of ``tau``, down to 0.
     """
     from scipy.optimize import nnls
 
@@ -105,18 +111,23 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
 
 def has_plateau(data: Data, spectrum: Spectrum) -> bool:
-    """Return whether the least squares give a long-time modulus above the least that is allowed."""
+    """Return whether the data determine the long-time modulus of a fit, which is then above the least that is allowed.
+
+    data : measured moduli.
+    spectrum : fit of the data, as of :func:`on_times`.
+    """
     return spectrum.E > 1.0001 * _least_modulus(data)
 
 
 def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
-    """Refine a spectrum by varying its times too.
+    """Refine a spectrum by varying its times too, then fit the strengths on the times found.
 
-    data : the measured moduli.
-    spectrum : spectrum from which the search starts.
-    ends : shortest and longest time that is allowed.
+    data : measured moduli.
+    spectrum : spectrum from which the search starts, all strengths > 0.
+    ends : (shortest, longest) time that is allowed, s.
     calls : largest number of evaluations of the residuals.
-    Returns the refined spectrum.
+    Returns the refined spectrum, from which modes without strength are left out; ``spectrum`` itself if it has no
+    modes.
     """
     count = spectrum.tau.size
     if not count:
@@ -143,14 +154,14 @@ _ONE_THREAD = 1 << 17
 def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -> Floats:
     """Minimise the sum of squared residuals within bounds by the method of Levenberg and Marquardt.
 
-    data : the curve.
-    logs : start, logarithms of long-time modulus, strengths and times; shape (1 + 2 modes,).
-    low, high : bounds of the logarithms, of the same shape.
-    calls : largest number of evaluations of the residuals.
-    Returns the logarithms at the minimum.
-
     The method solves the normal equations: an SVD of some hundred rows takes ten times as long on several threads as
     on one, and the MINPACK of SciPy 1.17 gives other last digits from call to call.
+
+    data : measured moduli.
+    logs : start, logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
+    low, high : bounds of the logarithms, of the same shape; a start outside is moved to the bound.
+    calls : largest number of evaluations of the residuals.
+    Returns the logarithms at the minimum, or the best ones found when the calls are used up, (1 + 2 modes,).
     """
     logs = np.clip(logs, low, high)
     errors, slopes = _residuals(data, np.exp(logs)), _slopes(logs, data)
@@ -178,7 +189,7 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
 def _normal_matrix(slopes: Floats) -> Floats:
     """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads.
 
-    slopes : slopes of the residuals, shape (residuals, unknowns).
+    slopes : derivatives of the residuals, shape (residuals, unknowns).
     Returns shape (unknowns, unknowns).
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
@@ -187,11 +198,11 @@ def _normal_matrix(slopes: Floats) -> Floats:
 
 
 def _slopes(logs: Floats, data: Data) -> Floats:
-    """Return the slopes of the residuals by the logarithms of long-time modulus, strengths and times.
+    """Return the derivatives of the residuals by the logarithms of long-time modulus, strengths and times.
 
-    logs : these logarithms, shape (1 + 2 modes,).
-    data : the curve.
-    Returns shape (residuals, 1 + 2 modes).
+    logs : logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
+    data : measured moduli, ``rows`` of them at n points.
+    Returns shape (rows n, 1 + 2 modes), dimensionless, in the order of :func:`_residuals` and of ``logs``.
     """
     values, count = np.exp(logs), logs.size // 2
     strength, tau = values[1 : 1 + count], values[1 + count :]
@@ -201,5 +212,8 @@ def _slopes(logs: Floats, data: Data) -> Floats:
 
 
 def _least_modulus(data: Data) -> float:
-    """Return the least long-time modulus that is allowed, :data:`FLOOR` of the lowest modulus of the first row."""
+    """Return the least long-time modulus that is allowed, in the unit of the data.
+
+    It is :data:`FLOOR` of the lowest storage or relaxation modulus of the ``data``.
+    """
     return FLOOR * float(data.values[0].min())

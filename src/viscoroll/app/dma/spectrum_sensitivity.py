@@ -23,12 +23,15 @@ _SPEEDS = 4
 
 @dataclass(frozen=True, eq=False)
 class ExtendedGridFit:
-    """Non-negative least squares on the times of a fit and on two a decade that reach further beyond the data.
+    """A fit by non-negative least squares on the times of another fit and on a wider grid, beside that other fit.
 
     decades : by which the grid is wider on either side.
-    E, alpha, prony : its long-time modulus, ratio of moduli and series, the latter over the T_ref of the fit.
-    V : speeds in R/T_ref times kappa of the fit; the transit times of the contact lie within the data.
-    M, M_fit : kappa M of the wider fit and of the fit, at the same load; kappa is that of the fit.
+    E : long-time modulus of the wider fit, in the unit of the data.
+    alpha : its instantaneous over its long-time modulus.
+    prony : its series, strengths divided by its E and times over the T_ref of the fit.
+    V : kappa V, V in R/T_ref and kappa of the fit, dimensionless, (n,): speeds at which the transit frequency of the
+        contact lies within the data; n may be 0.
+    M, M_fit : kappa M of the wider fit and of the fit at these speeds and the same load, dimensionless, (n,).
     """
 
     decades: float
@@ -48,14 +51,18 @@ class ExtendedGridFit:
 def fit_on_extended_grid(
     data: Data, prony: Prony, E: float, T_ref: float, grid: tuple[float, float], decades: float
 ) -> ExtendedGridFit:
-    """Fit strengths on the times of a fit and of a wider grid together; no mode is left out.
+    """Fit strengths on the times of a fit and on a wider grid together, to see what the data leave open outside their
+    range.
 
-    data : the curve.
-    prony, E, T_ref : series, long-time modulus and reference time of the fit.
-    grid : shortest and longest time of its grid.
-    decades : number of decades by which the grid becomes wider on either side.
-    Returns the wider fit.  A fit with as few modes as possible would leave out those outside the data first, though the
+    No mode is left out: a fit with as few modes as possible would leave out those outside the data first, though the
     data allow them.
+
+    data : measured moduli, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`.
+    prony : series of the fit, strengths divided by E, times over T_ref.
+    E, T_ref : long-time modulus of the fit, in the unit of the data, and unit of its times, s.
+    grid : (shortest, longest) time of its grid, s.
+    decades : number of decades by which the grid becomes wider on either side.
+    Returns the :class:`ExtendedGridFit`, with the rolling moment of both fits.
     """
     reach = 10.0**decades
     times = grid_of_times((max(grid[0] / reach, data.shortest), grid[1] * reach), _TIMES)
@@ -67,11 +74,11 @@ def fit_on_extended_grid(
 
 
 def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats, Floats]:
-    """Return kappa V and kappa M at speeds whose transit frequencies |V|/(lam l0) lie within the data.
+    """Compute the rolling moment of free rolling at speeds whose transit frequency |V|/(lam l0) lies within the data.
 
     prony : series of the fit.
     slow, fast : lowest and highest frequency of the data, times T_ref.
-    Returns kappa V and kappa M, (n,) each, dimensionless.
+    Returns (kappa V, kappa M), (n,) each, dimensionless, four speeds a decade; n may be 0.
     """
     low, high = np.log10(slow / np.sqrt(prony.alpha)), np.log10(fast)
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))
@@ -82,5 +89,11 @@ def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats
 
 
 def _contact_of(prony: Prony, kappa: float, V: Floats) -> Any:
-    """Return lam and M of free rolling of a series at speeds V, for a slenderness kappa."""
+    """Compute the contact in free rolling, delta = 0, at mu = 1.
+
+    prony : series of the material.
+    kappa : slenderness, 1 or relative to that of another fit.
+    V : speeds in R/T_ref, (n,).
+    Returns the state with ``.lam`` and ``.M``, (n,) each, dimensionless.
+    """
     return contact(Scene(material=prony, kappa=kappa, mu=1.0), V, delta=0.0, fields=("lam", "M"))

@@ -20,7 +20,7 @@ _ONE = 1e-9
 
 
 class Sets(NamedTuple):
-    """Sweeps, each at one temperature.
+    """Sets of points, each measured at one temperature.
 
     temperature : temperature of each set, ascending, degrees Celsius: the median of its points, shape (sets,).
     of_point : index of the set of each point, shape (n,).
@@ -33,12 +33,14 @@ class Sets(NamedTuple):
 
 
 def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
-    """Return a temperature for each point, and the columns.
+    """Return measured moduli as flat columns, with a temperature for each point.
 
-    temperature : temperature of all points, of each point, or of each curve; degrees Celsius.
-    columns : omega, storage and loss, each a column or a list of curves.
-    Returns (temperatures, columns, index of the first point of each curve; None where the columns are no lists).
-    Raises ParameterError for shapes that do not go together.
+    temperature : temperature of all points, one number; of each point, (n,); or of each curve, (curves,); degrees
+        Celsius.
+    *columns : omega, storage and loss, three, each (n,), or each a list of ``curves`` vectors, one a curve.
+    Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, in rad/s and the unit
+    of the moduli; index of the first point of each curve, (curves,), or None where the columns are no lists).
+    Raises ParameterError for shapes that do not go together, and for temperatures that are no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
     columns = tuple(to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
@@ -60,16 +62,19 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
 
 
 def sets_of(temperature: Floats, first: Integers | None) -> Sets:
-    """Divide points into sets; temperatures within :data:`LEAST_DISTANCE` of a neighbour are one set.
+    """Divide points into sets of one temperature.
 
-    temperature : temperature of each point, degrees Celsius, shape (n,).
-    first : index of the first point of each curve; None: sets are taken in the order in which they come.
-    Returns the sets.
+    In ascending order, a temperature that is at most :data:`LEAST_DISTANCE` above the one before is of the same set.
+
+    temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
+    first : index of the first point of each curve, (curves,), as of :func:`points_of`; None: each set counts as a
+        curve, in the order in which their first points come.
+    Returns the :class:`Sets`.
 
     Raises
     ------
     ParameterError
-        No points; a set that drifts by more than :data:`.dynamic_moduli.SAME_TEMPERATURE`.
+        No points; a set whose temperatures span more than :data:`.dynamic_moduli.SAME_TEMPERATURE`.
     """
     if not temperature.size:
         raise described_error("temperature", "is empty", "one number for each point")
@@ -90,23 +95,25 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
 
 
 def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
-    """Return the reference temperature where none is given.
+    """Return the reference temperature of a master curve where the user gives none.
 
-    temperatures : temperatures of the sets, ascending.
-    unshifted : temperatures at which the shift is 1; the first within the sets is the reference, else the middle set
-    is.
-    Returns the temperature, degrees Celsius.
+    temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
+    unshifted : temperatures at which the given shift is 1, degrees Celsius; empty, or NaN, where none is known.
+    Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the highest set, else the
+    temperature of the middle set, of an even number the warmer one.
     """
     low, high = temperatures[0], temperatures[-1]
     return next((T for T in unshifted if low <= T <= high), float(temperatures[temperatures.size // 2]))
 
 
 def nearest(base: float, temperatures: Floats, name: str) -> int:
-    """Return the index of the set nearest to a temperature.
+    """Return the index of the set nearest to a temperature, which must not lie outside of all sets.
 
     base : the temperature, degrees Celsius.
-    temperatures : temperatures of the sets, ascending.
-    name : name of the argument in the message of the ParameterError outside of all sets.
+    temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
+    name : name of the argument in the error message.
+    Returns an index of ``temperatures``.
+    Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE` below the first set or above the last.
     """
     low, high = temperatures[0], temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
@@ -115,13 +122,14 @@ def nearest(base: float, temperatures: Floats, name: str) -> int:
 
 
 def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, float]:
-    """Return factors of the sets, 1 at the reference, and the reference.
+    """Return shift factors that the user lists as factors of the sets, which are 1 at the reference, and the reference.
 
-    shift : factors in the order of the curves.
+    shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves.
     sets : the sets of the points.
-    base : reference, degrees Celsius; None: where a factor is 1, else the middle set.
-    Raises ParameterError for factors that do not fit the curves, and for a reference where no factor is given.
-    Returns (factors of the sets, dimensionless, (sets,); reference temperature, degrees Celsius).
+    base : reference, degrees Celsius; None: the temperature of a set whose factor is 1, else the middle set.
+    Returns (factors of the sets, dimensionless, (sets,), divided by that of the reference; reference, degrees Celsius).
+    Raises ParameterError for factors that are not > 0, of another number than the curves, or different at one
+    temperature, and for a reference that is at none of the sets.
     """
     factors, temperatures = check_array("shift", shift), sets.temperature
     if not (factors > 0.0).all():

@@ -99,10 +99,12 @@ class Meaning(NamedTuple):
 
 
 def meanings(heading: str, row: str = "") -> list[Meaning]:
-    """Return all quantities that a heading may name, the likeliest first; none where a word is not in the vocabulary.
+    """Return all quantities that a heading may name, the likeliest first.
 
-    heading : text of the heading, with its unit or without.
+    heading : text of the heading, with its unit or without, as "E' [MPa]" or "Speichermodul".
     row : the cell of a row of units for this column, "" without.
+    Returns a list of :class:`Meaning`, one for each way to part the heading into name and unit whose name is
+    understood; an empty list where a word of the heading is not in the vocabulary.
     """
     found = [(_quantity(name), unit, log) for name, unit, log in readings(heading, row)]
     return [Meaning(*quantity, unit, log) for quantity, unit, log in found if quantity]
@@ -111,8 +113,9 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
 def _quantity(name: str) -> tuple[str, str] | None:
     """Return quantity and mode of a column by its name without unit.
 
-    name : words of the heading.
-    Returns (quantity, mode), texts, the mode "" where the name does not say it; None if the words name no quantity.
+    name : words of the heading, in any case, with signs such as ' or the Greek letters.
+    Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name does not say it.
+    None if a word is not in the vocabulary, the words together name no quantity, or both modes are named.
     """
     if re.search("[%°º]", name):  # of a unit
         return None
@@ -129,7 +132,11 @@ def _quantity(name: str) -> tuple[str, str] | None:
 
 
 def _parts(word: str) -> list[str]:
-    """Return a word of the vocabulary, or the words that it is composed of."""
+    """Split a word that is composed of words of the vocabulary, as "storagemodulus".
+
+    word : letters, in lower case, or digits.
+    Returns the words that it is composed of; [word] if it is in the vocabulary itself or is not composed of such words.
+    """
     if word in _KINDS or not (found := _COMPOUND.fullmatch(word)):
         return [word]
     return [*filter(None, [found[1]]), *_WORD.findall(found[2])]

@@ -40,8 +40,9 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     Parameters
     ----------
     given : a :class:`viscoroll.Cylinder`, whose numbers become the start values; or a material, pair, cover, law of
-        :func:`viscoroll.load_law` or alpha, for which radius, load, mass and friction are set in the tool.
-    path : file to write; a file of that name is replaced.
+        :func:`viscoroll.load_law` or alpha (a number >= 1), for which radius, load, mass and friction are set in the
+        tool.
+    path : file to write, with the suffix .fmu by custom; a file of that name is replaced.
     model : "Roller", from drive force and torque to v, omega and x: co-simulation with its own step-size control, and
         model exchange; or "ContactElement", from v, omega and load to force, torque and moments: model exchange.
     version : version of the FMI standard, 2 or 3.
@@ -53,7 +54,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     MissingDependencyError
         No fmpy, which brings the headers of the standard, or no C compiler ``cc``.
     FileError
-        If the file cannot be written.
+        If the file cannot be written, or the compiler fails.
 
     Examples
     --------
@@ -106,11 +107,12 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
 
 
 def _contact_length_of_cover(table: LawTable) -> float:
-    """Return the contact length at rest that the law of a cover is for, in m; 0.0 if the FMU need not check it.
+    """Return the contact length at rest for which the law of a cover holds, so that the FMU can refuse any other.
 
     It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.
 
-    table: a law.
+    table: a law, with ``cover`` and ``pair``, each None where it has none.
+    Returns the length in m; 0.0 if the FMU need not check it.
     """
     if table.cover is None or table.pair is None:
         return 0.0
@@ -119,12 +121,14 @@ def _contact_length_of_cover(table: LawTable) -> float:
 
 
 def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, l0: float) -> dict[str, float]:
-    """Return the start value of each variable that can be set, by name, in the variables' units.
+    """Return the start value of each variable that can be set, for the description and the library of the FMU.
 
     variables: variables of the model.
-    given: argument of :func:`build`; the numbers of a Cylinder become start values, for 1 m of its width.
-    table: law of ``given``, which has T_ref and, of SI materials, E_prime.
-    l0: contact length of a cover in m, or 0.0; the load at the start is the one that makes it.
+    given: argument ``given`` of :func:`build`; the numbers of a Cylinder become start values, for 1 m of its width.
+    table: law of ``given``, which has T_ref (s) and, of SI materials, E_prime (Pa).
+    l0: contact length at rest of a cover in m, or 0.0; the load at the start is the one that makes it.
+    Returns name -> value in the unit of the variable, of the variables whose default start is not None.
+    Raises ParameterError for a Cylinder with arrays.
     """
     values: dict[str, Any] = {"T_ref": table.T_ref}
     if table.pair is not None:
@@ -143,11 +147,13 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
 def _write_sources(folder: Path, headers: Path, model: str, version: int, constants: str) -> str:
     """Write all that ``cc fmu.c`` needs beside law.h, and return the token.
 
-    folder: where law.h is.
+    folder: where law.h is, and fmu.c, vr_roll.h, the headers of the standard, stubs.h and model.h are written.
     headers: folder of the headers of the standard.
-    model, version: as of :func:`build`.
-    constants: text of model.h, to which the token is added.
-    Returns the GUID or instantiation token that the description and the library share: a digest of all sources.
+    model: "Roller" or "ContactElement".
+    version: version of the standard, 2 or 3.
+    constants: C text of model.h, to which the token is added.
+    Returns the GUID or instantiation token that the description and the library share: a digest of all sources, as
+    "{8-4-4-4-12}" hexadecimal digits.
     """
     package = files("viscoroll")
     source = (package / "app/fmu/fmu.c").read_text(encoding="utf-8")
@@ -169,8 +175,8 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
 
     Kinds are 0 (cannot be set), 1 (any finite number) and 2 (above 0).
 
-    variables: variables of the model, in the order of their references.
-    starts: start values by name.
+    variables: variables of the model, in the order of their references, which start with 1.
+    starts: name -> start value in the unit of the variable; 0.0 stands for those that it does not have.
     """
     rows = [("time", 0, 0.0)]
     rows += [(v.name, 0 if v.start is None else 1 + v.positive, starts.get(v.name, 0.0)) for v in variables]
@@ -185,14 +191,15 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
 
 
 def _stubs(source: str, header: str, version: int) -> str:
-    """Return C definitions of the functions of the standard that fmu.c leaves out.
+    """Return C definitions of the functions of the standard that fmu.c leaves out, which an FMU must have all the same.
 
     A change of mode returns OK; a function that gets or sets values returns OK for none and an error for some; every
     other one returns an error, or NULL.
 
     source: text of fmu.c.
     header: text of the standard's header of function types.
-    version: 2 or 3.
+    version: version of the standard, 2 or 3.
+    Returns the C text, a line a function.
     """
     lines = []
     plain = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
@@ -208,11 +215,12 @@ def _stubs(source: str, header: str, version: int) -> str:
 
 
 def _compile(compiler: str, source: Path, library: Path) -> None:
-    """Compile fmu.c to a shared library; raise FileError with the compiler's message if that fails.
+    """Compile fmu.c to a shared library.
 
     compiler: path of cc.
     source: path of fmu.c, beside the headers.
     library: file to write.
+    Raises FileError with the compiler's message if that fails.
     """
     result = subprocess.run(
         [compiler, *_FLAGS, str(source), "-lm", "-o", str(library)], capture_output=True, text=True, check=False

@@ -23,11 +23,11 @@ _TOLERANCE = "1e-5"
 
 
 def model_description(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
-    """Return the text of modelDescription.xml.
+    """Return the text of modelDescription.xml, in which a tool finds the variables and capabilities of an FMU.
 
     version: version of the standard, 2 or 3.
-    name: name of the model, a key of MODELS.
-    starts: start values of the variables that can be set, by name, in their units.
+    name: name of the model, a key of MODELS: "Roller" or "ContactElement".
+    starts: name -> start value of the variables that can be set, in their units.
     token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.
     title: title of the law.
     """
@@ -64,12 +64,12 @@ def _as_text(root: Element) -> str:
 
 
 def _add_interfaces(root: Element, version: int, name: str, model: Model) -> None:
-    """Add ModelExchange and, of a model with states, CoSimulation.
+    """Add the interfaces that the FMU has: ModelExchange and, of a model with states, CoSimulation.
 
-    root: element to add to.
-    version: 2 or 3.
+    root: element fmiModelDescription, to which they are added.
+    version: version of the standard, 2 or 3; of 2 the source file is added too.
     name: name of the model and of its library.
-    model: variables of the model.
+    model: the model, of which only ``states`` is used.
     """
     steps = {2: {"completedIntegratorStepNotNeeded": "true"}, 3: {"needsCompletedIntegratorStep": "false"}}
     interfaces = {"ModelExchange": steps[version]}
@@ -84,13 +84,13 @@ def _add_interfaces(root: Element, version: int, name: str, model: Model) -> Non
 def _add_variable(
     parent: Element, version: int, variable: Variable, references: dict[str, str], starts: dict[str, float]
 ) -> None:
-    """Add a variable.
+    """Add a variable to modelDescription.xml.
 
     parent: element ModelVariables.
-    version: 2 or 3.
-    variable: variable to add.
-    references: value references by name.
-    starts: start values by name.
+    version: version of the standard, 2 or 3.
+    variable: variable to add; a name der_NAME makes it the rate of the variable NAME.
+    references: name -> value reference, a number as text, of all variables of the model.
+    starts: name -> start value, in the unit of the variable, of those that can be set.
     """
     varies = "continuous" if variable.causality != "parameter" else "tunable" if variable.positive else "fixed"
     about = {
@@ -109,12 +109,12 @@ def _add_variable(
 
 
 def _add_structure(parent: Element, version: int, model: Model, references: dict[str, str]) -> None:
-    """Add the lists of outputs, rates and initial unknowns.
+    """Add the lists of outputs, of rates of the states, and of initial unknowns, which are the two together.
 
     parent: element ModelStructure.
-    version: 2 or 3.
-    model: variables of the model.
-    references: value references by name.
+    version: version of the standard, 2 or 3.
+    model: the model.
+    references: name -> value reference, a number as text.
     """
     outputs = [references[variable.name] for variable in model.variables if variable.causality == "output"]
     rates = [references[f"der_{state}"] for state in model.states]
@@ -132,7 +132,7 @@ def _add_structure(parent: Element, version: int, model: Model, references: dict
 
 
 def build_description(name: str) -> str:
-    """Return the text of sources/buildDescription.xml of FMI 3.0.
+    """Return the text of sources/buildDescription.xml of FMI 3.0, by which a tool compiles the sources itself.
 
     name: name of the model and of its library.
     """

@@ -42,7 +42,12 @@ class Model(NamedTuple):
 
 
 def _positive(name: str, unit: str, text: str, start: float) -> Variable:
-    """Return a parameter that must be above 0; the arguments are fields of :class:`Variable`."""
+    """Return a parameter that must be above 0.
+
+    name, text: as fields of :class:`Variable`.
+    unit: one of :data:`UNITS`.
+    start: default start value, in this unit.
+    """
     return Variable(name, "parameter", unit, text, start, positive=True)
 
 

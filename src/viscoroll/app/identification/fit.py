@@ -29,7 +29,10 @@ _CANDIDATES = 50
 
 
 class Band(NamedTuple):
-    """A quantity at the best values, and the ends of its band."""
+    """A quantity at the best values, and the ends of its confidence band.
+
+    value, low, high : SI units, each of the shape of the points of the record.
+    """
 
     value: Any
     low: Any
@@ -37,11 +40,12 @@ class Band(NamedTuple):
 
 
 class Prediction(Values):
-    """Quantities of a record by name, each with ``.value``, ``.low`` and ``.high``, arrays over the points of the
-    record.
+    """Quantities of a record by name, as ``.Q``, each with ``.value``, ``.low`` and ``.high``, arrays over the points
+    of the record in SI units.
     """
 
     def __getattr__(self, name: str) -> Band:
+        """Return the :class:`Band` of a quantity of the record; AttributeError for other names."""
         return Band(*(super(Prediction, self).__getattr__(name + end) for end in ("", "_low", "_high")))
 
 
@@ -53,21 +57,23 @@ class Identification(Result):
     Attributes
     ----------
     cylinder : the :class:`Cylinder` of the best values.
-    values : values of the unknowns by name, SI.
-    stderr : their standard deviations by the slopes at the best fit, limited by the ranges; infinite for an unknown
-        that changes no residual.
-    correlations : (n, n), in the order of ``values``.
+    values : name of each unknown -> its value, SI.
+    stderr : name -> standard deviation of the value, SI, by the slopes at the best fit, limited by the ranges; infinite
+        for an unknown that changes no residual.
+    correlations : of the coordinates of the unknowns, (n, n), in the order of ``values``.
     chi2, dof : sum of the squared residuals over sigma, and its expectation, the degrees of freedom; of robust fits
         outliers count less.
-    sigma : standard deviation of each record's quantity, as given or as estimated.
-    minima : (chi2, values) of all minima near the best, the best first.
+    sigma : "QUANTITY of RECORD" -> standard deviation of each point, as given or as estimated, SI, (points,).
+    minima : list of (chi2, name -> value) of all minima near the best, the best first.
     does_not_act : names of unknowns that do not change what was measured.
     undetermined : names of unknowns whose interval is wider than a factor of e^2 or than half their range, and of
         those that are correlated with these beyond 0.95; :meth:`products` gives the products that are determined.
-    noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation; of
-        robust fits both as a tenth of outliers changes them little.
-    misfit : names of quantities whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1, or,
-        of robust fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
+    noise : "QUANTITY of RECORD" -> ``.rms`` of the residuals over sigma, ``.lag``, their lag-1 correlation,
+        ``.allowed``, the largest one of noise, and ``.is_noise``; of robust fits rms and lag as a tenth of outliers
+        changes them little.
+    misfit : names "QUANTITY of RECORD" whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1,
+        or, of robust fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
+    predicted : name of each record -> :class:`Prediction` of the best fit.
     records : the data by name.
     planned : whether the records have no values: standard deviations and intervals are those to expect.
 
@@ -84,8 +90,8 @@ class Identification(Result):
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
         """Collect the values and statistics of the best fit.
 
-        problem : the least squares.
-        found : minima of chi2, the best first.
+        problem : the least squares, with its standard deviations as estimated at the best minimum.
+        found : minima of chi2, the best first, at least one.
         """
         self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
@@ -104,16 +110,17 @@ class Identification(Result):
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
-        """The best fit to each record with its bands, by the name of the record."""
+        """The best fit to each record with its bands at the level 0.95: name of the record -> :class:`Prediction`."""
         return {record_name: self._predict(record, record_name, _LEVEL) for record_name, record in self.records.items()}
 
     def _delta_chi2(self, level: float = _LEVEL) -> float:
-        """Return the rise of chi2 at the ends of a confidence interval, dimensionless.
+        """Return the rise of chi2 above its minimum at the ends of a confidence interval, dimensionless.
 
-        It is a quantile of the chi-squared distribution where sigma is given, of the F distribution where it is
-        estimated.
+        It is a quantile of the chi-squared distribution with one degree of freedom where sigma is given, 3.84 at 0.95,
+        and of the F distribution with (1, dof) where any sigma is estimated.
 
         level : confidence level, in (0, 0.9999].
+        Raises ParameterError for another level.
         """
         from scipy import stats
 
@@ -125,7 +132,7 @@ class Identification(Result):
         """Return the interval of each unknown by its profile: (low, high), None on a side that is open.
 
         All other unknowns are free while one is varied, until chi2 has risen as ``level`` asks: 3.84 at 0.95 where
-        sigma was given, by F where it was estimated.  A side is open where it does not rise up to the end of the
+        sigma was given, by F where it was estimated.  A side is open where it does not rise so far up to the end of the
         range.  If another branch is found beyond an end, the interval includes it.
 
         Parameters
@@ -135,7 +142,8 @@ class Identification(Result):
         Returns
         -------
         dict of str to (float or None, float or None)
-            Name of the unknown -> ends of its interval, SI units.
+            Name of the unknown -> (low, high) of its interval, SI units; None on a side that is open, (None, None) of
+            an unknown that does not act.
 
         Raises
         ------
@@ -160,7 +168,7 @@ class Identification(Result):
 
     @cached_property
     def undetermined(self) -> tuple[str, ...]:
-        """Names of the unknowns whose interval is wide, and of those that are correlated with them."""
+        """Names of the unknowns whose interval at 0.95 is wide, and of those that are correlated with them."""
         return tuple(self._problem.names[i] for i in self._likelihood.undetermined(self._delta_chi2()))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
@@ -172,7 +180,9 @@ class Identification(Result):
         that hold near the values found only, by the slopes there.
 
         level : confidence level, in (0, 0.9999].
-        Returns a list of :class:`Product`, the best determined first.
+        Returns a list of :class:`.profile.Product` with ``.powers``, ``.value``, ``.low`` and ``.high``, the best
+        determined first; it is empty where fewer than two unknowns are undetermined, or no product is narrow.
+        Raises ParameterError for another level.
         """
         return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
@@ -181,22 +191,24 @@ class Identification(Result):
 
         Parameters
         ----------
-        record : coordinates, load and temperature; for a motion with V0, which may be another than those fitted.
-        draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
-            unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
+        record : a :class:`Resistance`, :class:`Traction` or :class:`Coastdown` with coordinates, and load and
+            temperature; a motion needs V0, which may be another than those fitted.  Its values are not used.
+        draws : number of random values of the unknowns to take the bands from, at most 100000; 0: from slopes, which
+            takes two computations an unknown.  Either by the normal law within the ranges: of what is undetermined a
+            band is a guess.
         level : confidence level of the bands, in (0, 0.9999].
         seed : seed of the draws, >= 0.
 
         Returns
         -------
         Prediction
-            ``.M``, ``.F``, ``.Q``, ``.V``, ``.omega``, ``.x``, as of the record, each with ``.value``, ``.low`` and
-            ``.high``.
+            ``.M`` and ``.F``, ``.Q``, or ``.V``, ``.omega`` and ``.x``, as of the kind of record, each with ``.value``,
+            ``.low`` and ``.high`` over its points, SI.
 
         Raises
         ------
         ParameterError
-            A record without a start, draws, level or seed out of range.
+            What is no record, a motion without V0, omega0 or t0, draws, level or seed out of range.
 
         Examples
         --------
@@ -222,12 +234,13 @@ class Identification(Result):
         """Predict the quantities of a record, with confidence bands.
 
         record : the record.
-        record_name : name of the record among the data, which its own unknowns bear; "" of a record that was not
-        fitted.
+        record_name : name of the record among the data, which its own unknowns bear, as V0:NAME; "" of a record that
+            was not fitted.
         level : confidence level of the bands, in (0, 0.9999].
-        draws : number of random values of the unknowns from which the bands are taken; 0: from slopes.
-        seed : seed of the draws.
-        Returns the :class:`Prediction`.
+        draws : number of random values of the unknowns from which the bands are taken; 0: from slopes at the best fit.
+            Draws outside of the ranges are rejected, so that there may be fewer.
+        seed : seed of the draws, >= 0.
+        Returns the :class:`Prediction`, of all ``QUANTITIES`` of the record in SI units.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
@@ -252,27 +265,34 @@ class Identification(Result):
         return Prediction(found, coordinates, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
-        """Return residuals over sigma of all records, in their order, and of the prior, shape (residuals,).
+        """Return the residuals at values of the unknowns, for optimisers and samplers of other packages.
 
-        For optimisers and samplers of other packages; a motion that fails has residuals of 1e6.
+        A residual is predicted minus measured value, divided by sigma; a motion that fails has residuals of 1e6.
 
-        values : name -> value of unknowns; others are at their start.
+        values : name -> value of unknowns, SI; others are at their start.
+        Returns a vector, (residuals,), dimensionless: of the records in their order, then one for each prior.
+        Raises ParameterError for unknown names, and for values that the unknown cannot have.
         """
         return self._problem.residuals(self._coordinates(values))
 
     def jacobian(self, values: Mapping[str, float]) -> Floats:
-        """Return the derivatives of :meth:`residuals` by the values, (residuals, unknowns), by central differences.
+        """Return the derivatives of :meth:`residuals` by the values, by central differences.
 
-        values : name -> value of unknowns; others are at their start.
+        values : name -> value of unknowns, SI; others are at their start.
+        Returns an array, (residuals, unknowns), in one over the SI unit of each unknown, in the order of
+        ``self.values``.
+        Raises ParameterError as :meth:`residuals` does.
         """
         J = self._problem.jacobian(self._coordinates(values))
         return J / [unknown.slope(values.get(unknown.name, unknown.start)) for unknown in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
-        """Return the coordinates of the unknowns, shape (unknowns,), that belong to values.
+        """Return the coordinates of the unknowns that belong to values.
 
-        values : name -> value of unknowns; others are at their start.
-        Raises ParameterError for unknown names and values out of range.
+        values : name -> value of unknowns, SI; others are at their start.
+        Returns a vector, (unknowns,): the logarithm of each value, or of linear unknowns the value in their unit.
+        Raises ParameterError for unknown names, and for values that the unknown cannot have, as negative ones; values
+        outside of the range of the search are allowed.
         """
         check_names("values", values, self.values, "an unknown")
         found = []
@@ -283,6 +303,7 @@ class Identification(Result):
         return np.array(found)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return title and rows of the short summary: value and standard deviation of each unknown, and chi2."""
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
         rows = [SummaryRow(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
         return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} of {self.dof}")]

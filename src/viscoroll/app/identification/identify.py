@@ -44,32 +44,39 @@ def identify(
 
     Parameters
     ----------
-    cylinder : the cylinder with all known parameters, and with the start values of the unknown ones.
+    cylinder : the :class:`Cylinder`, without arrays, with all known parameters, and with the start values of the
+        unknown ones.
     unknown : name -> range (low, high) of each unknown parameter, SI, by the names of run files: R, m, mu, j, g, load;
         E, nu, T_ref of the material; E_1, tau_1 of its first, longest mode, divided by E and T_ref; the same of another
         half-space as base_E, base_E_1; brake, a constant torque of the bearing, N m/m, and drag, a torque for each unit
         of omega, N m s/m, both >= 0; V0, omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole
         relaxation curve and T_ref all its times: with mu they are all unknowns of a material that a DMA has measured.
-    data : records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.  All have values, or none has: then
-        the result states the standard deviations to expect if the cylinder, without a bearing, is the truth.
-    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand; the standard deviation is
-        that of the logarithm, but for brake, drag, nu and unknowns of records.
-    shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function, 1 at the temperature
-        of the cylinder; where its bodies differ {"material": ..., "base": ...}.
+    data : records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.  All have values, or none has (a
+        plan): then the result states the standard deviations to expect if the cylinder, without a bearing, is the
+        truth.
+    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand, SI, None without; the
+        standard deviation is that of the natural logarithm, dimensionless, but for brake, drag, nu and unknowns of
+        records, of which it is that of the value, SI.
+    shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function that takes degrees
+        Celsius and returns a_T, 1 at the temperature of the cylinder; None without temperatures of records; where its
+        bodies differ {"material": ..., "base": ...}.
     robust : let outliers count less, as |r| in place of r^2, of data and prior.
-    starts : number of searches, the first from the cylinder, the others from points spread over the ranges.
+    starts : number of searches, >= 1, the first from the cylinder, the others from points spread over the ranges; of a
+        plan only the first.
     seed : seed of these points.
     progress : draw a progress bar if it takes longer than a second.
 
     Returns
     -------
     Identification
+        Values, standard deviations and intervals of the unknowns; ``print`` shows a report.
 
     Raises
     ------
     ParameterError
         An unknown name, a range that does not contain the start value, more unknowns than points, records without
-        standard deviations where values are missing, records with and without values, two records of one name.
+        standard deviations where values are missing, records with and without values, two records of one name, a
+        temperature of a record without ``shift``.
 
     Examples
     --------
@@ -111,10 +118,12 @@ def identify(
 
 
 def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
-    """Return the records by name; those without a name get that of their kind.
+    """Return the records by name; those without a name get that of their kind, as "resistance", then "resistance 2".
 
-    data : records.
-    Raises ParameterError for what is no record, two records of one name, and a mixture of data and plans.
+    data : records, all with values or all without.
+    Returns name -> record, in the order of ``data``.
+    Raises ParameterError for what is no record, no records, two records of one name, a plan without sigma, and a
+    mixture of data and plans.
     """
     found: dict[str, Record] = {}
     for record in data:
@@ -138,11 +147,14 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
 def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Minimum]:
     """Return the best minimum of chi2, and other minima that are nearly as good and lie in other valleys of chi2.
 
+    The standard deviations of ``problem`` that were not given are estimated on the way, and are those of the best
+    minimum at the end.
+
     problem : the least squares.
-    count : number of searches, the first from the start of the problem.
+    count : number of searches, the first from the start of the problem; if that goes far, two more are added.
     seed : seed of the other starts.
-    progress : whether a progress bar is drawn.
-    Returns the minima, the best first.
+    progress : whether a progress bar is drawn on standard error, after one second.
+    Returns a list of :class:`.problem.Minimum`, the best first, each with chi2 less than 15 above it.
     """
     from tqdm import tqdm
 
@@ -168,7 +180,7 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
     """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
 
     problem : the least squares.
-    count : number of starts plus 1, as the first search began from the start of the problem.
+    count : number of starts plus 1, as the first search began from the start of the problem; 1: nothing is yielded.
     seed : seed of the hypercube.
     Yields coordinates of a start, (unknowns,).
     """
@@ -188,8 +200,9 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     Other valleys of chi2 lie beyond ridges across that direction.
 
     problem : the least squares.
-    u : coordinates of the minimum.
-    Returns two vectors of coordinates, (unknowns,).
+    u : coordinates of the minimum, (unknowns,).
+    Returns two vectors of coordinates within the ranges, (unknowns,) each; [] where the minimum is within 0.6 of the
+    start in every coordinate, and is then taken to be the only one.
     """
     if np.abs(u - problem.start).max() < _NEAR:
         return []
@@ -200,11 +213,13 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
 
 
 def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
-    """Return whether chi2 has no ridge between two minima.
+    """Return whether chi2 has no ridge between two minima, so that they count as one.
+
+    At three points between them chi2 is minimised with the coordinate that differs most fixed and all others free; a
+    ridge is a minimum 0.5 above the higher of the two.
 
     problem : the least squares.
-    first, other : the minima. At three points between them chi2 is minimised with the coordinate that differs most
-    fixed and all others free.
+    first, other : the minima; True if their coordinates are the same to 0.01.
     """
     difference = other.u - first.u
     largest = int(np.argmax(np.abs(difference)))

@@ -34,14 +34,16 @@ _UNKNOWN = "unknown"
 
 
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
-    """Read the arguments of :func:`.identify.identify` from a file: cylinder, unknown, data, prior, shift.
+    """Read the arguments of :func:`.identify.identify` from a TOML file.
 
-    path : path of the TOML file.
+    path : path of the TOML file, with [cylinder], [unknown], [[data]] and perhaps [prior].
 
     Returns
     -------
     dict
-        Arguments of :func:`.identify.identify` by name.
+        Arguments of :func:`.identify.identify` by name: cylinder, a :class:`Cylinder`; unknown and prior, name -> two
+        numbers, not checked here, prior perhaps empty; data, a list of records; shift, "material" or "base" -> a_T over
+        temperature in degrees Celsius, of the materials that have one.
 
     Raises
     ------
@@ -71,8 +73,10 @@ def _record(path: Path, content: Any) -> Record:
     """Return the record of one [[data]].
 
     path : path of the TOML file, from whose folder files of data are found.
-    content : the section.
-    Raises FileError for unknown keys, wrong types, and values that make no record.
+    content : the section: kind ("resistance", "traction" or "coastdown"), file, and perhaps decimal, encoding, columns
+        (name -> heading), units (name -> unit) and fields of the record, in SI units; "unknown" stands for None.
+    Returns a :class:`Resistance`, :class:`Traction` or :class:`Coastdown`.
+    Raises FileError for unknown keys, wrong types, values that make no record, and as :func:`_columns` does.
     """
     named = content.get("kind") if isinstance(content, dict) else None
     kind = next((kind for name, kind in _KINDS.items() if name == named), None)
@@ -98,13 +102,14 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     path : path of the file.
     kind : class of the record, whose names the columns have where the section names none.
     section : the [[data]], with ``columns``, ``units``, ``decimal`` and ``encoding``.
-    Returns name -> values.
+    Returns name of each coordinate, and of each quantity that the file has -> values, SI, (n,).
 
     Raises
     ------
     FileError
-        A file that cannot be read; a column that is missing, or of a unit of another dimension; columns that are not
-        understood where none is a quantity.
+        A file that cannot be read; a column that is missing; columns that are not understood where none is a quantity.
+    ParameterError
+        A column whose unit has another dimension.
 
     Warns
     -----

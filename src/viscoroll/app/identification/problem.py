@@ -45,10 +45,10 @@ _AT_BOUND = 1e-6
 
 
 class Column(NamedTuple):
-    """The residuals of one quantity of a record.
+    """The residuals of one quantity of a record; its text is "QUANTITY of RECORD".
 
     record, quantity : names.
-    at : rows of the residuals.
+    at : rows of the residuals, of ``Problem.y`` and of ``Problem.sigma``.
     estimated : whether its standard deviation is estimated from the residuals.
     """
 
@@ -62,13 +62,13 @@ class Column(NamedTuple):
 
 
 class Noise(NamedTuple):
-    """Statistics of the residuals of a column.
+    """Statistics of the residuals of a column, by which a model that is inadequate shows.
 
-    rms : root mean square over sigma.
-    lag : lag-1 correlation in the order of the coordinates.
-    allowed : largest lag-1 correlation of noise: three standard deviations.
+    rms : root mean square of the residuals over sigma, dimensionless.
+    lag : lag-1 correlation of the residuals in the order of the coordinates, as of the times.
+    allowed : largest lag-1 correlation of noise: three standard deviations, 3/sqrt(points).
     is_noise : whether rms and lag are within three standard deviations of noise; residuals far below sigma may
-    correlate.
+        correlate, and an estimated sigma makes any rms right.
 
     Of a robust fit ``rms`` is the median of the absolute residuals over that of normal noise, and ``lag`` is the
     correlation of the weighted residuals, which are below 1: few outliers change neither much.
@@ -81,23 +81,26 @@ class Noise(NamedTuple):
 
 
 class Minimum(NamedTuple):
-    """A minimum: coordinates u, shape (unknowns,), and chi2."""
+    """A minimum of chi2: coordinates u of the unknowns, shape (unknowns,), and chi2 there, dimensionless."""
 
     u: Floats
     chi2: float
 
 
 class Problem:
-    """The least squares of an identification.
+    """The least squares of an identification: chi2 over the coordinates of the unknowns.
 
-    cylinder, unknowns, records, shifts : as given.
+    The coordinate of an unknown is the logarithm of its value, or of linear unknowns the value in a unit
+    (:class:`.unknowns.Unknown`).
+
+    cylinder, unknowns, records, robust, shifts : as given.
     names : names of the unknowns.
     start, low, high : coordinates of start and bounds, shape (unknowns,).
-    y, sigma : all data and their standard deviations, one column after the other, shape (n,); those of a plan are
-    the predictions at the start.
+    y, sigma : all data and their standard deviations, SI, one column after the other, shape (n,); those of a plan are
+        the predictions at the start.
     columns : the columns of y.
     points : number of data and priors.
-    active : indices of the unknowns that are varied; the others change no residual and stay at their start.
+    active : indices of the unknowns that are varied, ascending; the others change no residual and stay at their start.
     """
 
     def __init__(
@@ -108,9 +111,9 @@ class Problem:
 
         cylinder : cylinder with the values that are fixed.
         unknowns : unknowns with start, range and prior.
-        records : name -> record.
+        records : name -> record; all of them have values, or none.
         robust : whether outliers count less.
-        shifts : body -> shift factor over temperature.
+        shifts : "material" or "base" -> shift factor a_T over temperature in degrees Celsius.
         """
         self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
         self.robust, self.names = robust, [unknown.name for unknown in unknowns]
@@ -132,7 +135,10 @@ class Problem:
         self.active = self._find_active()
 
     def _find_active(self) -> list[int]:
-        """Return the unknowns that change a residual at the start or at one of four other points.
+        """Return the unknowns that change a residual at the start or at one of four other points, drawn over the
+        ranges.
+
+        Others would make the least squares singular.
 
         Returns indices of these unknowns, ascending.
         """
@@ -145,9 +151,9 @@ class Problem:
         return [i for i in range(middle.size) if i not in idle]
 
     def values(self, u: Floats) -> dict[str, float]:
-        """Return the values of the unknowns by name, SI.
+        """Return the values of the unknowns: name -> value, SI.
 
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, (unknowns,).
         """
         return {unknown.name: float(unknown.to_value(x)) for unknown, x in zip(self.unknowns, u, strict=True)}
 
@@ -155,18 +161,20 @@ class Problem:
         """Return the prediction of a record.
 
         record : the record.
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, (unknowns,).
         record_name : name of the record, by which its own unknowns are found; "" of a record that was not fitted.
-        Returns quantity -> values, SI units, in the shape of the coordinates of the record.
+        Returns quantity -> values, SI units, in the shape of the coordinates of the record; of a motion also "slips",
+        truth values.
         """
         values = self.values(u)
         own = {name.removesuffix(f":{record_name}"): value for name, value in values.items()}
         return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
 
     def _predict_all(self, u: bytes) -> Floats:
-        """Return the predictions of all data, shape (n,); NaN for values that make no cylinder or no motion.
+        """Return the predictions of all data, in the order of ``y``; the last 16 results are kept.
 
-        u : coordinates as bytes, which the cache can look up.
+        u : coordinates of the unknowns as bytes, which the cache can look up.
+        Returns values in SI units, shape (n,); all are NaN where the coordinates make no cylinder or no motion.
         """
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
@@ -176,9 +184,11 @@ class Problem:
         return np.full(self.y.size, np.nan)
 
     def residuals(self, u: Floats) -> Floats:
-        """Return residuals over sigma of the data, then of the priors; :data:`FAILED` where there is no prediction.
+        """Return the residuals, predicted minus measured value over sigma, of the data, then of the priors.
 
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, (unknowns,).
+        Returns shape (points,), dimensionless; each is :data:`FAILED` where there is no prediction, and is not beyond
+        it.
         """
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAILED), -FAILED, FAILED)
         return np.append(r, ((u - self._mean) / self._sd)[self._has_prior])
@@ -186,13 +196,15 @@ class Problem:
     def slopes(
         self, function: Callable[[Floats], Floats], u: Floats, which: Sequence[int], step: float = _STEP
     ) -> Floats:
-        """Return the derivatives of a vector by some coordinates, by differences within the ranges.
+        """Return the derivatives of a function of the coordinates by some of them, by differences within the ranges.
 
-        function : coordinates -> vector.
-        u : coordinates.
-        which : indices of coordinates.
-        step : step of central differences; any other step than :data:`_STEP` is taken to one side.
-        Returns shape (vector, which).
+        function : function that takes coordinates, (unknowns,), and returns an array, as the residuals, (points,).
+        u : coordinates at which the derivatives are taken, (unknowns,).
+        which : indices of the coordinates by which they are taken.
+        step : step of central differences; any other step than :data:`_STEP` is taken to one side.  At a bound a step
+            ends there.
+        Returns shape (points, which); of a function whose result has several axes these are in reverse order, before
+        that of ``which``.
         """
         columns = []
         for i in which:
@@ -204,16 +216,16 @@ class Problem:
         return np.array(columns).T
 
     def jacobian(self, u: Floats) -> Floats:
-        """Return the derivatives of the residuals by all coordinates, (residuals, unknowns).
+        """Return the derivatives of the residuals by all coordinates, dimensionless, (points, unknowns).
 
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, (unknowns,).
         """
         return self.slopes(self.residuals, u, range(u.size))
 
     def cost(self, u: Floats) -> float:
-        """Return chi2: the sum of squared residuals, or of a robust fit the sum of a loss that grows as |r|.
+        """Return chi2, dimensionless: the sum of squared residuals r, or of a robust fit of 2 (sqrt(1 + r^2) - 1).
 
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, (unknowns,).
         """
         z = self.residuals(u) ** 2
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
@@ -221,21 +233,24 @@ class Problem:
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, each row multiplied by the square root of its weight in chi2.
 
+        The weight is 1, in a robust fit 1/sqrt(1 + r^2).
+
         u : coordinates of the unknowns, shape (unknowns,).
-        Returns (residuals, (n,); derivatives with respect to the coordinates, (n, unknowns)), dimensionless.
+        Returns (residuals, (points,); derivatives with respect to the coordinates, (points, unknowns)), dimensionless.
         """
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
         return r * weight, J * weight[:, np.newaxis]
 
     def minimize(self, u: Floats, fixed: Floats | None = None, tolerance: float = 1e-10, steps: int = 200) -> Minimum:
-        """Find the minimum of chi2 near a point.
+        """Find the minimum of chi2 near a point, within the ranges, by the least squares of SciPy.
 
-        u : coordinates of the point.
-        fixed : powers of a combination of coordinates that keeps its value at u; None: all are free.
+        u : coordinates of the point, (unknowns,); those outside of the ranges are moved to their ends.
+        fixed : powers p of the combination sum(p u) that keeps its value at u, (unknowns,); None: all coordinates are
+            free.
         tolerance : relative tolerance of chi2, coordinates and gradient.
-        steps : largest number of evaluations.
-        Returns the minimum.
+        steps : largest number of evaluations of the residuals; beyond it the best point found is returned.
+        Returns the :class:`Minimum`; unknowns that are not active stay at u.
         """
         from scipy.optimize import least_squares
 
@@ -246,14 +261,17 @@ class Problem:
         whole = np.clip(u, self.low, self.high)
 
         def at(v: Floats) -> Floats:
+            """Return all coordinates, (unknowns,), from those that are free, v."""
             inside = whole.copy()
             inside[free] = v
             return inside
 
         def residuals(v: Floats) -> Floats:
+            """Return the residuals at the free coordinates v, and those of the rule that keeps the combination."""
             return np.append(self.residuals(at(v)), rule @ (v - u[free]))
 
         def jacobian(v: Floats) -> Floats:
+            """Return the derivatives of these residuals by the free coordinates, (rows, free), at v."""
             return np.vstack([self.slopes(self.residuals, at(v), free, _ONE_SIDED_STEP), rule])
 
         if free:
@@ -267,8 +285,10 @@ class Problem:
     def estimate_sigma(self, best: Minimum) -> Minimum:
         """Estimate each standard deviation that was not given from its residuals and fit again, until both converge.
 
+        ``sigma`` is changed in place; there are at most 20 rounds, and none where all standard deviations were given.
+
         best : minimum with the present standard deviations.
-        Returns the minimum with the estimated ones.
+        Returns the minimum with the estimated ones; ``best`` itself if none is estimated.
         """
         estimated = [column for column in self.columns if column.estimated]
         for _ in range(_ROUNDS if estimated else 0):
@@ -284,10 +304,10 @@ class Problem:
         return best
 
     def noise(self, u: Floats) -> dict[str, Noise]:
-        """Return statistics of the residuals of each column, by the words "quantity of record".
+        """Return statistics of the residuals of each column, by which a model that is inadequate shows.
 
-        u : coordinates of the unknowns.
-        Returns "quantity of record" -> :class:`Noise`.
+        u : coordinates of the unknowns, (unknowns,).
+        Returns "QUANTITY of RECORD" -> :class:`Noise`.
         """
         found, r = {}, self.residuals(u)
         for column in self.columns:
@@ -305,9 +325,9 @@ class Problem:
         return found
 
     def at_bounds(self, u: Floats) -> list[int]:
-        """Return the indices of the unknowns that lie at an end of their range.
+        """Return the indices of the unknowns that lie at an end of their range, within 1e-6 of its width, ascending.
 
-        u : coordinates of the unknowns.
+        u : coordinates of the unknowns, (unknowns,).
         """
         width = self.high - self.low
         return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_BOUND * width).tolist()

@@ -51,13 +51,13 @@ _SHARPER = 1.0 / 3.0
 
 
 class Profile(NamedTuple):
-    """The interval of a combination of coordinates.
+    """The confidence interval of a combination of coordinates, sum(powers u), by a profile of chi2.
 
-    ends : lower and upper end; None on a side that is open.
-    limited_by : for each end the unknowns whose range, not the data, limits it.
+    ends : [lower, upper end] of the combination, in its units; None on a side that is open.
+    limited_by : for each end the names of unknowns whose range, not the data, limits it; [] of an open side.
     pieces : whether another branch of the fit continued the interval.
     best : the point with the least chi2 that was met.
-    within : all points met that fit, shape (k, unknowns).
+    within : all points met that fit (chi2 within the bound above the best), coordinates, shape (k, unknowns).
     """
 
     ends: list[float | None]
@@ -70,8 +70,8 @@ class Profile(NamedTuple):
 class Product(NamedTuple):
     """A product of powers of unknowns that the data determine where they cannot tell these apart.
 
-    powers : exponents by name; those of brake, drag, V0, omega0 and t0 hold near the values found.
-    value : value of the product.
+    powers : name of unknown -> exponent; those of brake, drag, V0, omega0 and t0 hold near the values found.
+    value : value of the product, of SI values.
     low, high : ends of its interval, divided by ``value``.
     near : whether this holds by slopes, within about a fifth of the values found, and other exponents farther off.
     """
@@ -84,22 +84,26 @@ class Product(NamedTuple):
 
 
 class Likelihood:
-    """chi2 about the best of the minima.
+    """chi2 about the best of the minima: covariance, intervals, and products of unknowns.
 
     problem : the least squares.
     best : the best minimum.
     cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
-    sd : standard deviations, shape (unknowns,).
+    sd : standard deviations of the coordinates, shape (unknowns,).
     correlations : correlations of the coordinates, shape (unknowns, unknowns).
-    others : other minima and the start of the fit, from which other branches of the fit are searched.
-    ends : points at the ends of all intervals, further starts of that search; empty until an interval is open.
+    others : other minima and the start of the fit, (unknowns,) each, from which other branches of the fit are searched.
+    ends : points at the ends of all intervals, (unknowns,) each, further starts of that search; empty until an interval
+        is open.
     """
 
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
         """Compute the covariance at the best minimum.
 
+        To the inverse covariance of the data that of a uniform distribution over the range of each unknown is added,
+        which bounds the standard deviation of what the data leave open.
+
         problem : the least squares.
-        found : minima, the best first.
+        found : minima, the best first, at least one.
         """
         self.problem, self.best, (u, _) = problem, found[0], found[0]
         J = problem.weighted(u)[1]
@@ -112,12 +116,13 @@ class Likelihood:
 
     def profile(self, powers: Floats, delta_chi2: float) -> Profile:
         """Return the interval of a combination of coordinates within which chi2 rises by no more than a bound.
-        combination is the sum of the coordinates, each times its power.  As most coordinates are logarithms of
+
+        The combination is the sum of the coordinates, each times its power.  As most coordinates are logarithms of
         unknowns, it is the logarithm of a product of powers.  Beyond the ends of the interval the search goes on from
-        other minima, the start, and the ends of other unknowns.
+        other minima, the start, and the ends of other unknowns.  Results are kept until ``ends`` changes.
 
         powers : powers of the coordinates, shape (unknowns,).
-        delta_chi2 : the bound.
+        delta_chi2 : the bound, dimensionless.
         Returns the :class:`Profile`.
         """
         return self._profiles(delta_chi2, *powers.tolist())
@@ -125,10 +130,11 @@ class Likelihood:
     def axes(self, delta_chi2: float) -> dict[int, Profile]:
         """Return the profile of each active unknown by itself.
 
-        Where a side is open, all are computed again with the ends of the others as further starts.
+        Where a side is open, all are computed again with the ends of the others as further starts, which ``ends``
+        keeps.
 
         delta_chi2 : bound of the rise of chi2 above the best.
-        Returns index of the unknown -> :class:`Profile`.
+        Returns index of the unknown -> :class:`Profile`, whose ends are those of its coordinate.
         """
         found = {i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active}
         if self.ends or not any(None in profile.ends for profile in found.values()):
@@ -142,8 +148,10 @@ class Likelihood:
     def undetermined(self, delta_chi2: float) -> list[int]:
         """Return the indices of unknowns with a wide interval, and of those that are correlated with them.
 
+        An interval of a coordinate is wide above 2 (a factor of e^2) or half of the range; correlated is beyond 0.95.
+
         delta_chi2 : bound of the rise of chi2 above the best.
-        Returns the indices, ascending.
+        Returns the indices, ascending; [] where all are determined.
         """
         wide = []
         for i, profile in self.axes(delta_chi2).items():
@@ -161,6 +169,7 @@ class Likelihood:
 
         which : indices of the undetermined unknowns.
         delta_chi2 : bound of the rise of chi2 above the best.
+        Returns a list of :class:`Product`; [] for fewer than two unknowns, or where no product is determined.
         """
         if len(which) < 2:
             return []
@@ -179,6 +188,8 @@ class Likelihood:
         family : powers of the coordinates of each product, shape (unknowns,) each, the best determined first.
         delta_chi2 : bound of the rise of chi2 above the best.
         near : whether intervals are by slopes at the best, else by profiles.
+        Returns a list of :class:`Product`, in the order of the family, [] where the first is open or wider than a
+        factor of e.
         """
         found, values = [], self.problem.values(self.best.u)
         for powers in family:
@@ -200,8 +211,9 @@ class Likelihood:
         Exponents are rounded as far as the points keep nearly the same spread.
 
         which : indices of the unknowns.
-        delta_chi2 : bound of the rise of chi2 above the best.
-        Yields powers of the coordinates, shape (unknowns,), the best determined combination first.
+        delta_chi2 : bound of the rise of chi2 above the best, within which points fit.
+        Yields powers of the coordinates, shape (unknowns,), the largest 1 and those of other unknowns 0; the best
+        determined combination first.
         """
         axes = self.axes(delta_chi2)
         within = np.concatenate([axes[i].within for i in which])[:, which]
@@ -213,7 +225,11 @@ class Likelihood:
             yield powers @ np.eye(self.best.u.size)[which]
 
     def _combinations_by_slopes(self, which: list[int]) -> Iterator[Floats]:
-        """Yield combinations of unknowns with indices ``which`` by the covariance, the best determined first."""
+        """Yield combinations of unknowns by the principal axes of their covariance, the best determined first.
+
+        which : indices of the unknowns.
+        Yields powers of the coordinates, shape (unknowns,), rounded to 0.01, the largest 1.
+        """
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
 
@@ -221,48 +237,66 @@ class Likelihood:
 class ProfileWalk:
     """A profile of chi2: minima with a combination of coordinates fixed, each from the one before.
 
-    likelihood, problem, best : chi2 about the best minimum.
+    The combination at a point u is sum(powers u); its distance is this minus the same at the best minimum, signed.
+
+    likelihood, problem, best : chi2 about the best minimum, the least squares, and the best minimum.
     powers : powers of the combination, shape (unknowns,).
     delta_chi2 : bound of the rise of chi2 above the best.
     sd : standard deviation of the combination by slopes.
-    slope : change of the coordinates with the combination, along the covariance.
+    slope : change of the coordinates with the combination, along the covariance, shape (unknowns,).
     visited : minima that were found.
     """
 
     def __init__(self, likelihood: Likelihood, powers: Floats, delta_chi2: float) -> None:
-        """Begin at the best minimum; the arguments are the attributes of these names."""
+        """Begin at the best minimum.
+
+        likelihood : chi2 about the best minimum.
+        powers : powers of the combination whose profile is computed, (unknowns,).
+        delta_chi2 : bound of the rise of chi2 above the best, dimensionless.
+        """
         self.likelihood, self.problem, self.best = likelihood, likelihood.problem, likelihood.best
         self.powers, self.delta_chi2, along = powers, delta_chi2, likelihood.cov @ powers
         self.sd, self.slope = math.sqrt(powers @ along), along / (powers @ along)
         self.visited = [self.best]
 
     def distance(self, u: Floats) -> float:
-        """Return how far the combination at a point is from that at the best."""
+        """Return the combination at a point minus that at the best minimum, signed.
+
+        u : coordinates of the point, (unknowns,).
+        """
         return float(self.powers @ (u - self.best.u))
 
     def shift_to(self, d: float, u: Floats) -> Floats:
-        """Return the point u, moved along the covariance to a distance d from the best."""
+        """Return a point moved along the covariance to a distance of the combination from that at the best minimum.
+
+        d : the distance, signed.
+        u : coordinates of the point, (unknowns,).
+        Returns coordinates, (unknowns,), perhaps outside of the ranges.
+        """
         return u + self.slope * (d - self.distance(u))
 
     def minimum_at(self, d: float, u: Floats) -> Minimum:
-        """Return the minimum of chi2 with the combination fixed.
+        """Return the minimum of chi2 with the combination fixed, and add it to ``visited``.
 
-        d : distance of the combination from that at the best.
-        u : coordinates from which the search starts, moved to that distance.
+        d : distance of the combination from that at the best minimum, signed.
+        u : coordinates from which the search starts, moved to that distance, (unknowns,).
         """
         self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _TOLERANCE, _EVALUATIONS))
         return self.visited[-1]
 
     def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
-        """Return whether the rise of chi2 at a minimum is below a part of the bound.
+        """Return whether the rise of chi2 from the best minimum to another is below a part of the bound ``delta_chi2``.
 
-        minimum : the minimum.
-        part : factor of the bound.
+        minimum : the other minimum.
+        part : factor of the bound, dimensionless.
         """
         return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
 
     def profile(self) -> Profile:
         """Find both ends of the interval, by minima of chi2 with the combination fixed.
+
+        On each side the search goes on beyond the end, at most three times, where another branch of the fit continues
+        the interval.
 
         Returns the :class:`Profile`.
         """
@@ -283,9 +317,9 @@ class ProfileWalk:
     def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
         """Find the distance of the combination at which chi2 has risen to the bound.
 
-        reach : distance of the bound of the ranges, with the sign of the side.
-        start : a minimum at which chi2 is lower.
-        Returns (the distance, None if chi2 stays below up to ``reach``; the minimum there).
+        reach : distance of the bound of the ranges from the best minimum; its sign is that of the side.
+        start : a minimum at which chi2 is below the bound.
+        Returns (the signed distance, None if chi2 stays below up to ``reach``; the minimum there).
         """
         from scipy.optimize import brentq
 
@@ -293,6 +327,11 @@ class ProfileWalk:
         step, found = min(goal * self.sd, _FIRST_STEP), {d: start}
 
         def excess(d: float) -> float:  # the root of the rise is proportional to the distance near the best
+            """Return the root of the rise of chi2 at the distance d minus the root of the bound; 0.0 where they are
+            nearly equal.
+
+            The root of the rise is proportional to the distance near the best.
+            """
             if d not in found:
                 b, *more = sorted(found, key=lambda b: abs(d - b))
                 u = found[b].u
@@ -317,7 +356,7 @@ class ProfileWalk:
 
         d : signed distance of the combination at the end of the interval from that at the best minimum.
         reach : the same at the bound of the ranges.
-        Returns the minima whose rise of chi2 is below _LOWER delta_chi2, the farthest last; an empty list if none.
+        Returns the minima whose rise of chi2 is below _LOWER delta_chi2, the farthest from the best last; [] if none.
         """
         found, problem = [], self.problem
         starts = [(u, _BEYOND) for u in self.likelihood.others] + [(u, _BEYOND[:1]) for u in self.likelihood.ends]
@@ -333,7 +372,10 @@ class ProfileWalk:
     def limiting_bounds(self, u: Floats) -> list[str]:
         """Return the names of unknowns at a bound beyond which chi2 would fall, with the combination fixed.
 
-        u : coordinates at the end of an interval; whether chi2 would fall is decided by its slopes there.
+        Such a bound, not the data, limits the interval.
+
+        u : coordinates at the end of an interval, (unknowns,); whether chi2 would fall is decided by its slopes there.
+        Returns a list of names, [] where no unknown lies at a bound.
         """
         problem = self.problem
         if not (at := [i for i in problem.at_bounds(u) if not self.powers[i]]):

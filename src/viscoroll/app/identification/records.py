@@ -36,15 +36,19 @@ _RTOL_DRIVEN = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """A record of measurements: coordinates, values at them, and standard deviations, each an array or one number
-    for all.
+    """A record of measurements: coordinates of points, values at them, and standard deviations, each an array or one
+    number for all.
+
+    It is the base of :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.
 
     COORDINATES : names of the coordinates of the points, as V or t.
     QUANTITIES : names of what may be measured at the points; a record that has none of them is a plan, about the
-    first.
+        first.
     LABEL : kind of record, its name in messages.
-    sigma, load, temperature, name : as of :class:`Resistance`.
-    labels : labels of xarray or pandas of the arrays that were given.
+    sigma : as given, then quantity -> standard deviations in its SI unit, in the shape of the points; None in place of
+        these where they are to be estimated.
+    load, temperature, name : as of :class:`Resistance`.
+    labels : labels of xarray or pandas of the arrays that were given; None without.
     """
 
     #: names of places and of what may be measured there, the first what a plan is about
@@ -62,7 +66,9 @@ class Record:
     def __post_init__(self) -> None:
         """Check coordinates, values and standard deviations, convert them to SI units and give them one shape.
 
-        Raises ParameterError for values that are not finite, of another unit, or of shapes that do not go together.
+        The fields are replaced by the results: arrays of one shape, (n,) at least, and ``sigma`` as the class says.
+        Raises ParameterError for values that are not finite, of another unit, of no points, or of shapes that do not go
+        together, for sigma <= 0, and for a name with a colon.
         """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
@@ -88,20 +94,21 @@ class Record:
 
     @staticmethod
     def unit(name: str) -> str:
-        """Return the SI unit of a coordinate or quantity; a creep has none."""
+        """Return the SI unit of a coordinate or quantity by its name, as "m s-1" of V; "1" of a creepage."""
         return si_unit("force" if name == "F" else name)
 
     def label(self, name: str) -> str:
-        """Return the name of a field in a message."""
+        """Return the name of a field in messages, "RECORD: FIELD"; an unnamed record has the name of its kind."""
         return f"{self.name or self.LABEL}: {name}"
 
     def _sigmas(self) -> dict[str, Any]:
-        """Return the standard deviations that are given, by quantity; a single one is of the quantity that is
-        measured or planned.
+        """Return the standard deviations by quantity, from a single one or from a mapping.
 
-        Raises ParameterError for a single one of several quantities, and for a quantity that the record does not
-        have.
-        Returns quantity -> standard deviation, in its unit.
+        A single one is of the quantity that is measured or, in a plan, of the first quantity.
+
+        Returns quantity -> standard deviation as given, a number, an array or one with a unit; {} where none is given.
+        Raises ParameterError for a single one where several quantities are measured, and for a quantity that the record
+        does not have.
         """
         among, given = self.measured or self.QUANTITIES, {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
@@ -119,14 +126,18 @@ class Record:
 
     @property
     def overrides(self) -> dict[str, float]:
-        """Inputs of the cylinder that the record replaces: load and mass."""
+        """Inputs of the cylinder that the record replaces: "load" in N/m and "m" in kg/m -> number; {} where it has
+        neither.
+        """
         return {name: value for name in ("load", "m") if (value := getattr(self, name, None)) is not None}
 
     def initial_values(self, R: float) -> InitialValues:
-        """Return the unknowns that the record may have: name -> initial value, and range where the record leaves it
-        open.
+        """Return the unknowns that the record may have of its own, with their initial values.
 
         R : radius of the cylinder, m.
+        Returns name ("V0", "omega0", "t0") -> (initial value; (low, high) where the record leaves it open, None where
+        it gives it), in SI units; {} of records other than a :class:`Coastdown`.
+        Raises ParameterError where a start is open and the data do not show it.
         """
         return {}
 
@@ -134,7 +145,9 @@ class Record:
         """Return all :attr:`QUANTITIES` of the record as the model predicts them.
 
         cylinder : the cylinder with the present values of the unknowns.
-        values : name -> value of the unknowns of bearing and record, without the name of the record.
+        values : name -> value of the unknowns of bearing and record, without the name of the record: "brake" in N m/m,
+            "drag" in N m s/m, "V0", "omega0", "t0"; those that are missing are 0 or as the record has them.
+        Returns quantity -> values in SI units, in the shape of the points of the record.
         """
         raise NotImplementedError
 
@@ -145,18 +158,22 @@ class Resistance(Record):
 
     Parameters
     ----------
-    V : speeds, m/s.
-    M : rolling moments, N m per m of length, the torque of the bearing included, as on the shaft of a drum.
-    F : pulling forces M/R, N/m, in place of M.  A record without both is a plan.
-    sigma : standard deviation of M or F, a number or one for each point; default: estimated from the residuals.
-    load : load of this record, N/m, in place of the cylinder's.
-    temperature : temperature of this record, degrees Celsius, see ``shift`` of :func:`viscoroll.identify`.
-    name : by which the report calls it.
+    V : speeds, m/s, any sign, (n,) or one number.
+    M : rolling moments, N m per m of length, (n,), the torque of the bearing included, as on the shaft of a drum; its
+        sign is that of V where it resists.
+    F : pulling forces M/R, N/m, in place of M or beside it.  A record without both is a plan.
+    sigma : standard deviation of M or F, in its unit, a number or one for each point; of both {"M": ..., "F": ...}.
+        None: estimated from the residuals.
+    load : load of this record, N/m; None: the cylinder's.
+    temperature : temperature of this record, degrees Celsius, see ``shift`` of :func:`viscoroll.identify`; None: that
+        of the cylinder's materials.
+    name : by which the report calls it, without a colon; "": its kind, "resistance".
 
     Raises
     ------
     ParameterError
-        Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma <= 0.
+        Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma <= 0, a load that is
+        not > 0.
 
     Examples
     --------
@@ -174,11 +191,12 @@ class Resistance(Record):
     F: Numbers | None = None
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Predict rolling moment M, N m/m, and pulling force F, N/m, the torque of the bearing included.
+        """Predict rolling moment and pulling force, the torque of the bearing included.
 
         cylinder : the cylinder with the present values of the unknowns.
-        values : name -> value of brake and drag, 0 where they are missing.
-        Returns {"M": values, "F": values}, in the shape of the speeds of the record.
+        values : name -> value of "brake", N m/m, and "drag", N m s/m, each 0 where it is missing; other names are not
+            used.
+        Returns {"M": moments, N m/m; "F": forces, N/m}, in the shape of the speeds of the record.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -187,19 +205,19 @@ class Resistance(Record):
 
 @dataclass(frozen=True, eq=False)
 class Traction(Record):
-    """Traction over creep, at one speed or several.
+    """Traction over creepage, at one speed or several.
 
     Parameters
     ----------
-    V : speeds of the axis, m/s, one for all or one a point.
-    delta : creep ratios (omega R - V)/V.
-    Q : traction, N/m; None: a plan.
+    V : speeds of the axis, m/s, one for all or one a point, (n,).
+    delta : creepages (omega R - V)/V, dimensionless, (n,) or one number.
+    Q : traction, N/m, positive for delta > 0 and V > 0, (n,); None: a plan.
     sigma, load, temperature, name : as of :class:`Resistance`.
 
     Raises
     ------
     ParameterError
-        As there.
+        As of :class:`Resistance`.
 
     Examples
     --------
@@ -216,6 +234,12 @@ class Traction(Record):
     Q: Numbers | None = None
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
+        """Predict the traction.
+
+        cylinder : the cylinder with the present values of the unknowns.
+        values : not used: bearing and record have no unknowns that change the traction.
+        Returns {"Q": tractions, N/m}, in the shape of the points of the record.
+        """
         return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
 
 
@@ -225,21 +249,21 @@ class Coastdown(Record):
 
     Parameters
     ----------
-    t : times, s, ascending.
-    V, omega, x : speed of the axis, m/s, angular velocity, rad/s, distance since the release, m; at least one, of a
-        plan none.
-    V0 : speed at the release, m/s; default: unknown, near the first values.
-    omega0 : angular velocity at the release, rad/s; "rolling" (default): V0/R; None: unknown, near the first values.
+    t : times, s, ascending, (n,); they may repeat.
+    V, omega, x : speed of the axis, m/s, angular velocity, rad/s, distance since the release, m, (n,) each; at least
+        one, of a plan none.
+    V0 : speed at the release, m/s; None: unknown, near the first values.
+    omega0 : angular velocity at the release, rad/s; "rolling": V0/R; None: unknown, near the first values.
     t0 : time of the release, s, before which the roller has its first speeds; (low, high): unknown.
-    m : mass with which it rolled, kg/m, in place of the cylinder's.
+    m : mass with which it rolled, kg/m; None: the cylinder's.
     sigma : as of :class:`Resistance`; of several quantities {"V": ..., "omega": ...}, whose names are those that a
         plan measures.
-    load, temperature, name : as of :class:`Resistance`.
+    load, temperature, name : as of :class:`Resistance`; without a name it is called "run".
 
     Raises
     ------
     ParameterError
-        As there; times that fall.
+        As of :class:`Resistance`; times that fall or are no vector; t0 of another form.
 
     Examples
     --------
@@ -262,7 +286,10 @@ class Coastdown(Record):
     m: float | None = None
 
     def __post_init__(self) -> None:
-        """Check times and t0 beside all that every record checks."""
+        """Check times and t0 beside all that every record checks; t0 becomes a float or a pair of floats, s.
+
+        Raises ParameterError for times that fall or are no vector, and for a t0 that is neither a number nor a pair.
+        """
         super().__post_init__()
         t: Any = self.t
         if t.ndim > 1:
@@ -277,6 +304,14 @@ class Coastdown(Record):
         vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)
 
     def initial_values(self, R: float) -> InitialValues:
+        """Return the unknowns of the release with their initial values.
+
+        R : radius of the cylinder, m.
+        Returns name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high) where the record
+        leaves it open, None where it gives it), in s, m/s and rad/s.  A t0 that is open starts at 0, or at the end of
+        its range nearest to 0.
+        Raises ParameterError where an open start does not show in the data.
+        """
         ends: Any = np.ravel(self.t0)
         found: InitialValues = {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
         for name, value in (("V0", self.V0), ("omega0", self.omega0)):
@@ -287,10 +322,14 @@ class Coastdown(Record):
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
         """Estimate the speed at the release of the cylinder from the first data.
 
+        It is the first measured value.  Without one of V, V is R omega of a roller that rolls, or the slope of the
+        first tenth of x, of at least three points.
+
         name : "V0" or "omega0".
         R : radius of the cylinder, m.
-        Raises ParameterError where the data do not show it.
-        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s.
+        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s: the range reaches as far to either side
+        as the largest absolute value in the data.
+        Raises ParameterError where none of these was measured.
         """
         data: Any = self.V if name == "V0" else self.omega
         if data is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
@@ -304,11 +343,13 @@ class Coastdown(Record):
         return first, (first - most, first + most)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Predict V, omega and x, and for each point whether it is in full slip ("slips").
+        """Predict V, omega and x, and for each point whether it is in full slip.
 
         cylinder : the cylinder with the present values of the unknowns.
-        values : name -> value of brake and drag, and of V0, omega0 and t0 in place of those of the record.
-        Returns arrays over the times, by name: "V" in m/s, "omega" in rad/s, "x" in m, "slips" as booleans.
+        values : name -> value of "brake", N m/m, and "drag", N m s/m, and of "V0", "omega0" and "t0" in place of those
+            of the record; other names are not used.
+        Returns arrays over the times, (n,), by name: "V" in m/s, "omega" in rad/s, "x" in m, "slips" as truth values,
+        False before the release.
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

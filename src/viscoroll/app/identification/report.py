@@ -24,7 +24,12 @@ _BETTER = 0.1
 
 
 def report(fit: Any) -> str:
-    """Return the report that ``print(fit)`` shows, of a :class:`viscoroll.app.identification.Identification`."""
+    """Return the report that ``print(fit)`` shows: the fit in one line, warnings of the noise, values, limits of the
+    data.
+
+    fit : a :class:`viscoroll.app.identification.Identification`.
+    Returns a text of several lines.  The first call computes the profiles of the intervals, about as long as the fit.
+    """
     width = max(map(len, fit.values))
     rows = []
     for name, ends in fit.intervals().items():
@@ -35,7 +40,12 @@ def report(fit: Any) -> str:
 
 
 def _heading(fit: Any) -> str:
-    """Return the first line of a ``fit``: points, and chi2 or estimated standard deviations."""
+    """Return the first line of the report: number of unknowns and points, and chi2 or the estimated standard
+    deviations.
+
+    fit : a :class:`viscoroll.app.identification.Identification`. Of a plan the line says that the standard deviations
+    are those to expect.  Beside a chi2 that is not robust it has p, the probability that noise gives a larger one.
+    """
     from scipy import stats
 
     problem = fit._problem
@@ -49,7 +59,10 @@ def _heading(fit: Any) -> str:
 
 
 def _noise(fit: Any) -> Iterator[str]:
-    """Yield a sentence for each column of a ``fit`` whose residuals are no noise."""
+    """Yield a sentence for each quantity of a record whose residuals are no noise, as ``fit.misfit`` names them.
+
+    fit : a :class:`viscoroll.app.identification.Identification`.
+    """
     for name in fit.misfit:
         rms, lag, allowed, _ = fit.noise[name]
         size = f"{rms:.2f} sigma" + " by their median" * fit._problem.robust
@@ -61,7 +74,13 @@ def _noise(fit: Any) -> Iterator[str]:
 
 
 def _limits(fit: Any) -> Iterator[str]:
-    """Yield sentences on what the data of a ``fit`` do not determine."""
+    """Yield sentences on what the data do not determine.
+
+    They are on unknowns that do not act, that cannot be separated or are open, intervals that ranges limit, further
+    minima, motions with few points in full slip, and correlations above 0.9, in this order.
+
+    fit : a :class:`viscoroll.app.identification.Identification`.
+    """
     yield from (f"the data do not depend on {name}" for name in fit.does_not_act)
     *names, last = fit.undetermined or ("",)
     if names:
@@ -81,7 +100,8 @@ def _limits(fit: Any) -> Iterator[str]:
 def _products(found: list[Any]) -> str:
     """Return a sentence on the products of unknowns that the data determine.
 
-    found : products, of :meth:`viscoroll.app.identification.Identification.products`.
+    found : list of :class:`.profile.Product`, of :meth:`viscoroll.app.identification.Identification.products`; of an
+        empty list the sentence says that there is none.
     """
     sure, near = (
         " and ".join(_product_text(product) for product in found if product.near is by_slopes)
@@ -95,7 +115,10 @@ def _products(found: list[Any]) -> str:
 
 
 def _product_text(product: Any) -> str:
-    """Return a product with its value and interval."""
+    """Return a product as text, as "E T_ref^0.5 = 1200 (95%: -2 % to +2 %)", the largest exponent first.
+
+    product : a :class:`.profile.Product`; its interval is at the level 0.95.
+    """
     powers = sorted(product.powers.items(), key=lambda item: -abs(item[1]))
     text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
     low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (product.low, product.high))
@@ -104,6 +127,8 @@ def _product_text(product: Any) -> str:
 
 def _interval_limits(fit: Any) -> Iterator[str]:
     """Yield sentences on ends of intervals that are set by ranges, not by the data.
+
+    Others are on intervals with several branches, a better fit that the profiles met, and best values at a bound.
 
     fit : a :class:`viscoroll.app.identification.Identification`.
     """
@@ -127,12 +152,15 @@ def _interval_limits(fit: Any) -> Iterator[str]:
 
 
 def _values_text(values: dict[str, float]) -> str:
-    """Return values by name in one line."""
+    """Return values by name in one line, as "E = 1e+06, mu = 0.3"."""
     return ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
 
 
 def _phases(fit: Any) -> Iterator[str]:
-    """Yield a sentence for each motion of a ``fit`` with few points in full slip, on which mu rests."""
+    """Yield a sentence for each motion that has some, but fewer than five, points in full slip, on which mu rests.
+
+    fit : a :class:`viscoroll.app.identification.Identification`; nothing is yielded where mu is no unknown.
+    """
     for record_name, record in fit.records.items() if "mu" in fit.values else ():
         slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, record_name).get("slips", 0)))
         if 0 < slips < _FEW:
@@ -141,9 +169,12 @@ def _phases(fit: Any) -> Iterator[str]:
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
-    """Return an identification, ``fit``, as a dataset.
+    """Return an identification as a dataset, for files.
 
-    Values are over ``unknown``; each record's coordinates, data, fit and sigma over an axis of its own.
+    fit : a :class:`viscoroll.app.identification.Identification`.
+    Returns a dataset with value, stderr and the 95 % interval (low, high; NaN on a side that is open) over ``unknown``,
+    correlation over (``unknown``, ``other``), and for each record "RECORD NAME" of coordinates and data, "RECORD NAME
+    fit" and "RECORD NAME sigma", over "RECORD point".  Attributes: title, source, report, chi2, dof.
     """
     import xarray as xr
 
@@ -170,7 +201,14 @@ def as_dataset(fit: Any) -> xr.Dataset:
 
 
 def as_json(fit: Any) -> dict[str, Any]:
-    """Return the content of the report of a ``fit`` by name; null where a side is open or an unknown does not act."""
+    """Return the content of the report as numbers and texts that JSON has.
+
+    fit : a :class:`viscoroll.app.identification.Identification`.
+    Returns a dict: chi2, dof, planned, does_not_act, undetermined, misfit, minima, source; "unknowns", name -> value,
+    stderr and interval (95 %; None on a side that is open, and as stderr of an unknown that does not act); "says", the
+    sentences of the report; "products", "correlations", "noise"; and "sigma", the first standard deviation of each
+    quantity of a record.
+    """
     fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
     unknowns = {

@@ -42,10 +42,10 @@ _UNIT = 0.1
 class Unknown(NamedTuple):
     """An unknown, which the search varies by a coordinate u: the logarithm of its value, or its value in a unit.
 
-    name : name of the unknown.
-    start : value from which the search starts.
-    low, high : range of its value.
-    unit : unit of a linear coordinate; None: the coordinate is the logarithm.
+    name : name of the unknown, as "mu", "E_1" or "V0:run".
+    start : value from which the search starts, SI.
+    low, high : range of its value, SI.
+    unit : unit of a linear coordinate, u = value/unit; None: the coordinate is the natural logarithm of the SI value.
     mean, sd : mean and standard deviation of the coordinate as known before; sd is infinite without such knowledge.
     """
 
@@ -59,23 +59,27 @@ class Unknown(NamedTuple):
 
     @staticmethod
     def bounds(name: str) -> dict[str, Any]:
-        """Return unit and bounds of the values of an unknown with a name, as arguments of
-        :func:`.core.checks.check_array`.
+        """Return what values an unknown may have, as arguments of :func:`.core.checks.check_array`.
+
+        name : name of the unknown, perhaps with that of its record, as "V0:run".
+        Returns {"unit": SI unit} and "low": least value (-inf: any) of a linear unknown, or "above": 0.0 of all others.
         """
         kind = name.split(":")[0]
         bound = {"low": _LINEAR[kind]} if kind in _LINEAR else {"above": 0.0}
         return {"unit": si_unit(kind.removeprefix(_PREFIX["base"]))} | bound
 
     def to_u(self, value: Any) -> Any:
-        """Return the coordinate of a value."""
+        """Return the coordinate of a value, SI, a number or an array: its logarithm, or value/unit if linear."""
         return np.log(value) if self.unit is None else value / self.unit
 
     def to_value(self, u: Any) -> Any:
-        """Return the value at a coordinate."""
+        """Return the value, SI, at a coordinate u, a number or an array."""
         return np.exp(u) if self.unit is None else u * self.unit
 
     def slope(self, value: float) -> float:
-        """Return the derivative of the value by the coordinate, at a value."""
+        """Return the derivative of the value by the coordinate, SI, at a value: the value itself, or the unit if
+        linear.
+        """
         return value if self.unit is None else self.unit
 
 
@@ -85,9 +89,11 @@ def unknowns_of(
     """Return the unknowns that the caller requests, and those that records leave open, as a list of :class:`Unknown`.
 
     cylinder : the cylinder from whose inputs the search starts.
-    requested : name -> range.
-    records : name -> record.
-    priors : name -> (value, standard deviation).
+    requested : name -> range (low, high), in SI units or with units.
+    records : name -> record; its open starts become unknowns "V0:NAME", with the range of the record unless requested.
+    priors : name -> (value, standard deviation of the coordinate); the latter in SI units of linear unknowns, of others
+        of the logarithm.
+    Returns them in the order of ``requested``, then of the records.
 
     Raises
     ------
@@ -112,10 +118,12 @@ def unknowns_of(
 def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     """Check range and prior of an unknown, and return it as :class:`Unknown`.
 
-    name, start : name and start value of the unknown.
-    span : range of the unknown, (low, high), in SI units.
-    prior : value and standard deviation known beforehand, or None.
-    Raises ParameterError for a range or a prior that is none.
+    name : name of the unknown.
+    start : start value, SI.
+    span : range of the unknown, (low, high), in SI units or with units.
+    prior : (value, standard deviation) known beforehand, or None.  The latter is of the natural logarithm of the value,
+        of linear unknowns (brake, drag, nu, those of records) in their SI unit.
+    Raises ParameterError for a range that does not ascend or does not contain the start, and for a prior that is none.
     """
     low, high = _check_pair("unknown", name, span)
     if not low <= start <= high:
@@ -132,12 +140,13 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
 
 
 def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
-    """Return two numbers, each a value that the unknown may have.
+    """Return two numbers, each a value that the unknown may have, as a list of floats in SI units.
 
-    argument : "unknown" or "prior", of :func:`.identify.identify`.
+    argument : "unknown" for a range, which must ascend, or "prior" for value and standard deviation; it is named in the
+        message.
     name : name of the unknown.
-    numbers : the pair.
-    Raises ParameterError for another number of them, and for a range that does not ascend.
+    numbers : the pair; a range may have units, a prior may not.
+    Raises ParameterError for another number of them, values out of bounds, and for a range that does not ascend.
     """
     bounds = Unknown.bounds(name)
     if argument == "prior":  # the standard deviation is of a logarithm: one unit is none of both
@@ -155,9 +164,13 @@ def cylinder_of(
     """Return the cylinder with other values, at the load and the temperature of a record.
 
     cylinder : cylinder with the values that are fixed.
-    values : name -> value of unknowns.
-    record : record whose load, mass and temperature are taken; None: those of the cylinder.
-    shifts : body -> shift factor over temperature.
+    values : name -> value of unknowns, SI; those of bearing and records are not used, and what is missing stays as it
+        is.
+    record : record whose load and mass replace those of the cylinder, and to whose temperature its materials are
+        shifted;
+        None: no record.
+    shifts : "material" or "base" -> a_T over temperature in degrees Celsius, needed where the record has a temperature.
+    Returns ``cylinder`` itself where nothing changes.
 
     Raises
     ------
@@ -179,13 +192,21 @@ def cylinder_of(
 
 
 def _bodies(cylinder: Cylinder) -> dict[str, Material]:
-    """Return the bodies that deform, by section; a rigid one has no unknowns."""
+    """Return the bodies that deform; a rigid one has no unknowns.
+
+    cylinder : the cylinder; its half-space is another body only where its material is.
+    Returns "material" or "base" -> :class:`Material`.
+    """
     bodies = zip(_PREFIX, (cylinder.pair.cylinder, cylinder.pair.base), strict=True)
     return {section: body for section, body in bodies if not (body is None or body.is_rigid)}
 
 
 def _inputs(body: Material) -> dict[str, float]:
-    """Return all inputs of a body that may be unknown, by name."""
+    """Return all inputs of a body that may be unknown, by name: E (Pa), nu, T_ref (s), and E_1, tau_1, ... of its
+    modes.
+
+    Strengths and times of modes are dimensionless, divided by E and T_ref; mode 1 is the longest.
+    """
     series = {"E": body.prony.E.tolist(), "tau": body.prony.tau.tolist()}
     modes = {f"{name}_{n}": value for name, column in series.items() for n, value in enumerate(column, 1)}
     return {name: getattr(body, name) for name in _OF_MATERIAL} | modes
@@ -194,11 +215,13 @@ def _inputs(body: Material) -> dict[str, float]:
 def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
     """Return a material in which unknowns have other values.
 
-    With other modes the material is no longer the one that was measured; with another T_ref its band is shifted.
+    With other modes the material is no longer the one that was measured: ``measured`` becomes None.  With another T_ref
+    its measured band is shifted.
 
     body : the material.
     prefix : prefix of the names of its unknowns, "" or "base_".
-    values : name -> value of unknowns, of other bodies too.
+    values : name -> value of unknowns, of other bodies too; SI, modes divided by E and T_ref.
+    Returns ``body`` itself where no value differs.
     """
     old = _inputs(body)
     new = {name: values.get(prefix + name, value) for name, value in old.items()}
@@ -215,5 +238,8 @@ def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) ->
 
 @lru_cache(maxsize=256)
 def _series(strengths: tuple[float, ...], times: tuple[float, ...]) -> Prony:
-    """Return a series, the same object for the same values, so that its table of the law is made once."""
+    """Return a series, the same object for the same values, so that its table of the law is made once.
+
+    strengths, times : of each mode, divided by E and T_ref, as tuples that the cache can look up.
+    """
     return Prony(strengths, times)
