@@ -44,23 +44,23 @@ def field_names(
 ) -> tuple[str, ...]:
     """Return the names of the fields that a call of :func:`.contact.contact` has to return, in their order.
 
-    Parameters ----------
+    Parameters
+    ----------
     fields : names of fields; None: the default fields of such a roller.
     slopes : whether the slopes are added to these fields.
     method : "table", which has every field, or "direct" (the printed equations), which has no slopes, N, grip and
-    delta_0.
+        delta_0.
     like : whether both bodies are of one material; if not, the parts of M in either body are default fields too.
     si : whether the roller is a cylinder, in SI units; it has ``length``, ``C_rr`` and the parts of M too.
     cover : whether a body is a cover, a layer of finite thickness.
     split : whether it is known how slip and M are split between the bodies.  It is not if the body beside a cover
-    relaxes;
-        the fields are then those of :data:`_BEFORE_THE_SPLIT`.
+        relaxes; the fields are then those of :data:`_BEFORE_THE_SPLIT`.
 
     Returns
     -------
     tuple of str
-        Names without repetition: those of ``fields``, or the default fields, then slopes that were not among them.
-        The default fields of a cover end with ``delta_0``.
+        Those of ``fields``, or the default fields, then slopes that were not among them.  The
+        default fields of a cover end with ``delta_0``.
 
     Raises
     ------
@@ -99,12 +99,12 @@ def field_names(
 
 @lru_cache(maxsize=64)
 def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
-    """Return the fields that the kernels compute, a row each, from which :func:`complete` makes all fields of a
-    call.
+    """Return the fields that the kernels compute, a row each, from which :func:`complete` makes all fields of a call.
 
-    names: fields of the call, as of :func:`field_names`. unlike: whether the bodies are of two materials; if not,
-    each part of M is half of M, and is not computed. Returns names without repetition: a field that is a multiple of
-    another (``length`` of ``lam``, ``C_rr`` of ``M``) is replaced by that other one.
+    names: fields of the call, as of :func:`field_names`.
+    unlike: whether the bodies are of two materials; if not, each part of M is half of M, and is not computed.
+    Returns names without repetition: a field that is a multiple of another (``length`` of ``lam``, ``C_rr`` of ``M``)
+    is replaced by that other one.
     """
     derived = _MULTIPLES if unlike else _MULTIPLES | _HALVES
     return tuple(dict.fromkeys(derived.get(name, name) for name in names))

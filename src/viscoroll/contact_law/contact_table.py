@@ -99,13 +99,12 @@ def evaluate_law(
 ) -> Floats:
     """Return fields of the contact, a row each, at states of one or many laws.
 
-    Parameters ----------
+    Parameters
+    ----------
     material : the rows of one law, for all states; or many materials, of which each state names one; or None: each
-    state has
-        a law of one relaxation time, by its alpha.
+        state has a law of one relaxation time, by its alpha.
     arrays : five numbers or arrays that broadcast to ``shape``, dimensionless: alpha (index of the material, where
-    there
-        are many; not used with the rows of one law), kappa, mu, V, and delta or omega.
+        there are many; not used with the rows of one law), kappa, mu, V, and delta or omega.
     shape : shape of the states; () for one state.
     creep_is_omega : whether the last of ``arrays`` is omega, else delta.
     names : fields that kernels compute, as of :func:`.contact_fields.computed_fields`.
@@ -189,13 +188,14 @@ def _kernel(direct: bool) -> tuple[Any, Any]:
 def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool) -> tuple[Any, NDArray]:
     """Make the laws of the states of a block, and choose the order in which the states are evaluated.
 
-    Called where the states have no law in common, which would be evaluated in the order given. material: many
-    materials, or None: a law of one relaxation time for each state. alpha: alphas of the states, or indices of their
-    materials as floats, (n,) or (1,). parts: kappa, mu, V, creep, each (n,) or (1,), dimensionless. direct: whether
-    the printed equations are solved, which need alpha alone. Returns (a tuple of the records of the laws that
-    kernels take, or ``alpha`` if ``direct``; indices of the states in order of evaluation, (n,), or an empty array
-    for the order given).  States are ordered by material, or of laws of one relaxation time by octave of their
-    speed, so that neighbours read the same numbers.
+    Called where the states have no law in common, which would be evaluated in the order given.
+    material: many materials, or None: a law of one relaxation time for each state.
+    alpha: alphas of the states, or indices of their materials as floats, (n,) or (1,).
+    parts: kappa, mu, V, creep, each (n,) or (1,), dimensionless.
+    direct: whether the printed equations are solved, which need alpha alone.
+    Returns (a tuple of the records of the laws that kernels take, or ``alpha`` if ``direct``; indices of the states in
+    order of evaluation, (n,), or an empty array for the order given).  States are ordered by material, or of laws of
+    one relaxation time by octave of their speed, so that neighbours read the same numbers.
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
@@ -218,8 +218,10 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
     """Raise ParameterError where kappa |V| exceeds its largest allowed value; without elements nothing is refused.
 
-    kappa: slenderness R/l0, > 0, any shape. V: velocities divided by R/T_ref, any sign; broadcasts with kappa.  (Or
-    V in another unit, with kappa divided by that unit.) fastest: largest allowed kappa |V|.
+    kappa: slenderness R/l0, > 0, any shape.
+    V: velocities divided by R/T_ref, any sign; broadcasts with kappa.  (Or V in another unit, with kappa divided by
+    that unit.)
+    fastest: largest allowed kappa |V|.
     """
     if not (kappa.size and V.size):
         return

@@ -68,13 +68,14 @@ def loads_of(
     """Check and broadcast the loads of a call of :func:`.steady.steady`.
 
     scene : dimensionless parameters of the roller, on the slope; one alpha or one material, the others numbers or
-    arrays.
+        arrays.
     force, torque : numbers, arrays or :class:`Feedback`, divided by P and P R; None: 0.
     slope : angle, rad, a number or an array; tan(slope) is added to the force.  None: level.
-    V : given speeds, dimensionless, any sign; None where the speed is to be found. Returns the :class:`Loads`: the
-    broadcast loads, flattened to vectors (n,). Raises ParameterError: several alphas; NaN or infinite input; shapes
-    that do not broadcast; kappa |V| above :data:`FASTEST`; a feedback that changes with time or has arrays of gains;
-    with V both or neither of force and torque (a slope alone counts as the force), or a feedback.
+    V : given speeds, dimensionless, any sign; None where the speed is to be found.
+    Returns the :class:`Loads`: the broadcast loads, flattened to vectors (n,).
+    Raises ParameterError: several alphas; NaN or infinite input; shapes that do not broadcast; kappa |V| above
+    :data:`FASTEST`; a feedback that changes with time or has arrays of gains; with V both or neither of force and
+    torque (a slope alone counts as the force), or a feedback.
     """
     if type(scene.alpha) is not float:
         refuse_arrays(scene, ("alpha",))

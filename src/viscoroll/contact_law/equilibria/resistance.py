@@ -103,10 +103,10 @@ class Branches:
     def locate_loads(self, load: Floats) -> tuple[Integers, Integers]:
         """Locate the branches on which the curve takes given values, as brackets for a root solve.
 
-        load : values of kappa (M - G V), dimensionless, any sign, (n,). Returns (index of the load; index of the
-        node below the crossing, which lies between that node and the next one), one entry for each crossing,
-        (crossings,) each; a load has none to many.  An extremum, and loads within rounding of it, belong to the
-        branch that ends there.
+        load : values of kappa (M - G V), dimensionless, any sign, (n,).
+        Returns (index of the load; index of the node below the crossing, which lies between that node and the next
+        one), one entry for each crossing, (crossings,) each; a load has none to many.  An extremum, and loads within
+        rounding of it, belong to the branch that ends there.
         """
         from ...kernels.rows.load_crossings import EXTREMUM_RTOL
 
@@ -201,8 +201,9 @@ def branches(law: LawTable, gain: float) -> Branches:
 def speed_nodes(law: LawTable) -> Floats:
     """Return nodes of log2(u), u = kappa V, closely spaced where the material relaxes.
 
-    law : rows of the material. Returns the nodes, ascending, (n,): 16 in an octave from 15 octaves below to 15
-    octaves above the rates of the modes, 2 in an octave for 446 octaves beyond on either side.
+    law : rows of the material.
+    Returns the nodes, ascending, (n,): 16 in an octave from 15 octaves below to 15 octaves above the rates of the
+    modes, 2 in an octave for 446 octaves beyond on either side.
     """
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
@@ -227,8 +228,7 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
     function : takes points (m,) and returns its values there, (m,).
     nodes : points, ascending, (n,).
     noise : rounding error of the function at the nodes, absolute, a number or (n,); nodes with values no larger than
-    it
-        have no sign and are left out.
+        it have no sign and are left out.
     Returns the zeros, ascending, (zeros,), to the rounding of the nodes; empty if there are none.  They are bisected
     from the changes of sign.  A pair of zeros without a change of sign is found where |function| has a minimum at a
     node.
@@ -260,11 +260,11 @@ def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
 def _refine_near_double_roots(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
     """Find points that separate two zeros between the neighbours of a node, where the nodes show no change of sign.
 
-    Candidates are the nodes with a local minimum of |function| near which a parabola through three nodes passes 0;
-    the interval around each is divided again, :data:`_REFINEMENTS` times at most.
+    Candidates are the nodes with a local minimum of |function| near which a parabola through three nodes passes 0; the
+    interval around each is divided again, :data:`_REFINEMENTS` times at most.
     function : takes points (m,) and returns its values there, (m,).
-    x, y : nodes, ascending, and values of the function there, (n,). Returns a list of (points, values), (33,) each,
-    one for each pair of zeros that was separated; empty if none was.
+    x, y : nodes, ascending, and values of the function there, (n,).
+    Returns a list of (points, values), (33,) each, one for each pair of zeros that was separated; empty if none was.
     """
     size, sign = np.abs(y), np.sign(y)
     minimum = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])

@@ -32,16 +32,15 @@ class Loss:
 
     Powers are divided by P R/T_ref, of a Cylinder in W per m of length.
 
-    Attributes ----------
+    Attributes
+    ----------
     slip : power lost in slip, (omega - V) Q of a scene, (omega R - V) Q of a Cylinder.
-    half_space, cylinder : power lost in rolling in either body, V M_half_space and omega M_cylinder (of a Cylinder
-    the first
-        divided by R); their sum with ``slip`` is the power of force and torque.
+    half_space, cylinder : power lost in rolling in either body, V M_half_space and omega M_cylinder (of a Cylinder the
+        first divided by R); their sum with ``slip`` is the power of force and torque.
     coefficient : coefficient of rolling resistance, dimensionless: all losses divided by P |V|; at V = 0 the limit V
-    -> 0.
-    efficiency : output power divided by input power, each the sum of those of -force V, -torque omega, or of force
-    V,
-        torque omega, that are positive; 0 without output, NaN without input, as at rest.
+        -> 0.
+    efficiency : output power divided by input power.  Force V and torque omega are input where they are positive,
+        output where they are negative.  0 without output; NaN without input, as at rest.
     """
 
     slip: Floats
@@ -56,11 +55,11 @@ class Diagnosis(NamedTuple):
 
     loads : the loads, n of them.
     states : (index of the load, V, Q) of all states, whether or not the friction suffices, (states,) each,
-    dimensionless.
+        dimensionless.
     number : equilibria of each load, (n,).
     maximum : (largest kappa M, kappa V there), dimensionless; (NaN, NaN) with feedback, and for elastic bodies.
     elastic : whether the bodies are elastic and no gain and no given V determines the speed, so that M = 0 at every
-    speed.
+        speed.
     """
 
     loads: Loads
@@ -117,18 +116,18 @@ class Steady(Values):
     The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); shorter lists are padded
     with NaN (``stable``: False).  The axes before it are those of the loads; of one load there are none.
 
-    Attributes ----------
+    Attributes
+    ----------
     V, omega, delta : speeds and creepage (omega - V)/V, infinite for a cylinder that spins at V = 0.
-    Q, M : creep force and rolling resistance moment, divided by P and P R; M_half_space, M_cylinder : the parts of
-    M.
+    Q, M : creep force and rolling resistance moment, divided by P and P R; M_half_space, M_cylinder : the parts of M.
     beta : stick zone divided by contact length.  grip : friction reserve 1 - |Q|/mu, 0 in full slip.
     stable : whether (V, omega) returns after any small disturbance; False if an eigenvalue is 0.
     eigenvalues : last axis of two, complex, fast and slow: growth rates of small disturbances, in units of
-    gamma/T_ref.
+        gamma/T_ref.
     force, torque : loads, with slope and feedback; the one to be found where V was given.
     loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
-    count : number of equilibria of each load, an int for one load. Of a Cylinder all in SI units, per m of its
-    length: m/s, rad/s, N/m, N m/m, 1/s, W/m.
+    count : number of equilibria of each load, an int for one load.
+    Of a Cylinder all in SI units, per m of its length: m/s, rad/s, N/m, N m/m, 1/s, W/m.
 
     Examples
     --------
@@ -249,9 +248,9 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     states : existing states, sorted by load and |V|, dimensionless.
     reasons : data of the loads without equilibrium; its ``number`` is the number of states of each load.
     scale : units of the roller, which the result has.
-    labels : labels of the arguments of the call, or None; used where they label the loads. Returns the
-    :class:`Steady`, whose fields have the axes of the loads and one of equilibria, padded with NaN where loads have
-    fewer equilibria than others.
+    labels : labels of the arguments of the call, or None; used where they label the loads.
+    Returns the :class:`Steady`, whose fields have the axes of the loads and one of equilibria, padded with NaN where
+    loads have fewer equilibria than others.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

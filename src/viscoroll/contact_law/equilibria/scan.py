@@ -58,8 +58,7 @@ class _ScanProblem(NamedTuple):
     """One load in the frame of the motion, in which V > 0; all is dimensionless.
 
     law : rows of the material.
-    load_rows : (2, 3): the row of the force and the row of the torque, each (value at rest, gain on V, gain on
-    omega).
+    load_rows : (2, 3): the row of the force and the row of the torque, each (value at rest, gain on V, gain on omega).
     kappa, mu : slenderness R/l0 and coefficient of friction.
     """
 
@@ -69,8 +68,8 @@ class _ScanProblem(NamedTuple):
     mu: float
 
     def free_rolling(self, x: NDArray) -> _FreeRolling:
-        """Return the contact at x = log2(kappa V), (n,): moments, creepage of free rolling and limit of stick at
-        that speed.
+        """Return the contact at x = log2(kappa V), (n,): moments, creepage of free rolling and limit of stick at that
+        speed.
         """
         V = np.exp2(x) / self.kappa
         M, M_half_space, star = contact_fields_at(
@@ -95,9 +94,9 @@ class _ScanProblem(NamedTuple):
     def rows(self, V: NDArray, slip: NDArray) -> tuple[NDArray, NDArray]:
         """Evaluate the law and the residuals of the equations of equilibrium, full slip included.
 
-        V, slip : speed and omega - V, (n,), dimensionless, in the frame where V > 0. Returns (rows of :class:`Field`
-        with the slopes of the law from row 6 on, (10, n); residuals, (2, n): M less force and torque, and Q -
-        M_half_space + force), dimensionless.
+        V, slip : speed and omega - V, (n,), dimensionless, in the frame where V > 0.
+        Returns (rows of :class:`Field` with the slopes of the law from row 6 on, (10, n); residuals, (2, n): M less
+        force and torque, and Q - M_half_space + force), dimensionless.
         """
         rows = state_rows(self.law, self.kappa, self.mu, V, slip / V)
         force, torque = self.loads_at(V, V + slip)
@@ -110,8 +109,9 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     """Find all states of rolling under loads with a gain on omega, by a scan over the speed.
 
     law : rows of the material.
-    loads : the loads, with gains on omega. Returns the :class:`States` of both directions of motion, and those that
-    spin at V = 0 and omega other than 0; unsorted. Rest, V = omega = 0, is not among them.
+    loads : the loads, with gains on omega.
+    Returns the :class:`States` of both directions of motion, and those that spin at V = 0 and omega other than 0;
+    unsorted. Rest, V = omega = 0, is not among them.
     """
     gains = loads.gains
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
@@ -164,9 +164,9 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     """Find the states of a load by a scan over V, where the sum of the equations gives omega at each V.
 
     Used where the gains on omega of force and torque have a sum other than 0.
-    problem : the load and the rows of its material. Returns (x = log2(kappa V), ascending; slip = omega - V),
-    (states,) each, dimensionless, in the frame where V > 0.  The states are approximate; :func:`_polish` refines
-    them and drops those that are none.
+    problem : the load and the rows of its material.
+    Returns (x = log2(kappa V), ascending; slip = omega - V), (states,) each, dimensionless, in the frame where V > 0.
+    The states are approximate; :func:`_polish` refines them and drops those that are none.
     """
 
     def beyond(x: NDArray, part: float) -> NDArray:
@@ -196,9 +196,9 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     """Find the states of a load by a scan over the slip, where the sum of the equations gives V alone.
 
     Used where the gains on omega of force and torque have the sum 0.
-    problem : the load and the rows of its material. Returns (x = log2(kappa V), slip = omega - V), (states,) each,
-    dimensionless, in the frame where V > 0, unsorted.  States of partial slip are zeros over the slip, those of full
-    slip follow from Q = mu or -mu.
+    problem : the load and the rows of its material.
+    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where V > 0, unsorted.
+    States of partial slip are zeros over the slip, those of full slip follow from Q = mu or -mu.
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
@@ -222,11 +222,11 @@ def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
     """Refine approximate states by Newton steps in V and slip, and drop those that are no states or occur twice.
 
     problem : the load and the rows of its material.
-    V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0. Returns
-    rows of :class:`Field` with the slopes of the law at the refined states, (10, states), sorted by V and creepage.
-    A step that does not reduce the residuals is rejected.  A state whose residual stays above :data:`_RESIDUAL` of
-    its terms is dropped.  Where the contact passes from full slip to full slip within the rounding of V, two zeros
-    are one state, or none.
+    V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0.
+    Returns rows of :class:`Field` with the slopes of the law at the refined states, (10, states), sorted by V and
+    creepage. A step that does not reduce the residuals is rejected.  A state whose residual stays above
+    :data:`_RESIDUAL` of its terms is dropped.  Where the contact passes from full slip to full slip within the
+    rounding of V, two zeros are one state, or none.
     """
     rows, residuals = problem.rows(V, slip)
     gains = problem.load_rows[:, 1:]

@@ -56,9 +56,9 @@ class States(NamedTuple):
     """Steady states one after another, dimensionless; speeds in R/T_ref.
 
     load : index of the load of each state, (n,).
-    rows : quantities of the states, (10, n), in the order of :class:`Field`, with omega and the eigenvalues from row
-    6 on;
-        V, Q, M and omega have the signs of the motion.  delta and omega are NaN where the friction does not suffice.
+    rows : quantities of the states, (10, n), in the order of :class:`Field`, with omega and the eigenvalues from row 6
+        on; V, Q, M and omega have the signs of the motion.  delta and omega are NaN where the friction does not
+        suffice.
     """
 
     load: Integers
@@ -71,8 +71,9 @@ class States(NamedTuple):
         loads : the loads, of which the gains and j are used.
         load : index of the load of each state, (n,).
         sign : sign of V, 1.0 or -1.0, (n,).
-        answers : rows of :class:`Field` with the slopes of the law from row 6 on, (10, n), in a frame where V > 0;
-        not changed. Returns the :class:`States`.
+        answers : rows of :class:`Field` with the slopes of the law from row 6 on, (10, n), in a frame where V > 0; not
+            changed.
+        Returns the :class:`States`.
         """
         rows = answers.copy()
         rows[[Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] *= sign
@@ -88,8 +89,9 @@ class States(NamedTuple):
 
         loads : the loads, dimensionless.
         load : index of the load of each state, (n,).
-        law : rows of the material. Returns the :class:`States`, (n,): the eigenvalue of slip is -inf, the slow one
-        is that of the less stable direction; delta and omega are NaN where the friction does not suffice.
+        law : rows of the material.
+        Returns the :class:`States`, (n,): the eigenvalue of slip is -inf, the slow one is that of the less stable
+        direction; delta and omega are NaN where the friction does not suffice.
         """
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
@@ -129,10 +131,10 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
 
     slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n), dimensionless.
     gains : gains of force and torque on V and omega.
-    j : moments of inertia divided by m R^2, (n,). Returns rows, (3, n): real part of the faster eigenvalue (the
-    smaller number) and of the slower one, imaginary part of the slower (>= 0; the faster has its negative).  The
-    determinant is b (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is computed without the
-    cancellation of the large slopes of Q.
+    j : moments of inertia divided by m R^2, (n,).
+    Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower one, imaginary part
+    of the slower (>= 0; the faster has its negative).  The determinant is b (M'(V) - gain)/j without a gain on omega,
+    where b = dQ/domega; it is computed without the cancellation of the large slopes of Q.
     """
     a, b, d_half_space, d_cylinder = slopes
     with np.errstate(invalid="ignore"):
@@ -194,8 +196,9 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 
     law : rows of the material.
     gain : slope of the load in V, dimensionless.
-    total : kappa (force + torque), dimensionless, any sign, (n,). Returns (index of the load; sign of V, 1.0 or
-    -1.0; kappa |V|), one entry for each crossing, (crossings,) each; a load has none to many.
+    total : kappa (force + torque), dimensionless, any sign, (n,).
+    Returns (index of the load; sign of V, 1.0 or -1.0; kappa |V|), one entry for each crossing, (crossings,) each; a
+    load has none to many.
     """
     from ...kernels.rows.load_crossings import crossing_loop
 
@@ -218,8 +221,9 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     loads : the loads, dimensionless; where one of force and torque is to be found, the other one determines Q.
     load : index of the load of each state, (n,).
     sign : sign of the motion, in whose frame V > 0, 1.0 or -1.0, (n,).
-    V : speeds, > 0, dimensionless, (n,). Returns the :class:`States`, (n,), with NaN for delta and omega where |Q|
-    >= mu, so that the friction does not suffice.
+    V : speeds, > 0, dimensionless, (n,).
+    Returns the :class:`States`, (n,), with NaN for delta and omega where |Q| >= mu, so that the friction does not
+    suffice.
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V

@@ -123,8 +123,7 @@ def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
     """Return the indices of the loads under which the cylinder can be at rest, V = omega = 0, (m,).
 
     loads : the loads, dimensionless: those with V = 0 given, or else with force + torque = 0.
-    neutral : whether every speed is steady without a load, as of elastic bodies; rest then counts only where
-    |torque|
+    neutral : whether every speed is steady without a load, as of elastic bodies; rest then counts only where |torque|
         exceeds mu, so that the friction does not suffice, which the result has to say.
     """
     if loads.V is not None:
