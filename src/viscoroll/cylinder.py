@@ -99,20 +99,21 @@ class Cylinder(Methods):
         material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
     ) -> None:  # fmt: skip
-        """Check and freeze the parameters, which the class describes.
+        """Check and freeze the parameters, which the class describes; each number may be an array (n,).
 
-        R: radius, m.
-        m: mass per length, kg/m.
-        E: Young's modulus, Pa.
-        nu: Poisson's ratio.
-        T_epsilon, T_sigma: retardation and relaxation time, s.
-        mu: coefficient of friction.
-        j: moment of inertia divided by m R^2.
-        g: acceleration of gravity, m/s^2.
+        R: radius, m, > 0.
+        m: mass per length, kg/m, > 0.
+        E: long-time Young's modulus of both bodies, Pa, > 0; None with ``material``.
+        nu: Poisson's ratio, in (-1, 0.5]; None with ``material``.
+        T_epsilon, T_sigma: retardation and relaxation time, s, > 0, T_epsilon >= T_sigma; None with ``material``.
+        mu: coefficient of friction, > 0.
+        j: moment of inertia divided by m R^2, > 0.
+        g: acceleration of gravity, m/s^2, > 0.
         plane: "strain" or "stress".
-        material, base: materials of cylinder and half-space, in place of E to T_sigma.
-        load: N/m; None: the weight.
-        pressed: field of ``load``, for :func:`dataclasses.replace`.
+        material: material of the cylinder, or a law of one, in place of E to T_sigma.
+        base: material of the half-space; None: that of the cylinder.
+        load: force that presses the cylinder on the base, N/m, > 0; None: the weight m g.
+        pressed: the load by its name as a field, for :func:`dataclasses.replace`; ``load`` goes first.
         Raises ParameterError as the class says.
         """
         values: dict[str, Any] = {
@@ -150,7 +151,11 @@ class Cylinder(Methods):
 
     @cached_property
     def pair(self) -> Pair:
-        """Return both bodies as :class:`.materials.pair.Pair`; raises ParameterError where they do not go together."""
+        """Both bodies as :class:`.materials.pair.Pair`, in SI units.
+
+        Raises ParameterError where they do not go together: a dimensionless law as ``material``, a ``base`` beside a
+        law that contains one, another ``plane`` than that of the law.
+        """
         law = self.material
         if not isinstance(law, LawTable):
             sls: dict[str, Any] = {name: getattr(self, name) for name in _SLS}
@@ -173,9 +178,9 @@ class Cylinder(Methods):
     def replace(self, **changes: Any) -> Cylinder:
         """Return a copy with some parameters changed; ``material`` takes the place of E to T_sigma, and the reverse.
 
-        changes: parameters by name.
+        changes: arguments of :class:`Cylinder` by name, in SI units.
 
-        A load that was given stays; ``load=None`` makes it the weight again.
+        A load that was given stays; ``load=None`` makes it the weight again.  Raises ParameterError as the class does.
 
         Examples
         --------
@@ -203,6 +208,11 @@ class Cylinder(Methods):
         Parameters
         ----------
         slope : angle in rad, a number or (n,), in (-pi/2, pi/2).
+
+        Raises
+        ------
+        ParameterError
+            A slope out of this range.
 
         Examples
         --------
@@ -260,9 +270,11 @@ class Cylinder(Methods):
 
     @cached_property
     def _scene(self) -> Scene:
-        """Compute the scene, once; raises ParameterError for a law of another load.
+        """The dimensionless :class:`viscoroll.Scene`, computed once.
 
-        Returns the dimensionless :class:`viscoroll.Scene`.
+        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  With arrays T_epsilon, T_sigma its material
+        is a series for each cylinder.
+        Raises ParameterError for the law of a layer that was computed for another load, and for a scene out of range.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and law.cover is not None:
@@ -279,7 +291,10 @@ class Cylinder(Methods):
         return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
 
     def _refuse_other_load(self, law: LawTable) -> None:
-        """Raise ParameterError where the ``law`` of a layer is that of another l0."""
+        """Raise ParameterError where the law of a layer is that of another load or radius.
+
+        law: law of a layer; it holds for one thickness divided by l0, and l0 follows from load and R.
+        """
         cover: Any = law.material
         own = self.pair.cover(self.l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
@@ -306,16 +321,17 @@ def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
 
 
 def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: Any, j: Any) -> Scene:
-    """Return the scene of one cylinder or of many; the arguments are numbers or arrays, unchecked.
+    """Return the scene of one cylinder or of many; the arguments are numbers or arrays (n,), unchecked.
 
     R: radius, m.
     m: mass per length, kg/m.
     load: force per length that presses the cylinder on the base, N/m.
     E_prime: contact modulus, Pa.
     T_ref: unit of time, s.
-    law: alpha, a number or (n,), or a material of a scene, with times divided by ``T_ref``.
-    mu, j: friction and moment of inertia, dimensionless.
-    Raises ParameterError by the names of the scene's parameters.
+    law: alpha, a float or an array (n,), or a material of a scene, with times divided by ``T_ref``.
+    mu, j: coefficient of friction, and moment of inertia divided by m R^2.
+    Raises ParameterError by the names of the scene's parameters, where these are out of range.
+    Returns the dimensionless :class:`viscoroll.Scene`.
     """
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name

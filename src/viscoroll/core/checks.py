@@ -32,7 +32,8 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
         smallest and largest allowed value; ``above``, number that all values must exceed.
 
     Returns
-    ------- array of the shape of ``value``, finite
+    -------
+    array of the shape of ``value``, finite
 
     Raises
     ------

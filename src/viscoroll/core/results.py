@@ -66,7 +66,8 @@ class Result:
         path : file to save it in, with a suffix that matplotlib knows; default: none.
 
         Returns
-        ------- matplotlib.figure.Figure
+        -------
+        matplotlib.figure.Figure
 
         Raises
         ------

@@ -87,7 +87,8 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
     more : further sections that the file may have.
 
     Returns
-    ------- Scene or Cylinder
+    -------
+    Scene or Cylinder
 
     Raises
     ------
@@ -108,9 +109,10 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
 def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type | None]) -> None:
     """Raise FileError if sections exclude each other, or have unknown keys or values of the wrong type.
 
-    path: path of the file.
-    content: content of the file by section.
-    more: further section -> its class, None if it is checked elsewhere.
+    path: path of the file, for the message and the number of the line.
+    content: name of a section, or key outside of sections -> its content, as tomllib reads it.
+    more: name of a further section that the file may have -> its class, a msgspec.Struct; None if it is checked
+    elsewhere.
     """
     check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
@@ -128,13 +130,14 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
 
 
 def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
-    """Return the roller of checked sections, whose numbers may be arrays.
+    """Return the roller of checked sections, whose numbers may be arrays (n,).
 
-    path: path of the file.
-    content: content of the file by section.
-    materials: name of an argument of Cylinder -> material.
+    path: path of the file, for messages.
+    content: name of a section -> its keys and values; ``preset`` -> name of a scene.
+    materials: "material" and "base" -> material, as far as the file has these sections.
 
-    Raises ParameterError for a value out of range, FileError for a wrong series.
+    Raises ParameterError for a value out of range or missing, or an unknown preset; FileError for a wrong series.
+    Returns a Cylinder if there is a section [cylinder], else a Scene.
     """
     if "cylinder" in content:
         return Cylinder(**content["cylinder"], **materials)
@@ -151,11 +154,11 @@ def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, A
 
 
 def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
-    """Return an error of a parameter with the section and the line that gives it.
+    """Return the error of a parameter as a FileError with the section and the number of the line that gives it.
 
-    path: path of the file.
-    content: content of the file by section.
-    error: the error, which names the parameter.
+    path: path of the file, which is read again for the line.
+    content: name of a section -> its keys and values.
+    error: the error, which names the parameter; one that no section gives is put at [scene] or [cylinder].
     """
     sections = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
     default = next((name for name in SCHEMA if name in content), "")
@@ -170,7 +173,8 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     path : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
 
     Returns
-    ------- Pair, Prony, Bodies, float or Cylinder
+    -------
+    Pair, Prony, Bodies, float or Cylinder
 
     Raises
     ------

@@ -112,11 +112,11 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
 
 @np.errstate(all="ignore")  # scipy may overflow for a distribution that is refused
 def _is_distribution(name: str, value: Any) -> bool:
-    """Return whether the value of a quantity is a distribution; else it must be a number.
+    """Return whether the value of a quantity is a distribution; else it is a number.
 
-    name: name of the quantity.
-    value: what a caller gave.
-    Raises ParameterError for what is neither.
+    name: name of the quantity, for the message.
+    value: what a caller gave; an object with a method ``ppf`` counts as a distribution.
+    Raises ParameterError for what is neither, or a distribution whose median is not finite.
     """
     random = hasattr(value, "ppf")
     try:
@@ -128,14 +128,16 @@ def _is_distribution(name: str, value: Any) -> bool:
 
 
 def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int) -> Floats:
-    """Return a block of points inside (0, 1), (dimensions, stop - start).
+    """Return a block of points of the unit cube, each coordinate inside (0, 1), (dimensions, stop - start).
 
-    design: "random", "latin" or "sobol".
-    seed: seed of all points.
-    n: number of all points.
-    dimensions: coordinates of a point.
-    start, stop: indices of the block.
-    block: number of the block.
+    The same arguments give the same bits, whatever blocks were drawn before.
+
+    design: "random", "latin" or "sobol", see the head of this file.
+    seed: seed of all points, a whole number in [0, 2^63).
+    n: number of all points, which are the strata of "latin"; the other designs do not depend on it.
+    dimensions: number of coordinates of a point; 0 gives an array (0, stop - start).
+    start, stop: index of the first point, and of the one behind the last.
+    block: number of the block, by which "random" and "latin" choose the random numbers; "sobol" does not depend on it.
     """
     if dimensions == 0:
         return np.empty((0, stop - start))
@@ -151,7 +153,11 @@ def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop:
 
 
 def _stream(seed: int, number: int) -> np.random.Generator:
-    """Return the generator of the stream ``number`` of a ``seed``."""
+    """Return the random generator (Philox) of one stream of a seed.
+
+    seed: the seed, in [0, 2^63).
+    number: number of the stream, in [0, 2^64): that of a block, or 2^64 - 1 for the keys of permutations.
+    """
     return np.random.Generator(np.random.Philox(key=np.array([seed, number], np.uint64)))
 
 
@@ -161,11 +167,12 @@ def _keys(seed: int, dimensions: int) -> Words:
 
 
 def permuted(index: Words, n: int, key: Words) -> Words:
-    """Return the images of numbers under a permutation of 0 ... n - 1.
+    """Return the images of numbers under a permutation of 0 ... n - 1, computed for each number by itself.
 
-    index: the numbers, (k,).
-    n: size of the permutation.
-    key: keys of its rounds.
+    index: the numbers, < n, (k,), uint64.
+    n: size of the permutation, >= 1.
+    key: keys of the rounds of the Feistel network, (rounds,), uint64; another key is another permutation.
+    Returns the images, (k,), uint64, a new array.
     """
     half = max((int(n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)
@@ -179,9 +186,10 @@ def permuted(index: Words, n: int, key: Words) -> Words:
 def _feistel(index: Words, half: int, key: Words) -> Words:
     """Return the images of numbers under a permutation of all numbers of 2 * half bits.
 
-    index: the numbers, (k,).
-    half: bits of half a number.
-    key: keys of the rounds.
+    index: the numbers, (k,), uint64, < 2^(2 half).
+    half: bits of half a number, 1 to 32.
+    key: keys of the rounds, (rounds,), uint64.
+    Returns the images, (k,), uint64.
     """
     width, mask = np.uint64(half), np.uint64(2**half - 1)
     left, right = index >> width, index & mask
@@ -206,14 +214,14 @@ def _sequence(seed: int, dimensions: int) -> Any:
 
 
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
-    """Return points of the Sobol sequence, (dimensions, stop - start).
+    """Return points of the scrambled Sobol sequence of a seed, (dimensions, stop - start), in [0, 1).
 
-    seed: seed of the sequence.
-    dimensions: coordinates of a point.
-    start, stop: first index, and the one behind the last.
+    seed: seed of the scrambling.
+    dimensions: number of coordinates of a point.
+    start, stop: index of the first point, and of the one behind the last; stop > start.
 
-    ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block
-    (and refuses more than 32 bits).  Its state is set instead; a test compares with a sequence from its start.
+    ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block (and refuses more than
+    32 bits).  Its state is set instead; a test compares with a sequence from its start.
     """
     sequence = copy.copy(_sequence(seed, dimensions))
     drawn = np.empty((stop - start, dimensions))

@@ -238,7 +238,8 @@ class Material(FromPrograms):
         omega : angular frequencies, rad/s, >= 0, of any shape.
 
         Returns
-        ------- number or array, Pa, of the shape of ``omega``
+        -------
+        number or array, Pa, of the shape of ``omega``
 
         Raises
         ------
@@ -289,7 +290,8 @@ class Material(FromPrograms):
         t : times, s, >= 0, of any shape.
 
         Returns
-        ------- number or array, Pa, of the shape of ``t``
+        -------
+        number or array, Pa, of the shape of ``t``
 
         Raises
         ------

@@ -36,10 +36,10 @@ class Batch(NamedTuple):
     """Motions to be solved; dimensionless.
 
     problem : the checked motions.
-    inputs : parameters and start speeds by name, vectors of one or n values.
-    immobile : motions that stay in the indentation of a standstill, (n,).
-    times : output times.
-    rows : names of the rows to compute.
+    inputs : name -> vector of one or n values, in the order alpha, kappa, mu, gamma, j, V0, omega0.
+    immobile : whether a motion is too slow to leave the indentation of a standstill, (n,).
+    times : output times, (times,), ascending, in T_ref.
+    rows : names, out of :data:`.drive.ROWS`, of the quantities to compute.
     threads : number of threads.
     progress : title of a progress bar, None for none.
     """
@@ -56,8 +56,9 @@ class Batch(NamedTuple):
 class Solution(NamedTuple):
     """Solved motions, dimensionless, and their source.
 
-    motions : rows, status, onset and rest times, number of switches.
-    about : steps and ``flow`` (whether from the flow map) of each motion; ``flow_error``, ``flow_problem`` of the map.
+    motions : quantities (rows, n, times), status, onset and rest times, number of switches.
+    about : "steps" and "flow" (whether from the flow map), (n,); "flow_error", the stated error of the map, NaN without
+    one; "flow_problem", why a map that was tried could not be used, or "".
     """
 
     motions: FlowResult
@@ -65,12 +66,15 @@ class Solution(NamedTuple):
 
 
 def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
-    """Solve motions; those outside the flow map are integrated.
+    """Solve motions: look up those that the flow map of their scene contains, and integrate all others.
+
+    A flow map is a table of all motions of one scene (:mod:`.flow`).
 
     batch: the motions.
-    method: "auto", "flow" or "integrate", as of :func:`viscoroll.ensemble`.
+    method: "auto" (a map from :data:`FLOW_PAYS` motions on), "flow" or "integrate", as of :func:`viscoroll.ensemble`.
     speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
-    Raises ParameterError for method "flow" where no map applies.
+    Raises ParameterError for method "flow" where no map applies: different scenes, driven or unsteady motions, bodies
+    that differ; and for a ``speed`` above the largest start speed allowed.
     Returns the :class:`Solution`.
     """
     scene = batch.problem.scene
@@ -94,15 +98,16 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
 
 
 def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowResult | None:
-    """Look motions up in the flow map of their scene.
+    """Look motions up in the flow map of their scene, which is built if there is none yet.
 
-    The map counts in the material's own time, to which the motions are converted.
+    The map counts time in the material's own unit, to which the motions are converted and from which their results are.
 
     batch: motions of one scene.
     speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
-    about: dict that receives the error and the problem of the map.
-    Returns the result, in which motions outside the map have a status below 0; None where all motions are at rest, or
-    the stated error exceeds rtol.
+    about: dict that receives "flow_error" and "flow_problem" of the map.
+    Raises ParameterError for a ``speed`` above the largest start speed allowed.
+    Returns the result, in which motions outside the map have a status below 0; None, with nothing looked up, where all
+    motions are at rest, or the stated error exceeds rtol.
     """
     scene, rows = batch.problem.scene, batch.rows
     rtol, threshold, _ = batch.problem.limits
@@ -132,9 +137,9 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
 def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     """Integrate the motions that have no result yet, status < 0.
 
-    found: results, into which theirs are written.
+    found: results, into which theirs are written: quantities, status, switches, onset and rest times.
     batch: all motions.
-    Returns the steps of each motion, (n,).
+    Returns the number of integration steps of each motion, (n,); 0 for those that had a result.
     """
     problem = batch.problem
     law, rows = _law_of(problem.scene, problem.unsteady), np.array([ROWS.index(name) for name in batch.rows], np.int64)
@@ -162,10 +167,10 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """Return the function that gives the kernel's law of some motions.
 
-    The function takes alphas and indices of motions, and returns (law; whether bodies differ).
-
-    scene: parameters of the motions.
+    scene: parameters of the motions, of one material or of several.
     unsteady: whether the added mass acts; then several materials are requested for one motion at a time.
+    Returns a function (alphas of the motions, (k,); their indices, (k,)) -> (record of the law or laws as the kernels
+    take it; whether the two bodies take unequal parts of M).
     """
     several: Any = scene.material_array
     if several is None and not np.ndim(scene.alpha):
@@ -176,9 +181,9 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
     def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
         """Return the law of some motions as the kernel takes it.
 
-        alpha: alphas of the motions.
-        index: indices of the motions.
-        Returns (law, whether the bodies differ).
+        alpha: alphas of the motions, (k,).
+        index: indices of the motions, (k,).
+        Returns (record of the law or laws, whether the bodies differ).
         """
         if several is not None:
             index = np.minimum(index, len(several) - 1)

@@ -25,10 +25,10 @@ MOST_STEPS = 10_000_000
 def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     """Check output times.
 
-    t: one time or a vector, in ``units``.
-    units: unit of time, or those of a roller.
-    Returns a new vector (n,) in ``units``.
-    Raises ParameterError unless they are finite, >= 0, ascending, and at least one.
+    t: one time or a vector (n,), in ``units``; numbers that carry a unit are converted.
+    units: unit of time, or a roller's units, of which that of time is taken; "1": dimensionless.
+    Returns a new vector (n,) in ``units``; of one time (1,).
+    Raises ParameterError unless they are finite, >= 0, ascending (equal times are allowed), and at least one.
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
     if times.ndim != 1 or times.size == 0:
@@ -44,8 +44,8 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
 def refuse_end(end: float, T: float) -> None:
     """Raise ParameterError for a last output time that is infinite in T_ref.
 
-    end: last output time, s.
-    T: T_ref, s.
+    end: last output time, in s, or of a scene in T_ref.
+    T: T_ref, s; 1 for a scene.
     """
     if end / T == math.inf:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
@@ -54,7 +54,7 @@ def refuse_end(end: float, T: float) -> None:
 def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number.
 
-    arguments: argument of ``roll`` by name.
+    arguments: name of an argument of ``roll`` -> its value, a number or an array.
     """
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
@@ -77,8 +77,9 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
     rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: none.
     max_steps: largest number of steps of a motion.
     scale: scale of the roller.
-    Returns (rtol, threshold of rest or 0, dimensionless, step limit).
-    Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
+    Returns (rtol; threshold of rest, dimensionless, 0 for none; largest number of steps).
+    Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7] or no whole
+    number.
     """
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:
@@ -88,10 +89,11 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
-    """Return start speeds, checked: floats as they are, else arrays.
+    """Return start speeds, checked: two floats as they are, else both as arrays in the shapes that were given.
 
-    V0, omega0: start speeds, dimensionless, numbers or arrays.
-    Raises ParameterError unless both are finite and at most 1e100 in size, and the larger is 0 or at least 1e-300.
+    V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
+    Raises ParameterError unless both are finite and at most 1e100 in size, the larger of |V0| and |omega0| of each
+    motion is 0 or at least 1e-300, and the shapes broadcast.
     """
     low, high = SPEED_RANGE
     # each by itself: max() of a NaN and another may be the other
@@ -114,10 +116,12 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
 
 
 def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
-    """Return an error, where it states dimensionless numbers of a cylinder with the units that they were divided by.
+    """Return an error whose message also says by which units the dimensionless numbers in it were divided.
 
     error: the error.
-    scale: scale of the roller.
+    scale: scale of the roller, which gives these units in s, m/s and N/m.
+    Returns a new ParameterError; the same one for a scene, or where its message states no dimensionless numbers.  Units
+    that differ between motions are not listed.
     """
     if not (scale.si and error.is_dimensionless):
         return error

@@ -25,7 +25,10 @@ ROWS = STATES + ACTING + LOSSES
 class Drive(NamedTuple):
     """Loads and prescribed speeds of one motion or many, as the caller gave them; None where nothing is given.
 
-    force, torque, slope, brake, drag, omega, V : as of :func:`viscoroll.roll`.
+    force, torque, brake, omega, V : a number, an array (n,), a Schedule or a callable of t; force and torque also a
+    Feedback of one of these.
+    slope, drag : numbers or arrays (n,).
+    Meaning, signs and units are those of :func:`viscoroll.roll`; :meth:`over` gives the dimensionless ones.
     """
 
     force: Any = None
@@ -43,7 +46,10 @@ class Drive(NamedTuple):
 
     @property
     def numbers(self) -> dict[str, Floats]:
-        """What is given as a number, or as one of each motion, by name."""
+        """Return name -> array, () or (n,), of each load or speed that is given as a number or as one for each motion.
+
+        Schedules, callables and feedbacks are left out.  Raises ParameterError for what is not numeric or not finite.
+        """
         others = Feedback | Schedule
         return {n: check_array(n, x) for n, x in self.given.items() if not (callable(x) or isinstance(x, others))}
 
@@ -63,7 +69,10 @@ class Drive(NamedTuple):
         return self._replace(**{name: None for name, value in loads.items() if _is_zero(name, value)})
 
     def over(self, scale: Scale) -> Drive:
-        """Return the same without dimension."""
+        """Return the same drive made dimensionless.
+
+        scale: units of the roller: the SI values of 1 of each quantity.
+        """
         return (
             Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
             if scale.si and self.acts
@@ -75,7 +84,7 @@ def _is_zero(name: str, value: Any) -> bool:
     """Return whether a load is 0 at all times; a callable never counts as 0.
 
     name: name of the argument, for refusals.
-    value: what the caller gave: a number, an array, a schedule, a function or a feedback.
+    value: what the caller gave: a number, an array, a Schedule, a callable or a Feedback, whose gains must be 0 too.
     Raises ParameterError for what is no number and no function of time.
     """
     if isinstance(value, Feedback):
@@ -84,7 +93,12 @@ def _is_zero(name: str, value: Any) -> bool:
 
 
 class PlainArguments(NamedTuple):
-    """Start speeds and drive without units and labels of xarray and pandas, and these labels."""
+    """Start speeds and drive as plain numbers, without the units and labels that they carried, and these labels.
+
+    start : V0 and omega0 in the units of the roller.
+    drive : loads and prescribed speeds in the units of the roller.
+    labels : labels of arrays of xarray and pandas, by which results are labelled again; None without.
+    """
 
     start: tuple[Any, Any]
     drive: Drive
@@ -92,12 +106,13 @@ class PlainArguments(NamedTuple):
 
 
 def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainArguments:
-    """Return start speeds and drive in the units of a roller, as plain numbers.
+    """Return start speeds and drive in the units of a roller, as plain numbers, and the labels that they had.
 
     start: V0 and omega0, as the caller gave them.
     drive: loads and prescribed speeds, as the caller gave them.
     units: units of the roller.
     Raises ParameterError for a unit of another dimension.
+    Returns :class:`PlainArguments`.
     """
     plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)

@@ -66,12 +66,12 @@ Cut = tuple[float, float]
 
 
 class Piece(NamedTuple):
-    """A polynomial of x = -1 ... 1 from ``start`` to ``stop``, in T_ref.
+    """A polynomial of x = -1 ... 1 from ``start`` to ``stop``, in T_ref, that fits a callable; dimensionless.
 
-    terms : coefficients of powers of x, (TERMS,).
-    largest : largest value in the piece.
-    error : largest difference seen.
-    so_far : largest value before the piece.
+    terms : coefficients of powers of x, ascending, (TERMS,).
+    largest : largest magnitude of the callable at the points of the piece; 0 where it counts as 0.
+    error : largest absolute difference seen between callable and polynomial.
+    so_far : largest magnitude before the piece.
     """
 
     start: float
@@ -87,12 +87,18 @@ class Piece(NamedTuple):
 
 
 class _Sampled:
-    """A callable with its samples over the whole time."""
+    """A callable with its samples, evenly spread over the whole time; dimensionless, times in T_ref.
+
+    times, samples : times of the samples and values there, (samples,).
+    taken : number of values taken so far.
+    share : error allowed, divided by the largest value so far.
+    largest : largest magnitude seen.
+    """
 
     def __init__(
         self, name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, samples: int
     ) -> None:
-        """Sample a callable.
+        """Take the samples of a callable.
 
         name: name of the argument, for refusals.
         function: takes t in T_ref, returns a number.
@@ -100,6 +106,7 @@ class _Sampled:
         rtol: relative tolerance of the motion.
         low: smallest value allowed.
         samples: number of samples.
+        Raises ParameterError for values that are no finite numbers or below ``low``.
         """
         self.name, self.function, self.low, self.taken = name, function, low, 0
         self.share = _SHARE * rtol
@@ -123,8 +130,10 @@ class _Sampled:
         """Fit the callable between two times by one polynomial.
 
         start, stop: ends of the piece, in T_ref.
-        so_far: largest value of the callable before the piece, dimensionless.
-        Returns (the piece, None if its fit is not good; where to cut it, None for its middle).
+        so_far: largest magnitude of the callable before the piece, dimensionless; 0: it has not risen yet.
+        Returns (the :class:`Piece`, None if its fit is not good; where to cut it, two neighbouring doubles in T_ref,
+        None to halve it or if the fit is good).
+        Raises ParameterError for values that are no finite numbers or below the smallest one allowed.
         """
         middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
         t = middle + half * _POINTS
@@ -184,7 +193,8 @@ def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
     """Return the neighbouring doubles between which a condition of time becomes false.
 
     low, high: times between which it does, in T_ref.
-    is_before: the condition.
+    is_before: function of a time, in T_ref; True before the change, False behind it.  It is not called at ``low`` and
+    ``high``.
     Returns (last time before, first time behind), in T_ref.
     """
     low, high = float(low), float(high)
@@ -196,17 +206,19 @@ def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
 def fit_callable(
     name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, resolve: float | None = None
 ) -> tuple[Floats, Floats, float]:
-    """Fit a callable by piecewise polynomials.
+    """Fit a callable by piecewise polynomials, so that the integrator never calls it.
 
     name: name of the argument, for errors.
-    function: the callable, of the time in T_ref.
+    function: takes the time in T_ref, returns a dimensionless number.
     end: last time, in T_ref.
-    rtol: relative tolerance of the motion.
+    rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the largest value so far.
     low: smallest value allowed.
-    resolve: largest spacing of the samples, in T_ref; None: ``end`` divided by :data:`SAMPLES`.
-    Returns (starts of the pieces (k,), terms (k, TERMS), largest difference seen).
-    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that
-    requires more than :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough.
+    resolve: largest spacing of the samples, in T_ref; None, and at most: ``end`` divided by :data:`SAMPLES`.
+    Returns (starts of the pieces in T_ref, (k,); coefficients of powers of x in [-1, 1] on each piece, (k, TERMS);
+    largest absolute difference seen).
+    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that requires more than
+    :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough, or that is not smooth
+    within the shortest piece.
     """
     samples = SAMPLES
     if resolve is not None:
@@ -226,7 +238,7 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 
     sampled: the callable.
     end: last time, in T_ref.
-    Returns the pieces in the order of time.
+    Returns the pieces in the order of time, without gaps but for the two doubles of a jump.
     Raises ParameterError where polynomials do not follow the callable.
     """
     pieces: list[Piece] = []
@@ -260,8 +272,9 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     """Return the pieces without the short ones that contain a corner; their neighbours are extended to the corner.
 
-    pieces: consecutive pieces of the fit.
-    sampled: the callable.
+    pieces: consecutive pieces of the fit, in the order of time.
+    sampled: the callable, of which more values are taken.
+    Returns new pieces; a short piece stays where its extended neighbours would not fit.
     """
     merged: list[Piece] = []
     rest = pieces[::-1]
@@ -281,11 +294,11 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
 
 
 def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
-    """Return the time, within a piece, at which the polynomials of its neighbours are equal; else its middle.
+    """Return the time, within a piece, at which the polynomials of its neighbours are equal: where a corner lies.
 
-    before, behind: the neighbours.
+    before, behind: the piece before it and the piece behind it, whose polynomials are extended.
     between: the piece.
-    Returns the time, in T_ref.
+    Returns the time, in T_ref; the middle of the piece where neither end has another sign of the difference.
     """
 
     def is_above(t: float) -> bool:

@@ -62,10 +62,11 @@ class DriveFunctions:
 
     Attributes
     ----------
-    functions : force, torque, brake and prescribed speed by name, where there are any.
-    tangent : tangent of the slope, which adds to the force, () or (m,).
+    functions : name -> function; always "force", "torque" and "brake" (0 where not given), and the prescribed speed if
+        there is one.
+    tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
-    gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m).
+    gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last less the drag.
     end : last time, in T_ref.
     """
 
@@ -98,7 +99,11 @@ class DriveFunctions:
         return max(getattr(function, "error", 0.0) for function in self.functions.values())
 
     def block(self, most: int) -> int:
-        """Return the number of motions, at most ``most``, whose pieces take some :data:`_BLOCK_BYTES`."""
+        """Return how many motions to pack at a time, so that their pieces take some :data:`_BLOCK_BYTES`.
+
+        most: largest number to return; it is returned where all motions have the same functions.
+        Returns a number in 1 ... ``most``.
+        """
         if self._function_motions == 1:
             return most
         columns = 2 + 5 * (TERMS if any(isinstance(f, Piecewise) for f in self.functions.values()) else 2)
@@ -112,9 +117,9 @@ class DriveFunctions:
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
         """Return the value of a prescribed speed at t = 0, and its largest size.
 
-        name: name of the speed.
+        name: name of the speed, "omega" or "V".
         Raises ParameterError where it jumps.
-        Returns (values, largest sizes), with one number for each motion that has its own speed, dimensionless.
+        Returns (values; bounds of the largest magnitude over all times), (1,) or (m,) each, dimensionless.
         """
         speed, firsts, sizes = self.functions[name], [], []
         for part in self._blocks(count_motions(speed)):
@@ -126,8 +131,12 @@ class DriveFunctions:
 
     @cached_property
     def pieces(self) -> Floats:
-        """Return all functions over common pieces, dimensionless, in the layout of the kernels, (1 or m, k,
-        columns).
+        """Return all functions over common pieces of time, dimensionless, in the layout of the kernels.
+
+        Columns of the result, (1 or m, k, columns): start of the piece in T_ref; 2 divided by its length; then as many
+        coefficients of powers of x in [-1, 1] for each of force (with the pull of the slope), torque, derivative of the
+        prescribed speed, brake, prescribed speed.
+        Raises ParameterError where a prescribed speed jumps.
         """
         zero, name = piecewise(np.zeros(())), self.prescribed
         force, torque, brake, speed = (
@@ -139,7 +148,10 @@ class DriveFunctions:
         return pack_pieces((force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end)
 
     def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
-        """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
+        """Return the drive of some motions as the kernels take it, :data:`KernelDrive`.
+
+        index: index of numpy that selects the motions; default: all.
+        """
         pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
         return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
@@ -166,7 +178,11 @@ def undriven() -> KernelDrive:
 
 
 class DrivenStart(NamedTuple):
-    """The functions that drive motions, None of free ones, and the start speeds, dimensionless."""
+    """The checked drive of motions with their start speeds, dimensionless.
+
+    functions : functions of time that drive the motions; None of free motions.
+    V0, omega0 : start speeds, numbers or (n,); a prescribed one has its value at t = 0.
+    """
 
     functions: DriveFunctions | None
     V0: Any
@@ -176,15 +192,16 @@ class DrivenStart(NamedTuple):
 def prepare_drive(
     drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None
 ) -> DrivenStart:
-    """Check a drive and the start speeds.
+    """Check a drive and the start speeds, and fit its callables.
 
     drive: drive, dimensionless.
-    V0, omega0: start speeds, dimensionless; None where they are prescribed.
+    V0, omega0: start speeds, dimensionless, numbers or (n,); None where they are prescribed.
     end: last time, in T_ref.
     rtol: relative tolerance of the motion.
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
-    Raises ParameterError for what is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what follows
-    from them given as well; a start that is not the prescribed one.
+    Raises ParameterError for a load or speed that :func:`viscoroll.roll` refuses; for V and omega both prescribed, or a
+    load beside the prescribed speed from which it follows; for a start that is missing, out of range, or not the
+    prescribed one.
     Returns the :class:`DrivenStart`.
     """
     if not drive.acts:
@@ -222,13 +239,16 @@ def _refuse_both(drive: Drive) -> None:
 
 
 def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: Any) -> Any:
-    """Return the start that is prescribed: a number where it is the same for all, else one for each motion.
+    """Return the start of a prescribed speed, its value at t = 0, dimensionless.
 
     name: "V" or "omega".
-    stated: the start that the caller gave; None without.
+    stated: the start that the caller gave, a number or (n,), dimensionless; None without.
     functions: functions of the drive, with the prescribed speed.
-    speed: the prescribed speed as the caller gave it.
-    Raises ParameterError where ``stated`` is another start, or where the speed jumps.
+    speed: the prescribed speed as in the drive: a number, an array, a Schedule or a callable.
+    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest size, where the speed jumps
+    or is an empty array.
+    Returns a number where the speed is the same for all motions, in the shape of ``stated`` if that is an array; else
+    (m,).
     """
     if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
         raise described_error(name, "is empty", "a number, an array with one for each motion, or a function of t")
@@ -243,7 +263,13 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
 
 
 def _gains(drive: Drive) -> Floats:
-    """Return the gains of a drive, with the drag in that of the torque on omega, (4, 1 or m)."""
+    """Return the gains of a drive, dimensionless, (4, 1 or m): of force on V and omega, of torque on V and omega.
+
+    The drag, a torque against omega, is subtracted from the last.
+
+    drive: drive, dimensionless.
+    Raises ParameterError for a drag below 0, and for gains whose numbers of motions differ.
+    """
     pairs = [(x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0) for x in (drive.force, drive.torque)]
     rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
     rows[3] = rows[3] - check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
@@ -254,8 +280,8 @@ def _gains(drive: Drive) -> Floats:
 def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.
-    functions: functions of the drive, or None.
+    rest: rest threshold, the speed below which the motion ends, in the unit of the roller; only quoted in the message.
+    functions: functions of the drive, or None of free motions, which may end at rest.
     """
     if functions is not None and functions.acts_at_end:
         sentence = f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of the motion: "

@@ -143,9 +143,9 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
     """Return the parameters and start speeds of an ensemble, and the number of its motions.
 
     problem: checked motions of the ensemble.
-    drives: numbers that drive them, by name.
-    Returns (arrays of one or n values by name; n).
-    Raises ParameterError where they do not broadcast to (n,).
+    drives: name -> loads or prescribed speeds that are numbers or arrays, as the caller gave them, for their shapes.
+    Returns (name -> vector of one or n values: alpha, kappa, mu, gamma, j, V0, omega0, dimensionless; n).
+    Raises ParameterError where they, the functions of the drive included, do not broadcast to (n,).
     """
     arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
     arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
@@ -162,8 +162,9 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its roller.
 
     batch: motions of the ensemble.
-    solution: motions, dimensionless.
-    Returns the fields by name.
+    solution: motions, dimensionless; of a cylinder its arrays are overwritten by those in SI units.
+    Returns name -> field: quantities (n, times); onset_time, rest_time, V0, omega0, status, switches, steps, flow,
+    (n,); drive_error, flow_error, flow_problem.
     """
     found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))

@@ -25,11 +25,11 @@ _EXAMINED = 256
 
 
 class Fastest(NamedTuple):
-    """Motions of an ensemble and their highest speeds.
+    """Motions of an ensemble and their highest speeds, in the unit of the roller.
 
     motion : indices of the motions, (m,).
-    V, omega : highest speeds that each starts with or reaches, (m,); omega < 0 where the start speeds have opposite
-        signs.
+    V, omega : largest magnitudes of the speeds that each starts with or reaches at an output time, (m,); omega < 0
+    where the start speeds have opposite signs.
     """
 
     motion: Integers
@@ -158,7 +158,10 @@ class Ensemble(RollResult):
         return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
 
     def fastest(self) -> Fastest:
-        """Return the motions that :meth:`validity` examines, with their highest speeds."""
+        """Return the motions that :meth:`validity` examines, at most 256 evenly spaced ones, with their highest speeds.
+
+        Speeds that the ensemble does not keep count at the start alone.
+        """
         speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, start in speeds.items():
             if (values := getattr(self, name)) is not None:
@@ -167,7 +170,7 @@ class Ensemble(RollResult):
         return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report."""
+        """Return title and rows of the printed report: times, quantiles of the last values, onsets, ends."""
         ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):

@@ -40,7 +40,11 @@ _FLAGS = {
 
 
 def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
-    """Return the attributes of a field, a start or another column of an ensemble; ``si``: of a cylinder."""
+    """Return the attributes of a column of a dataset: long_name and units, of codes their values and meanings.
+
+    name: name of a field of a motion, of a start ("V0", "omega0"), or "t", "status", "flow".
+    si: whether it is in the units of a cylinder, else of a scene.
+    """
     if name not in _FLAGS:
         return dict(attributes(name, si))
     long_name, first, meanings = _FLAGS[name]
@@ -58,11 +62,13 @@ def _dataset(
 ) -> xr.Dataset:
     """Return the dataset of a motion or an ensemble.
 
-    result: motion or ensemble, whose rows, drive and roller are put into the dataset.
+    result: motion or ensemble, whose quantities, drive and roller are put into the dataset.
     title: title of the dataset.
-    dims: names of the dimensions of the rows, ("t",) or ("motion", "t").
-    variables: further variables by name, as xarray takes them.
+    dims: names of the dimensions of the quantities, ("t",) or ("motion", "t").
+    variables: further variables: name -> (dimensions, values, attributes).
     about: further attributes by name.
+    Returns the dataset over ``dims``, in the units of the roller; without loads, works and losses for a free single
+    motion.  A regime that was not reached is -1.
     """
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims
@@ -91,7 +97,10 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
     motions have times of their own (motion, drive_force_corner); gains of a feedback are attributes.
-    Returns (variables ``drive_force`` and the like, with the times of schedules; attributes for callables and gains).
+
+    result: motion or ensemble.
+    Returns (name -> (dimensions, values, attributes) of variables as ``drive_force`` and ``drive_force_time``, in the
+    units of the roller; name -> text of attributes that describe callables with their gains).
     """
     variables: dict[str, Any] = {}
     texts: dict[str, Any] = {}
@@ -117,10 +126,12 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
 
 
 def _material_variables(materials: Any, count: int) -> dict[str, Any]:
-    """Return the strengths and times of several materials as they were given, and the share or the thickness.
+    """Return strengths and times of several materials as they were given, and share or thickness, as variables.
 
-    materials: series, bodies or covers of several motions; others give nothing.
+    materials: series, bodies or covers of several motions; for one material, or None, the result is empty.
     count: number of motions.
+    Returns name -> (dimensions, values, attributes), over (motion) or (motion, mode); of covers the layer's strengths
+    and times, divided by E and T_ref, are attributes of the thickness.
     """
     if materials is None or not materials.shape:
         return {}
@@ -128,6 +139,13 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
         return _mode_variables(materials, count, "", "")
 
     def along(name: str, values: Any, long_name: str, **more: Any) -> dict[str, Any]:
+        """Return name -> variable over the motions.
+
+        name: name of the variable.
+        values: a number, or (n,), dimensionless.
+        long_name: its long name.
+        more: further attributes.
+        """
         about = {"long_name": long_name, "units": "1"} | more
         return {name: ("motion", np.broadcast_to(values, (count,)), about)}
 
@@ -142,11 +160,13 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 
 
 def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
-    """Return the strengths and times of the modes of one body, over (motion, mode).
+    """Return the strengths and times of the modes of one body, over (motion, mode), as variables.
 
-    series: the series of each motion, or one.
+    series: the series of each motion, or one for all.
     count: number of motions.
-    prefix, title: first letters of the names and of the long_names.
+    prefix, title: first letters of the names ("", "cylinder_", "base_") and of the long_names.
+    Returns name -> (dimensions, values, attributes), dimensionless: strengths divided by the long-time modulus or
+    compliance, times divided by T_ref.
     """
     form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
     parts = {
@@ -166,7 +186,12 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
 
 
 def motion_dataset(motion: Any) -> xr.Dataset:
-    """Return the dataset over t of a ``motion``, a :class:`Motion`; for a driven one with loads, works and losses."""
+    """Return the dataset over t of one motion; of a driven one with loads, works and losses.
+
+    motion: a :class:`Motion`.
+    Its attributes are the numbers of the scene, onset_time, rest_time, the changes of regime as text, status in words,
+    steps.
+    """
     about_reversals = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {
         "onset_time": motion.onset_time,
@@ -180,7 +205,12 @@ def motion_dataset(motion: Any) -> xr.Dataset:
 
 
 def ensemble_dataset(result: Any) -> xr.Dataset:
-    """Return the dataset over (motion, t) of a ``result``, an :class:`Ensemble`."""
+    """Return the dataset over (motion, t) of an ensemble.
+
+    It has the quantities, starts, parameters, materials, drive, onset and rest times, status and flow.
+
+    result: an :class:`Ensemble`; labels of its starts of length n become coordinates.
+    """
     si, variables = result.scale.si, _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:
         value = np.asarray(getattr(result.scene, name))

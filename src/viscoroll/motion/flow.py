@@ -1,8 +1,9 @@
 """Flow map of one scene: built once, kept on disk, and used to look up any number of motions.
 
-The tables are described in :mod:`viscoroll.kernels.flow.layout`.  They depend on alpha, kappa,
-mu and j; gamma only scales time.  A map covers onsets of partial slip at speeds down to 2**-20 of a
-highest speed, which is the next power of 16 (times a constant) above the speeds of the call.
+A flow map is a set of tables from which the state of a free motion of the scene at any time follows without
+integration. The tables are described in :mod:`viscoroll.kernels.flow.layout`.  They depend on alpha, kappa, mu and j;
+gamma only scales time.  A map covers onsets of partial slip at speeds down to 2**-20 of a highest speed, which is the
+next power of 16 (times a constant) above the speeds of the call.
 """
 
 from __future__ import annotations
@@ -44,11 +45,13 @@ _OCTAVE_STEP = 4
 
 
 def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
-    """Return the parameters and the highest octave of the flow map of a scene.
+    """Return by what a flow map is found: the parameters that it depends on, and the speeds that it covers.
 
     scene : parameters of one scene.
-    speed : highest speed, > 0, dimensionless.
-    Returns ((material, kappa, mu, j), octave): the map covers kappa V < 2**octave at onset.
+    speed : highest speed, > 0, divided by R/T in the material's own unit of time T.
+    Returns ((material, kappa, mu, j); octave): the map covers kappa V < 2**octave at the onset of partial slip.  The
+    material is alpha, or the series in its own unit of time.  The octave is a multiple of 4, limited to what the tables
+    allow.
     """
     from ..kernels.flow.layout import OCTAVE_RANGE
 
@@ -58,25 +61,26 @@ def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
 
 
 def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:
-    """Return the flow map of a scene: from memory, from disk, or built.
+    """Return the flow map of a scene: from memory, from disk, or built, which takes as long as some thousand motions.
 
     scene : parameters of one scene.
-    speed : highest speed that the map must cover, > 0, dimensionless.
+    speed : highest speed that the map must cover, > 0, dimensionless, in the material's own unit of time.
     threads : number of threads; None: all cores available.
+    Returns the :class:`FlowMap`; its ``problem`` says why, if the scene has none.
 
-    A damaged map on disk is built again, with a RuntimeWarning.  If the disk cannot be written, the map is kept in
-    memory.
+    A damaged map on disk is built again, with a RuntimeWarning.  A new map is written to disk; if that fails it is kept
+    in memory alone.
     """
     return _map(*map_key(scene, speed), threads)
 
 
 @lru_cache(_MAPS_IN_MEMORY)
 def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
-    """Return a flow map from memory, from disk, or built; the last few stay in memory.
+    """Return a flow map from memory, from disk, or built and written to disk; the last few stay in memory.
 
-    parameters : (material, kappa, mu, j).
-    octave : the map covers kappa V < 2**octave at onset.
-    threads : number of threads.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha or a series.
+    octave : the map covers kappa V < 2**octave at the onset of partial slip.
+    threads : number of threads; None: all cores available.
     """
     path = path_of(parameters, octave)
     found = load(path, parameters)
@@ -87,12 +91,12 @@ def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowM
 
 
 def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
-    """Build the flow map of a scene and measure its error.
+    """Build the flow map of a scene and measure its error; nothing is written to disk.
 
-    parameters : (material, kappa, mu, j).
-    octave : the map covers kappa V < 2**octave at onset.
-    threads : number of threads.
-    Returns a :class:`FlowMap`; if the scene has none, its ``problem`` says why.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a series in its own unit of time.
+    octave : the map covers kappa V < 2**octave at the onset of partial slip.
+    threads : number of threads; None: all cores available.
+    Returns a :class:`FlowMap`; if the scene has none, its ``problem`` says why, and its errors are infinite.
     """
     from ..kernels.flow.layout import OCTAVES, SIZE
     from .flow_fill import fill_tables
@@ -105,13 +109,13 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
 
 
 def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
-    """Measure the errors of a new map: the largest errors against the integrator on sampled motions, times the
-    margin.
+    """Measure the errors of a new map on 100 random motions, which are integrated at rtol 1e-12 for comparison.
 
     new_map : the map.
-    octave : highest octave of kappa V.
-    threads : number of threads.
-    Returns (error of the speeds, of the path, of the losses), relative.
+    octave : the map covers kappa V < 2**octave at the onset of partial slip.
+    threads : number of threads; None: all cores available.
+    Returns four times the largest relative errors: (of speeds and onset time; of distance and angle; of slip and
+    rolling loss), at least 1e-10, 5e-10, 1e-10; relative to what :class:`FlowMap` says.
     """
     _, kappa, mu, _ = new_map.parameters
     rng = np.random.default_rng(20)
@@ -132,16 +136,19 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
 
 
 def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
-    """Return the largest relative errors of one motion of a new map against the integrator.
+    """Return the largest relative errors of one motion of a new map, against the integrator, from start to rest.
 
     new_map : the map.
     V0, omega0 : start speeds, dimensionless.
-    Returns (error of the speeds and the onset time, of distance and angle, of the losses).
+    Returns (error of V and omega, divided by the larger, or of the onset time; error of distance and angle, divided by
+    the larger so far and a part of the whole; error of both losses, divided by the energy at the start); infinite for
+    what is not finite, 0 for a motion outside the map.
     """
     _, _, _, j = new_map.parameters
     decay, start = 1.0 / new_map.slow_rate, (np.array([V0]), np.array([omega0]))
 
     def flow(times: NDArray) -> FlowResult:
+        """Look the motion up at ``times``, (times,), dimensionless; returns a :class:`FlowResult` of one motion."""
         return look_up_ensemble(new_map, Motions(1.0, 0.0, *start, times, _MEASURED_ROWS))
 
     at_rest = flow(np.array([0.0, 800.0 * decay]))
@@ -166,11 +173,11 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
 
 
 def _stiff_time(new_map: FlowMap, speed: float) -> float:
-    """Return the relaxation time 1/k0 of omega - V for an onset near a speed.
+    """Return the time 1/k0 in which omega - V relaxes after the onset of partial slip near a speed.
 
-    new_map : the map.
-    speed : V at onset, dimensionless.
-    Returns the time gamma t, dimensionless.
+    new_map : the map, from whose tables it is read.
+    speed : magnitude of the speed at onset, > 0, dimensionless; beyond the tables their first or last octave counts.
+    Returns the time gamma t, dimensionless, to the width of an octave of the speed.
     """
     from ..kernels.flow.layout import PLUS, views
 
@@ -181,13 +188,13 @@ def _stiff_time(new_map: FlowMap, speed: float) -> float:
 
 
 class FlowResult(NamedTuple):
-    """Motions as arrays.
+    """Motions as arrays, dimensionless.
 
-    out : outputs, (rows, motions, times).
-    status : code of each motion, (motions,); below 0 for a motion outside the map, whose other entries are
-    undefined.
+    out : quantities, (rows, motions, times).
+    status : :class:`MotionStatus` of each motion, (motions,); below 0 for a motion without a result, as it is outside
+    the map or was not computed yet, whose other entries are undefined.
     onset, rest : times of the onset of partial slip and of rest, (motions,); NaN where there is none.
-    switches : number of regime changes, (motions,).
+    switches : number of changes of regime, (motions,).
     """
 
     out: Floats
@@ -198,9 +205,9 @@ class FlowResult(NamedTuple):
 
     @classmethod
     def empty(cls, rows: int, count: int, times: int) -> FlowResult:
-        """Return arrays for motions of which none is computed yet.
+        """Return arrays for motions of which none is computed yet: status -1, 0 switches, all else undefined.
 
-        rows : number of output rows.
+        rows : number of quantities.
         count : number of motions.
         times : number of output times.
         """
@@ -216,8 +223,10 @@ def look_up_ensemble(
     """Compute motions from the tables of a flow map.
 
     chosen : the map.
-    motions : gamma, threshold of rest, start speeds, output times and rows.
-    threads : number of threads.
+    motions : (gamma; threshold of rest, 0 for none; V0; omega0, (1,) or (n,); output times, (times,); indices of the
+    quantities in V, omega, x, angle, delta, regime, slip_loss, rolling_loss), dimensionless, in the unit of time of the
+    map's material.
+    threads : number of threads; None: all cores available.
     progress : title of a progress bar, None for none.
     Returns the motions as a :class:`FlowResult`; those outside the map have a status below 0.
     """

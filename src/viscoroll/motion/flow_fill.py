@@ -1,6 +1,10 @@
 """The tables of a flow map, made from the rows of the law and from integrated motions: :func:`fill_tables`.
 
-Motions give V and delta at interpolation nodes; distance, angle and loss are integrals of their polynomials.
+A flow map is a set of tables from which any free motion of a scene follows without integration
+(:mod:`viscoroll.kernels.flow.layout`).  In full slip the motion is an integral of the law.  Behind the onset of partial
+slip it passes a boundary layer, in which omega - V relaxes, and then follows the slow manifold, one curve in (V, delta)
+that all motions approach.  Motions give V and delta at interpolation nodes; distance, angle and loss are integrals of
+their polynomials.  All is dimensionless, times are gamma t.
 """
 
 from __future__ import annotations
@@ -22,9 +26,9 @@ from .flow_store import FlowMap
 def fill_tables(new_map: FlowMap, threads: int | None) -> str:
     """Fill the tables of a new flow map.
 
-    new_map : the map, whose table is written.
-    threads : number of threads.
-    Returns the reason why the scene has no map, "" if it has one.
+    new_map : the map, whose ``table`` is written.
+    threads : number of threads; None: all cores available.
+    Returns "", or the reason why the scene has no map; the table is then incomplete.
     """
     if new_map.slow_rate == 0.0:
         return "an elastic cylinder never slows down"
@@ -45,8 +49,9 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2.
 
     problem : the scene.
-    parts : views of the tables.
-    Raises :class:`NoFlowMap`.
+    parts : views of the tables, of which ``slide``, ``after`` and ``onset`` are written.
+    Raises :class:`NoFlowMap` where the rolling resistance can hold the sliding cylinder, or numbers leave the range of
+    doubles.
     """
     _, kappa, mu, j = problem.parameters
     V, least = SPEEDS.x / kappa, 2.0**layout.LOW / kappa

@@ -1,4 +1,11 @@
-"""The boundary layers of a flow map behind the onset of partial slip: :func:`fill_layers`."""
+"""The boundary layers of a flow map behind the onset of partial slip: :func:`fill_layers`.
+
+Behind the onset omega - V relaxes at the rate k0, until the motion follows the slow manifold (:mod:`.flow_manifold`). E
+= k0 (tau - tau_onset), tau = gamma t, is the time since the onset in units of 1/k0.  Where delta passes 0 the law has a
+kink; the split, the value of E there, or 1, divides the layer.  The layer coordinate u grows with E, linearly on either
+side of the split, from 2^LAYER_LOW at the onset over 1 at the split to 2^LAYER_HIGH at the end.  The two families are
+the motions with omega > V and with omega < V at the onset.  All is dimensionless.
+"""
 
 from __future__ import annotations
 
@@ -35,13 +42,16 @@ _SPLIT_NODES = Nodes(6)
 def fill_layers(
     problem: FlowProblem, sign: float, first: int, slow: SlowManifold, asymptote: Floats, layer: Floats
 ) -> None:
-    """Fill the tables of the boundary layers and asymptotes of one family.
+    """Fill the tables of the boundary layers, and of the motions on the slow manifold that follow them, of one family.
 
     problem : the scene.
-    sign : sign of omega - V at onset.
-    first : lowest octave of kappa V at onset.
+    sign : sign of omega - V at onset, 1.0 or -1.0.
+    first : binary exponent of the lowest kappa V at onset.
     slow : the slow manifold.
-    asymptote, layer : views of the tables, written.
+    asymptote : (octave of kappa V at onset, numbers of a row), written.
+    layer : (octave of kappa V at onset, octave of u, column, powers of u and kappa V), written; columns: ln(V/V0),
+    delta, distance and angle beyond those at constant speed V0, slip loss.
+    Raises :class:`NoFlowMap` where a motion of the layer leaves partial slip.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
@@ -83,10 +93,11 @@ def fill_layers(
 
 
 def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
-    """Return k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes.
+    """Return k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes in time gamma t.
 
     problem : the scene.
-    V : speeds, dimensionless; the rates have their shape.
+    V : speeds, > 0, dimensionless, of any shape.
+    Returns the rates, dimensionless, in the shape of V.
     """
     return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V, np.zeros(V.shape))[STIFFNESS] / V
 
@@ -95,10 +106,10 @@ def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Flo
     """Return the state in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip.
 
     problem : the scene.
-    sign : sign of omega - V.
-    V : speeds at onset, (n,).
-    gamma : time scale of each motion, (n,).
-    Returns (V, delta), (n,) each, dimensionless.
+    sign : sign of omega - V, 1.0 or -1.0.
+    V : speeds at onset, > 0, (n,).
+    gamma : factor of the times of each motion, (n,), dimensionless.
+    Returns (V, delta), (n,) each, dimensionless; to first order in that time.
     """
     _, _, mu, j = problem.parameters
     state = problem.contact_states(V, np.zeros(V.shape))
@@ -113,13 +124,14 @@ def _layer_motions(
     """Integrate the motions of a boundary layer, and return them at the nodes of its tables.
 
     problem : the scene.
-    sign : sign of omega - V at onset.
-    V0 : speeds at onset, (octaves, nodes).
+    sign : sign of omega - V at onset, 1.0 or -1.0.
+    V0 : speeds at onset, (octaves, nodes), dimensionless.
     k0 : relaxation rates of omega - V at these onsets, (octaves, nodes).
-    split : values of E at which the table is split, near delta = 0 (:func:`_split_powers`), (octaves, nodes).
-
-    Returns V and delta, (octave, node of V, octave of u, node of u), and V at the end of the layer, (octave, node of
-    V).
+    split : values of E at which the table is split, where delta passes 0 or 1 (:func:`_split_powers`), (octaves,
+    nodes).
+    Raises :class:`NoFlowMap` where a motion leaves partial slip.
+    Returns (V; delta, both (octave, node of V, octave of u, node of u); V at the end of the layer, (octave, node of
+    V)).
     """
     u, gamma = _LAYER.node_positions(_COARSE), (split / k0).ravel()
     starts = _state_before_onset(problem, sign, V0.ravel(), gamma)
@@ -139,9 +151,9 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
     """Fit the value of E near which delta passes 0 by polynomials of kappa V at onset; it is 1 where delta does not.
 
     problem : the scene.
-    sign : sign of omega - V at onset.
+    sign : sign of omega - V at onset, 1.0 or -1.0; delta passes 0 only in motions of the sign of 1 - j.
     onsets : octaves of kappa V at onset.
-    Returns the coefficients, (octaves, powers).
+    Returns coefficients of powers of t in [-1, 1] on each octave, ascending, (octaves, powers), for E, dimensionless.
     """
     powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
     powers[:, 0] = 1.0
@@ -165,8 +177,8 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
 
 
 def _pad(powers: Floats) -> Floats:
-    """Pad coefficients with zeros to the number of powers of functions of one variable.
+    """Return coefficients padded with zeros to the number of powers of functions of one variable.
 
-    powers : coefficients, (rows, powers).
+    powers : coefficients, ascending, (rows, powers).
     """
     return np.pad(powers, [(0, 0), (0, NODES.t.size - powers.shape[-1])])

@@ -1,4 +1,9 @@
-"""The slow manifold of a flow map: :func:`fill_manifold`."""
+"""The slow manifold of a flow map: :func:`fill_manifold`.
+
+The slow manifold is the curve in (V, delta) that all motions in partial slip approach, on which V decays to rest.  The
+slow logarithm of V falls linearly in time along it, at ``FlowProblem.slow_rate``; it tends to ln V plus a constant as V
+-> 0.  All is dimensionless, times are gamma t.
+"""
 
 from __future__ import annotations
 
@@ -29,10 +34,15 @@ _SLOW_LOG_ORIGIN = 0.25
 
 
 class SlowManifold(NamedTuple):
-    """The slow manifold: coefficients over the slow logarithm, and of the slow logarithm over kappa V.
+    """The slow manifold: functions of the slow logarithm, and the slow logarithm as a function of kappa V.
 
-    rows : octaves of the slow logarithm.  speeds : V and delta.  path : remaining distance and angle to rest.
-    loss : remaining slip loss.  slow_log : slow logarithm over kappa V.
+    Each is given by coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers).
+
+    rows : rows of the slow logarithm.
+    speeds : coefficients of V and of delta.
+    path : coefficients of the remaining distance and angle to rest.
+    loss : coefficients of the remaining slip loss.
+    slow_log : coefficients of the slow logarithm over the octaves of kappa V.
     """
 
     rows: Rows
@@ -44,10 +54,12 @@ class SlowManifold(NamedTuple):
     def path_between(self, start: Floats, span: Floats, rate: float) -> tuple[Floats, Floats]:
         """Return distance and angle of a motion along the slow manifold, while its slow logarithm decreases.
 
-        start : slow logarithms at the beginning.
-        span : decrease of the slow logarithms.
+        Over a short span they are integrals of the speeds, else differences of the remaining path.
+
+        start : slow logarithms at the beginning, of any shape.
+        span : decreases of the slow logarithms, >= 0, in the shape of ``start``.
         rate : decrease of the slow logarithm in unit time.
-        Returns (distance, angle), of the shape of ``start``.
+        Returns (distance, angle), of the shape of ``start``, dimensionless.
         """
         end, value = start - span, self.rows.value
         x, angle = (value(powers, start) - value(powers, end) for powers in self.path)
@@ -61,10 +73,11 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     """Fill the tables of the slow manifold.
 
     problem : the scene.
-    parts : views of the tables.
+    parts : views of the tables, of which ``slow`` and ``manifold`` are written.
 
-    One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and loss are
-    integrals from V -> 0 upward.
+    One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and loss are integrals
+    from V -> 0 upward.
+    Raises :class:`NoFlowMap` where that motion leaves partial slip or its numbers the range of doubles.
     Returns the :class:`SlowManifold`.
     """
     rows, V, delta = _integrate_manifold(problem)
@@ -82,11 +95,14 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
 
 
 def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
-    """Integrate the motion along the slow manifold of ``problem``.
+    """Integrate the motion along the slow manifold.
 
-    Returns (rows over the slow logarithm, V and delta at their nodes).  The motion is integrated from one state to
-    the next of half its speed: the remaining time to the last state then keeps its digits.  The slow logarithm is 0
-    at the last state.
+    The motion is integrated from one state to the next of half its speed: the remaining time to the last state then
+    keeps its digits.  The slow logarithm is 0 at the last state.
+
+    problem : the scene.
+    Raises :class:`NoFlowMap` where the motion leaves partial slip or its numbers the range of doubles.
+    Returns (rows over the slow logarithm; V; delta at their nodes, (rows, nodes) each, dimensionless).
     """
     kappa, j, rate = problem.parameters[1], problem.parameters[3], problem.slow_rate
     V, delta, gamma = np.array([2.0 ** (layout.HIGH + _RUN_IN_OCTAVES) / kappa]), np.zeros(1), np.ones(1)

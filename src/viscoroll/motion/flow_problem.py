@@ -1,4 +1,7 @@
-"""A scene for which a flow map is built: its contact states, and integrated motions in partial slip."""
+"""A scene for which a flow map is built: its contact states, and integrated motions in partial slip.
+
+A flow map is a set of tables from which any free motion of a scene follows without integration.  All is dimensionless.
+"""
 
 from __future__ import annotations
 
@@ -33,10 +36,10 @@ class NoFlowMap(Exception):
 class FlowProblem(NamedTuple):
     """A scene for which a map is made.
 
-    parameters : (material, kappa, mu, j).
-    law : record of the law's rows.
-    slow_rate : rate at which the slow logarithm falls, in units of gamma.
-    threads : number of threads.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a series in its own unit of time.
+    law : the kernels' record of the contact law of the material.
+    slow_rate : rate at which ln V falls at low speeds, in units of gamma.
+    threads : number of threads; None: all cores available.
     """
 
     parameters: tuple[Any, ...]
@@ -45,10 +48,10 @@ class FlowProblem(NamedTuple):
     threads: int | None
 
     def contact_states(self, V: Floats, delta: Floats) -> Floats:
-        """Return delta_star, moment, traction and stiffness of the contact at speeds and creepages.
+        """Return critical creepage, moment, traction and its slope at speeds and creepages inside the stick zone.
 
-        V, delta : speeds and creepages, dimensionless, of one shape.
-        Returns the rows of :mod:`..kernels.flow.states`, each in the shape of V, shape (4, ...).
+        V, delta : speeds, > 0, and creepages, |delta| < delta_star, dimensionless, of one shape.
+        Returns delta_star, M, Q, dQ/d delta in this order, (4, ...), each in the shape of V, dimensionless.
         """
         _, kappa, mu, _ = self.parameters
         out = np.empty((4, V.size))
@@ -56,12 +59,13 @@ class FlowProblem(NamedTuple):
         return out.reshape(4, *V.shape)
 
     def integrate(self, V: Floats, delta: Floats, gamma: Floats, t: Floats, reason: str) -> tuple[Floats, Floats]:
-        """Integrate motions in partial slip.
+        """Integrate motions that start and stay in partial slip, or start just before its onset.
 
-        V, delta : start speeds and creepages, (n,).
-        gamma : time scale of each motion, (n,).
-        t : output times, common to all.
-        reason : message of :class:`NoFlowMap` if a motion leaves partial slip.
+        V, delta : start speeds, > 0, and creepages, (n,), dimensionless.
+        gamma : ratio of the load to inertia, which sets the time scale, of each motion, > 0, (n,).
+        t : output times, (times,), ascending, common to all, dimensionless.
+        reason : message of :class:`NoFlowMap` if a motion is not in partial slip with V > 0 at an output time.
+        Raises :class:`NoFlowMap` for this reason, or for input that is not finite.
         Returns (V, delta), each (n, times).
         """
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):

@@ -17,10 +17,12 @@ _CONVERGED = 1e-8
 
 
 class Nodes:
-    """Chebyshev nodes, and linear maps of values at them, along the last axis.
+    """Chebyshev nodes in [-1, 1], and linear maps of the values of functions there, along the last axis.
 
-    An integral is fitted through its values; this drops its highest Chebyshev term, which the values do not
-    determine.
+    An integral is fitted through its values; this drops its highest Chebyshev term, which the values do not determine.
+
+    count : number of nodes.
+    t : the nodes, ascending, (count,).
     """
 
     def __init__(self, count: int) -> None:
@@ -35,17 +37,17 @@ class Nodes:
         Chebyshev coefficients are computed between, which limits the rounding errors.
 
         values : values at the nodes, (..., nodes).
-        Returns the coefficients, (..., powers), ascending.
+        Returns the coefficients, ascending, (..., nodes).
         """
         return _multiply(self._powers, _multiply(self._chebyshev, values))
 
     def integrals(self, slopes: Floats, half: Any, start: Any = 0.0) -> Floats:
-        """Return the integral at the nodes, from a value at the left end of the first row.
+        """Return the integral of a piecewise polynomial at the nodes, continuous over all rows.
 
-        slopes : values of the integrand, (rows, nodes).
+        slopes : values of the integrand at the nodes, (..., rows, nodes).
         half : half the length of each row, a number or (rows,).
         start : value of the integral at the left end of the first row.
-        Returns the integral, (rows, nodes).
+        Returns the integral at the nodes, in the shape of ``slopes``.
         """
         whole = _multiply(self._integrals, slopes) * np.asarray(half)[..., None]
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
@@ -54,17 +56,21 @@ class Nodes:
     def end(self, slopes: Floats, half: Any) -> Floats:
         """Return the integral over all rows.
 
-        slopes : values of the integrand, (..., rows, nodes).
-        half : half the length of each row.
+        slopes : values of the integrand at the nodes, (..., rows, nodes).
+        half : half the length of each row, (rows,) or (..., rows).
+        Returns the integrals, (...).
         """
         return (_multiply(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
 
 
 def _multiply(matrix: Floats, values: Floats) -> Floats:
-    """Apply a matrix along the last axis, without BLAS, whose last bits differ between machines.
+    """Return the products of a matrix with vectors along the last axis.
+
+    BLAS is not used, as its last bits differ between machines.
 
     matrix : (m, n).
     values : (..., n).
+    Returns (..., m).
     """
     return np.einsum("...n,mn->...m", values, matrix)
 
@@ -73,7 +79,12 @@ NODES = Nodes(TERMS)
 
 
 class Rows:
-    """Consecutive polynomials between ``edges``."""
+    """Consecutive intervals of one variable, the rows, with a polynomial in each.
+
+    edges : ends of the rows, ascending, (rows + 1,).
+    half : half the length of each row, (rows,).
+    x : interpolation nodes of all rows, (rows, nodes).
+    """
 
     def __init__(self, edges: Floats) -> None:
         self.edges, self.half = edges, 0.5 * np.diff(edges)
@@ -86,8 +97,8 @@ class Rows:
     def value(self, powers: Floats, x: Floats) -> Floats:
         """Evaluate a piecewise polynomial.
 
-        powers : coefficients, (row, power).
-        x : arguments, of any shape; beyond the ends the first or last row is used.
+        powers : coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers).
+        x : arguments, of any shape; beyond the ends the polynomial of the first or last row is continued.
         Returns the values, of the shape of x.
         """
         row = np.searchsorted(self.edges[1:-1], x, side="right")
@@ -97,11 +108,13 @@ class Rows:
         return total
 
     def inverse(self, powers: Floats, target: Floats) -> Floats:
-        """Return the arguments at which an increasing piecewise polynomial takes given values, by Newton's
-        iteration.
+        """Return the arguments at which an increasing piecewise polynomial takes given values, by Newton's iteration.
 
-        powers : coefficients, (row, power).
-        target : values, of the shape of ``x``; the upper end is returned for values beyond it.
+        It ends when the relative step is at most :data:`_CONVERGED`, or after :data:`_MAX_ITERATIONS` steps without an
+        error.
+
+        powers : coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers); its values are > 0.
+        target : values, > 0, of any shape; the upper end is returned for values beyond it.
         Returns the arguments, of the shape of ``target``.
         """
         slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]

@@ -24,16 +24,17 @@ KEPT = 64
 
 @dataclass(frozen=True)
 class FlowMap:
-    """Tables of the motions of one scene.
+    """Tables of the free motions of one scene, from which a motion is looked up without integration.
 
     Attributes
     ----------
-    parameters : alpha or series in its own unit of time, kappa, mu, j.
-    first : kappa V of the slowest tabulated onset is 2**first.
-    table : all tables, see ``kernels/flow/layout.py``.
-    errors : stated errors, four times the largest of 100 motions against the integrator at rtol 1e-12, measured when
-        the map was built: of V and omega relative to the larger of the two; of distance and angle relative to the
-        larger of the two so far (and to 1e-5 of that at rest); of slip and rolling loss relative to the initial energy.
+    parameters : (alpha, or series in its own unit of time; kappa; mu; j), numbers.
+    first : binary exponent: kappa V of the slowest tabulated onset of partial slip is 2**first.
+    table : all tables in one vector, see ``kernels/flow/layout.py``.
+    errors : stated errors of (speeds, path, losses), four times the largest of 100 motions against the integrator at
+        rtol 1e-12, measured when the map was built, at least 1e-10, 5e-10, 1e-10: of V and omega relative to the larger
+        of the two; of distance and angle relative to the larger of the two so far (and to 1e-5 of that at rest); of
+        slip and rolling loss relative to the initial energy.  Infinite where ``problem`` is not "".
     problem : why the scene has no map, or "".
     """
 
@@ -51,9 +52,9 @@ class FlowMap:
         return T_mean / (1.0 + j)
 
     def stated_error(self, *, path: bool, loss: bool) -> float:
-        """Return the largest stated error of the speeds and, if requested, of path and losses.
+        """Return the largest stated error, relative, of the speeds and, if requested, of path and losses.
 
-        path, loss : whether errors of path and losses count.
+        path, loss : whether the errors of distance and angle, and those of slip and rolling loss, count.
         """
         speeds, way, lost = self.errors
         return max(speeds, way if path else 0.0, lost if loss else 0.0)
@@ -66,9 +67,10 @@ def folder() -> Path:
 
 @lru_cache(maxsize=1)
 def _digest(package: Path) -> str:
-    """Return the SHA-256 of the sources of kernels, materials and motions, its first 16 digits.
+    """Return a digest of all sources on which the bits of a map depend: kernels, materials and motions.
 
     package: folder of the package.
+    Returns the first 16 hexadecimal digits of the SHA-256.
     """
     from ..kernels.compile.cache import sources_digest
 
@@ -80,9 +82,10 @@ def _digest(package: Path) -> str:
 
 
 def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
-    """Return the parameters as numbers; those of a series are alpha, relaxation rates and strengths.
+    """Return the parameters as numbers, by which a map is named and compared.
 
     parameters : (alpha or series, kappa, mu, j).
+    Returns (alpha, kappa, mu, j), or with a series (alpha, relaxation rates, strengths, kappa, mu, j).
     """
     material, *others = parameters
     if isinstance(material, Prony):
@@ -91,20 +94,23 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
 
 
 def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
-    """Return the file of the map that covers kappa V < 2**octave at onset.
+    """Return the path of the file of a flow map, which may not exist.
 
-    parameters : (material, kappa, mu, j).
-    octave : highest octave.
+    parameters : (alpha or series, kappa, mu, j).
+    octave : the map covers kappa V < 2**octave at the onset of partial slip.
     """
     numbers = np.array((*_numbers(parameters), octave), np.float64)
     return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
-    """Return the map in a file; None if there is none, or, after a warning, if it is damaged or of other parameters.
+    """Return the map in a file; None if there is none, or it is damaged or of other parameters.
+
+    The latter two cause a RuntimeWarning.  The time of last change of the file is set to now: maps that were used last
+    are kept.
 
     path : path of the file.
-    parameters : (material, kappa, mu, j) that the map must have.
+    parameters : (alpha or series, kappa, mu, j) that the map must have.
     """
     try:
         content = read_private(path)
@@ -121,10 +127,11 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
 
 
 def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
-    """Return the map in the bytes of a file; raises ValueError if it is damaged or of another scene.
+    """Return the map in the bytes of a file.
 
     content: bytes of the file.
-    parameters: (material, kappa, mu, j) that the map must have.
+    parameters: (alpha or series, kappa, mu, j) that the map must have.
+    Raises ValueError for a file that is damaged or of another scene, KeyError for one that lacks an array.
     """
     from ..kernels.flow.layout import SIZE
 
@@ -140,7 +147,9 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
 
 
 def save(new_map: FlowMap, path: Path) -> None:
-    """Write a map, and delete the oldest maps beyond the limit; if it cannot be written nothing happens.
+    """Write a map, and delete the oldest maps of the folder beyond :data:`KEPT`.
+
+    If it cannot be written nothing happens.
 
     new_map : the map.
     path : path of the file.

@@ -24,12 +24,12 @@ _MAGNITUDE = np.int64(2**63 - 1)
 class Histogram(msgspec.Struct):
     """Counts and moments of the finite values of one quantity at one time.
 
-    bins : numbers of the bins that hold values, ascending.
-    counts : number of the values in each, > 0.
+    bins : numbers of the bins that hold values, ascending, (bins,).
+    counts : number of the values in each bin, > 0, (bins,).
     count : number of all values.
-    mean, low, high : moments; NaN without values.
-    spread : sum of squares about the mean.
-    values : all of them, where quantiles are to be exact; else None.
+    mean, low, high : mean, least and largest value, in the unit of the quantity; NaN without values.
+    spread : sum of squares of the differences from the mean; NaN without values.
+    values : all values, (count,), where quantiles are to be exact; else None.
     """
 
     bins: NDArray[np.int32]
@@ -61,11 +61,12 @@ class Histogram(msgspec.Struct):
         return cls(bins, counts, kept.size, *moments, kept if exact else None)
 
     def merge(self, other: Histogram) -> Histogram:
-        """Return the histogram of the values of two histograms, without keeping the values.
+        """Return the histogram of the values of two histograms; it does not keep the values.
 
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
 
         other: the second histogram.
+        Returns a new histogram; if one of the two has no values, the other one itself.
         """
         if not self.count or not other.count:
             return self if self.count else other
@@ -77,16 +78,19 @@ class Histogram(msgspec.Struct):
         return Histogram(bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes)
 
     def counts_in(self, bins: NDArray[np.int32]) -> Integers:
-        """Return the counts in ``bins``, ascending, which contain all of its own."""
+        """Return the counts in other bins, (bins,), 0 in those without values.
+
+        bins: numbers of bins, ascending, which contain all of its own.
+        """
         counts = np.zeros(bins.size, np.int64)
         counts[np.searchsorted(bins, self.bins)] = self.counts
         return counts
 
     def quantiles(self, levels: tuple[float, ...]) -> Floats:
-        """Return the quantiles, (levels,); NaN without values.
+        """Return the quantiles, (levels,), in the unit of the quantity; NaN without values.
 
         Where the values were not kept, each quantile lies between the two values beside it, which are known to their
-        bins.
+        bins, 2^-8 of a value wide; else it is exact (linear between neighbouring values).
 
         levels: levels of the quantiles, in [0, 1].
         """
@@ -116,7 +120,10 @@ class Histogram(msgspec.Struct):
 
 
 def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
-    """Return (smallest values of bins, smallest values of the bins that follow them)."""
+    """Return (smallest values of bins, smallest values of the bins that follow them), in the shape of ``bins`` each.
+
+    bins: numbers of bins, as of :class:`Histogram`.
+    """
     bits = np.stack([bins, bins + 1]).astype(np.int64) << _DROPPED
     below, above = (bits ^ ((bits >> 63) & _MAGNITUDE)).view(np.float64)
     return below, above

@@ -105,7 +105,7 @@ class Motion(RollResult):
 
     @cached_property
     def _last_reached(self) -> Motion:
-        """Return the motion at the last output time that it reached, for one that was given up."""
+        """Return the :class:`Motion` at the end of its last step alone, for one that was given up."""
         reached = float(self._step_ends.max(initial=0.0))
         # A last step that is cut at this end may take more steps than one that was not.
         limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
@@ -184,7 +184,7 @@ class Motion(RollResult):
         return self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report."""
+        """Return title and rows of the printed report: times, speeds, drive, onset, changes of regime, end."""
         rows = [self._row_of_times()]
         rows += [
             SummaryRow(name, _describe_values(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
@@ -267,8 +267,10 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     """Integrate one motion.
 
     problem: checked problem of one motion.
-    times: output times, ascending, in the unit of its roller; the motion is integrated to its end in any case.
-    Returns the :class:`Motion`.
+    times: output times, (times,), ascending, in the unit of its roller; the motion is integrated to its end in any
+    case.
+    Returns the :class:`Motion`, in the units of its roller; where it did not reach an output time, quantities are NaN
+    and ``regime`` is -1.  It keeps at most 1000 changes of regime and reversals.
     """
     scale, end = problem.roller.scale, problem.end
     T, t = scale["t"], np.minimum(times / scale["t"], end)
@@ -294,7 +296,9 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
 def _describe_values(t: NDArray, values: NDArray) -> str:
     """Return a text on values over time: the first, the last that was reached, the largest between them with its time.
 
-    t, values: times and values, (times,); values are NaN at times that the motion did not reach.
+    t, values: times and values, (times,), in the unit of the roller; values are NaN at times that the motion did not
+    reach.
+    Returns one number for one time, "not reached" where all are NaN.
     """
     if np.isnan(values).all():
         return "not reached"

@@ -28,11 +28,13 @@ _INSTANT = 1e-280
 
 
 class Piecewise(NamedTuple):
-    """A piecewise polynomial function of time of one motion or m.
+    """A piecewise polynomial function of time, the same for all motions or one for each of m; dimensionless.
 
-    starts : when pieces start, (1 or m, k), in T_ref; the last piece has no end.  Pieces may have no length.
-    terms : coefficients, (1 or m, k, terms); one row where the function is the same for all motions.
-    error : largest difference seen between a callable and this fit.
+    starts : when pieces start, (1 or m, k), in T_ref, ascending, the first at 0; the last piece has no end.  Pieces may
+    have no length.
+    terms : coefficients of powers of x in [-1, 1], ascending, (1 or m, k, terms); one row where the function is the
+    same for all motions.
+    error : largest absolute difference seen between a callable and this fit; 0 of other functions.
     """
 
     starts: Floats
@@ -52,18 +54,20 @@ TimeFunction = Floats | Schedule | Piecewise
 def check_function(
     name: str, function: Any, end: float, rtol: float, *, low: float = -np.inf, resolve: float | None = None
 ) -> TimeFunction:
-    """Check a function of time; a callable is fitted.
+    """Check a function of time that acts on motions; a callable is fitted by polynomials.
 
     name: name of the argument, for refusals.
-    function: None (0), a number, one of each motion, a Schedule, a callable of t, or a Feedback of one of these, whose
-    gains are ignored; dimensionless.
+    function: None (0), a number, an array with one for each motion, a Schedule, a callable of t, or a Feedback of one
+    of these, whose gains are ignored; dimensionless, t in T_ref.
     end: last time, in T_ref.
-    rtol: relative tolerance of the motion, of which the fit of a callable takes a tenth.
+    rtol: relative tolerance of the motion; a fit may differ from a callable by a tenth of it, times the largest value
+    so far.
     low: smallest value allowed.
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
-    Raises ParameterError for what is neither a number, a schedule nor a callable; values that are not finite or below
-    ``low``; a callable that polynomials do not follow.
-    Returns the function as :class:`TimeFunction`: a number, an array, a schedule, or a fit as :class:`Piecewise`.
+    Raises ParameterError for what is neither a number, a schedule nor a callable; an array of several dimensions;
+    values that are not finite or below ``low``; a callable that polynomials do not follow.
+    Returns the function as :class:`TimeFunction`: an array, () or (m,), a Schedule, or a fit as :class:`Piecewise`,
+    constant behind ``end``.
     """
     if isinstance(function, Feedback):
         function = function.value
@@ -104,6 +108,7 @@ def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
 
     function: number, numbers of the motions, schedule or fitted callable.
     index: index of numpy that selects the motions.
+    Returns a function of the same kind.
     """
     if isinstance(function, Piecewise) or count_motions(function) == 1:
         return function
@@ -117,6 +122,8 @@ def piecewise(function: TimeFunction) -> Piecewise:
     """Return a function of time as piecewise polynomials; a schedule is linear between its times, constant outside.
 
     function: number, numbers of the motions, schedule or fitted callable; dimensionless.
+    Returns :class:`Piecewise`, of one term for numbers and of two for a schedule; pieces that have no length for any
+    motion are left out.
     """
     if isinstance(function, Piecewise):
         return function
@@ -138,12 +145,12 @@ def _ends(starts: Floats) -> Floats:
 
 
 def differentiate(name: str, speed: Piecewise) -> Piecewise:
-    """Return the derivative of a prescribed speed.
+    """Return the derivative with respect to time of a prescribed speed.
 
     name: name of the argument, for the refusal.
-    speed: prescribed speed, dimensionless.
-    Raises ParameterError where the speed jumps.
-    Returns :class:`Piecewise`, dimensionless.
+    speed: prescribed speed, dimensionless, time in T_ref.
+    Raises ParameterError where the speed jumps by more than rounding and the error of its fit.
+    Returns :class:`Piecewise` on the same pieces, dimensionless, with one term less; 0 for a speed that is constant.
     """
     lengths = speed.ends - speed.starts
     first, last = values_at_start(speed.terms), speed.terms.sum(axis=-1)
@@ -184,9 +191,10 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """Return several functions over common pieces, in the layout of the kernels.
 
     functions: piecewise polynomials of the same motions, or the same for all.
-    end: last time, in T_ref.
-    Returns (m, k, 2 + terms of all functions).  Where motions have times of their own, pieces between equal times have
-    no length; the kernels skip them.
+    end: last time, in T_ref; pieces that start at or behind it are left out.
+    Returns (1 or m, k, 2 + number of functions * terms): start of each piece in T_ref; 2 divided by its length, 0 of
+    one without length or end; then the coefficients of each function in turn, padded with 0 to the largest number of
+    terms.  Where motions have times of their own, pieces between equal times have no length; the kernels skip them.
     """
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
@@ -210,12 +218,13 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
 
 
 def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> Floats:
-    """Return the terms of a function over finer pieces.
+    """Return the coefficients of a function over finer pieces.
 
     function: piecewise polynomial of one motion or of m motions.
     rows: number of motions with times of their own, or 1.
-    starts, ends: when the finer pieces start and end, (rows, k).
-    Returns (1 or m, k, terms).
+    starts, ends: when the finer pieces start and end, (rows, k), in T_ref; none extends over a start of the function's
+    own.
+    Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms).
     """
     piece = _piece_at(function.starts, starts)
     shape = rows, function.starts.shape[1]
@@ -243,11 +252,12 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
 
 
 def _substitute(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray) -> Floats:
-    """Return the terms of polynomials on parts of their pieces, by Horner's scheme with x -> shift + scale x.
+    """Return the coefficients of polynomials on parts of their pieces, by Horner's scheme with x -> shift + scale x.
 
-    terms: coefficients of the polynomials, (m, k, terms).
-    first, last: start and end of each piece, (m, k); inf for one without end, which is constant.
-    starts, ends: start and end of each part, (m, k).
+    terms: coefficients of powers of x in [-1, 1], ascending, (m, k, terms).
+    first, last: start and end of each piece, (m, k); a piece without length, or without end (inf), takes its value at x
+    = 0.
+    starts, ends: start and end of each part, (m, k), in the unit of ``first``.
     Returns the coefficients on the parts, (m, k, terms).
     """
     endless = np.isinf(last) | (last == first)

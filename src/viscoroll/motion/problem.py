@@ -37,7 +37,17 @@ NO_NOTES = np.empty((0, 2)), np.empty(0)
 
 
 class SolverOptions(NamedTuple):
-    """How motions are integrated: the arguments of :func:`viscoroll.roll` of these names."""
+    """How motions are integrated: the arguments of :func:`viscoroll.roll` of these names, as the caller gave them.
+
+    rtol : relative tolerance, in [1e-12, 1e-2].
+    rest : rest threshold of max(|V|, R |omega|), in the unit of the roller; None: a motion does not end at rest.
+    max_steps : largest number of steps of a motion.
+    resolve : largest spacing of the samples of a callable load, in the roller's unit of time; None: a thousandth of the
+    motion.
+    unsteady : whether the added mass N acts, M(V) + N dV/dt in place of M.
+    rested : whether the cylinder stood still for long before the start, or the time for which it did, in the roller's
+    unit.
+    """
 
     rtol: float
     rest: float | None
@@ -50,13 +60,13 @@ class SolverOptions(NamedTuple):
 class MotionProblem(NamedTuple):
     """Checked motions; dimensionless but for roller and drive.
 
-    roller, scene : on the slope.
-    drive : as given, without loads of 0.
-    functions : what drives; None for free motions.
-    V0, omega0 : start speeds, less what leaving the indentation of a standstill costs; numbers or (n,).
-    immobile : whether a motion stays in its indentation, in the shape of the speeds.
+    roller, scene : the roller on its slope, in the units of the caller, and its dimensionless parameters.
+    drive : loads and prescribed speeds as given, in the units of the roller; a load that is 0 at all times is None.
+    functions : the same as dimensionless functions of time; None for free motions.
+    V0, omega0 : start speeds, numbers or (n,), reduced by the speed that a start after a standstill costs.
+    immobile : whether a motion is too slow to leave the indentation of a standstill: (n,), or one truth value for all.
     end : last time, in T_ref.
-    limits : (rtol, threshold of rest, step limit).
+    limits : (rtol; threshold of rest, dimensionless, 0 for none; largest number of steps).
     unsteady : whether the added mass N acts.
     driven : whether something drives the motions, or the added mass acts.
     """
@@ -79,23 +89,27 @@ class MotionProblem(NamedTuple):
         return 0.0 if self.functions is None else self.functions.error
 
     def kernel_drive(self, index: Any = slice(None)) -> KernelDrive:
-        """Return the drive of some motions as the kernels take it; ``index`` of numpy."""
+        """Return the drive of some motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
+
+        index : index of numpy that selects the motions; default: all.
+        """
         return undriven() if self.functions is None else self.functions.for_kernel(index)
 
 
 def make_problem(
     roller: Roller, start: tuple[Any, Any], drive: Drive, end: float, options: SolverOptions, *, single: bool = False
 ) -> MotionProblem:
-    """Check motions before any is integrated.
+    """Check everything about motions before any is integrated, and convert it to dimensionless numbers.
 
     roller: scene or cylinder.
-    start: V0 and omega0 in its units, plain numbers; None where they are prescribed.
-    drive: loads and prescribed speeds in its units, plain numbers.
+    start: V0 and omega0 in its units, plain numbers or arrays (n,); None where a speed is prescribed.
+    drive: loads and prescribed speeds in its units, without labels.
     end: last output time, in its unit.
     options: how to integrate.
-    single: whether only one motion is allowed.
-    Raises ParameterError for everything that :func:`viscoroll.roll` and :func:`viscoroll.ensemble` refuse.
-    Returns the :class:`MotionProblem`.
+    single: whether only one motion is allowed (``roll``); else an ensemble.
+    Raises ParameterError for everything that :func:`viscoroll.roll` or :func:`viscoroll.ensemble` refuses, apart from
+    output times, fields and method.
+    Returns the :class:`MotionProblem`; callables are fitted by then, and nothing is integrated.
     """
     acts = drive.acts
     if single:
@@ -132,10 +146,10 @@ def make_problem(
 def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
     """Return the largest spacing of the samples of a callable, in T_ref.
 
-    resolve: the spacing in the unit of the roller.
+    resolve: the spacing in the unit of time of the roller: s, or T_ref of a scene.
     drive: drive of the motions.
-    scale: scale of the roller.
-    Raises ParameterError unless ``resolve`` is a number above 0 and the drive has a callable.
+    scale: scale of the roller, which converts s to T_ref.
+    Raises ParameterError unless ``resolve`` is one number above 0 and the drive has a callable.
     """
     if not drive.has_callable:
         sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
@@ -144,10 +158,12 @@ def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
 
 
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
-    """Return whether the added mass acts; raises ParameterError where N, or the part of either body, is not known.
+    """Return whether the added mass N acts.
 
     unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
     scene: dimensionless parameters of the roller.
+    Raises ParameterError for what is no truth value, and, if True, for covers and for bodies of different materials,
+    for which N is not available.
     """
     if not check_bool("unsteady", unsteady):
         return False
@@ -159,11 +175,11 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
 
 
 def _standstill_time(rested: Any, units: HasUnits) -> float:
-    """Return the time of the standstill before the start, infinite for a long one, in the unit of the roller.
+    """Return the time of the standstill before the start, in the unit of the roller: 0 without one, inf for a long one.
 
-    rested: argument of the caller: a truth value, or a time.
+    rested: argument of the caller: False (none), True (a long one), or a time >= 0 in the unit of the roller.
     units: units of the roller.
-    Raises ParameterError for what is not one number >= 0.
+    Raises ParameterError for what is neither a truth value nor one number >= 0.
     """
     if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
@@ -178,9 +194,9 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
 
     start: start speeds, numbers or (n,), and drive, dimensionless.
     scene: dimensionless parameters of the roller.
-    rested: time of the standstill, in T_ref; infinite for a long one.
-    Returns (V0, omega0, whether the cylinder stays in its indentation, in the shape of the speeds, or one False if
-    ``rested`` is 0); the speeds are dimensionless.
+    rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
+    Returns (V0; omega0; whether the cylinder is too slow to leave its indentation, in the shape of the speeds, or one
+    False if ``rested`` is 0); the speeds are dimensionless.
     Raises ParameterError for a prescribed speed, a start in full slip or a cover, whose cost is not known.
     """
     if rested == 0.0:
@@ -204,13 +220,17 @@ def integrate(
     """Integrate motions in the kernel.
 
     count: number of motions.
-    batch: law, whether bodies differ, kappa, mu, gamma, j, V0, omega0, each one number or (count,).
-    drive: drive of the motions as the kernels take it.
-    times: output times, ascending, in T_ref.
-    limits: (rtol, threshold of rest, step limit).
-    rows: indices into :data:`ROWS`.
-    notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
-    Returns (rows (rows, count, times); status, steps, switches, onset and rest time of each motion (count, 5)).
+    batch: (law, the kernel's record of one material or of several; whether the two bodies take unequal parts of M;
+    kappa, mu, gamma, j, V0, omega0, vectors of one value or ``count`` values), dimensionless.
+    drive: drive of the motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
+    times: output times, (times,), ascending, in T_ref.
+    limits: (rtol; threshold of rest, 0 for none; largest number of steps).
+    rows: (rows,), indices into :data:`.drive.ROWS`: the quantities to compute.
+    notes: (switches, (k, 2): time in T_ref and new regime, or -1 where V changes its sign; ends of steps, (l,), in
+    T_ref). Both are written; what exceeds their length is left out.  Arrays of length 0 keep nothing.
+    Returns (quantities, (rows, count, times), NaN at times that a motion did not reach; information on each motion,
+    (count, 5): code of :class:`MotionStatus`, number of steps, number of changes of regime, onset time and rest time in
+    T_ref, NaN where there is none).
     """
     from ..kernels.motion.batch import N_INFO_COLUMNS, motion_loop
 
@@ -223,9 +243,12 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
     """Integrate one motion.
 
     problem: checked problem of one motion.
-    times: output times, ascending, in T_ref.
-    notes: arrays that receive the switches (n, 2) and the ends of steps (n,).
-    Returns (all rows, (rows, times); [status, steps, switches, onset time, rest time]), dimensionless.
+    times: output times, (times,), ascending, in T_ref.
+    notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the ends of steps; none:
+    neither is kept.
+    Returns (all quantities in the order of :data:`.drive.ROWS`, (rows, times), dimensionless; [code of
+    :class:`MotionStatus`, number of steps, number of changes of regime, onset time, rest time], times in T_ref).  A
+    cylinder that stays in its indentation is not integrated: its quantities are NaN, its status is CAUGHT.
     """
     scene = problem.scene
     if problem.immobile:
@@ -243,17 +266,17 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
 def integrate_motions(
     parameters: tuple[Any, ...], starts: tuple[Floats, Floats], gamma: Floats, t: Floats, *, threads: int | None = 1
 ) -> tuple[Floats, Floats]:
-    """Integrate the motions from which a flow map is built and by which it is tested.
+    """Integrate free motions from which a flow map (:mod:`.flow`) is built and by which it is tested, at rtol 1e-12.
 
-    No kernel is compiled for them alone.
+    They are integrated as those of an ensemble are, so that no kernel is compiled for them alone.
 
-    parameters: (alpha or series, kappa, mu, j).
-    starts: V0 and omega0, (n,).
-    gamma: time scale of each motion, (n,).
-    t: output times, common to all.
+    parameters: (material, kappa, mu, j), numbers; the material is alpha, or a series in its own unit of time.
+    starts: V0 and omega0, (n,) each, dimensionless.
+    gamma: P T^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, (n,) or (1,).
+    t: output times, (times,), ascending, common to all, in the unit of time of the material.
     threads: number of threads; None: all cores available.
-    Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss (8, n, times); status, steps, switches, onset
-    and rest time (n, 5)).
+    Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times), dimensionless; status, steps,
+    switches, onset and rest time of each motion, (n, 5), as of :func:`integrate`).
     """
     material, kappa, mu, j = parameters
     law, count = law_table(material), starts[0].size

@@ -62,15 +62,15 @@ class RollResult(Result):
     def _add_steadiness(
         self, report: Validity, roller: Roller, V: Floats, rolls: Any, x: Any, *, ends: bool
     ) -> Validity:
-        """Add to a report whether the law of steady rolling may drive the motions.
+        """Add to a report whether the law of steady rolling may drive the motions, as its entry ``steady``.
 
         report: validity of the states of the motions.
         roller: roller of the motions.
-        V: speeds in its unit, (times, ...);
+        V: speeds in its unit, (times, ...).
         rolls: where the motions are not in full slip, (times, ...).
-        x: distances travelled, (times, ...); NaN where they are not known.
-        ends: whether the unsteadiness is that of each motion as a whole, else at each time.
-        Returns the report with that entry.
+        x: distances travelled, in the unit of the roller, (times, ...); NaN where they are not known.
+        ends: whether the unsteadiness is that of each motion as a whole, (...), else at each time, (times, ...).
+        Returns a new report with that entry.
         """
         free = FreeRolling.of_scene(roller.scene(), V / roller.scale["V"]).scaled(roller.scale)
         return report._replace(steady=Steadiness.along(free, rolls, x, ends=ends))

@@ -27,9 +27,10 @@ class Quantity(NamedTuple):
     """A quantity that summaries describe.
 
     fields : names of the fields of an ensemble that it needs.
-    values : (motions, index of the output time) -> its values, (n,); the index is ignored without ``over_time``.
-    column : whose name and unit it has; "" for a part of the kinetic energy at the start.
-    part : which part that is.
+    values : function (motions, index of the output time) -> its values, (n,), in the unit of the roller or, of a part,
+    dimensionless; the index is ignored without ``over_time``.
+    column : name of the field whose long_name and unit it has; "" for a part of the kinetic energy at the start.
+    part : words on which part that is; "" else.
     over_time : whether it has a value at each output time.
     """
 
@@ -47,7 +48,7 @@ class Quantity(NamedTuple):
 
 
 def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
-    """Return a field at an output time without dimension, (n,).
+    """Return a field at an output time, made dimensionless, (n,).
 
     motions: an ensemble.
     name: name of the field.
@@ -108,8 +109,9 @@ QUANTITIES = {
 class Summary(msgspec.Struct):
     """Summary of a block of motions.
 
-    histograms : by quantity, one for each output time.
-    statuses : number of motions by code of their status.
+    histograms : name of a quantity -> a histogram for each output time, or one for a quantity that is one number per
+    motion.
+    statuses : code of :class:`MotionStatus` -> number of motions.
     mapped : number of motions from the flow map.
     """
 
@@ -124,6 +126,8 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     motions: the ensemble.
     levels: levels of the quantiles, in [0, 1].
     Raises ParameterError for an ensemble without motions.
+    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, in the units of
+    the roller.
     """
     if not len(motions):
         raise ParameterError("motions", 0, "at least 1")
@@ -139,8 +143,9 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
     """Return the summary of the motions of a block, which merges with those of other blocks.
 
     motions: an ensemble.
-    names: names of the quantities.
+    names: names of quantities, keys of :data:`QUANTITIES`, whose fields the ensemble has.
     exact: whether to keep the values for exact quantiles.
+    Returns the :class:`Summary`, in the units of the roller.
     """
     histograms = {}
     for name in names:
@@ -152,7 +157,11 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
 
 
 def merge_summaries(summaries: Iterator[Summary]) -> Summary:
-    """Return one summary from the ``summaries`` of blocks, given in the order of blocks."""
+    """Merge the summaries of blocks to one of all their motions.
+
+    summaries: at least one, in the order of blocks, of the same quantities and times; the first one is changed.
+    Returns the first one, which then counts all motions.
+    """
     total = next(summaries)
     for other in summaries:
         for name, histograms in total.histograms.items():
@@ -165,12 +174,14 @@ def merge_summaries(summaries: Iterator[Summary]) -> Summary:
 
 
 def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bool) -> xr.Dataset:
-    """Return moments, quantiles and histograms over t, and counts of how motions ended.
+    """Return moments, quantiles and histograms over t, and counts of how motions ended, as a dataset.
 
     total: the summary.
-    t: output times, in the unit of the roller.
+    t: output times, (times,), in the unit of the roller.
     levels: levels of the quantiles, in [0, 1].
     si: whether the units are those of a cylinder.
+    Returns the dataset: of each quantity the variables of :func:`_variables`; ``ended`` over status, the number of
+    motions with each; attributes ``failed_motions`` and ``motions_from_the_flow_map``.
     """
     import xarray as xr
 
@@ -199,7 +210,9 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
     histograms: one for each output time, or one.
     levels: levels of the quantiles, in [0, 1].
     si: whether the units are those of a cylinder.
-    Returns name of the variable -> variable of xarray.
+    Returns name of the variable -> (dimensions, values, attributes): NAME_counted, _mean, _std, _min, _max over t or
+    without dimensions, NAME_quantiles over (quantile, t), NAME_histogram over (bin, t), NAME_bin_low and NAME_bin_high
+    over bin.
     """
     about, times = QUANTITIES[name].about(si), ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))

@@ -77,7 +77,8 @@ def master_curve(
     on : the moduli by whose overlap shifts are found.
 
     Returns
-    ------- tuple
+    -------
+    tuple
         The master curve, a :class:`Curve` at the reference temperature; the :class:`Shifts` of the temperatures.
 
     Raises

@@ -182,9 +182,11 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
     quantities = {column.quantity for column in found}
-    missing = "frequency" + ": this is a sweep of temperature, not of frequency" * ("temperature" in quantities)
+    problem = "no column was found for frequency" + ": this is a sweep of temperature, not of frequency" * (
+        "temperature" in quantities
+    )
     if quantities & {"frequency", "reduced frequency"}:
-        missing = "two of these four: storage, loss, tan delta, modulus"
+        problem = "fewer than two columns were found of storage, loss, tan delta and modulus"
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
             columns: dict[str, list[Column]] = {}
             unused = {}
@@ -203,7 +205,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     headings = ", ".join(map(repr, filter(None, table.headings)))
     raise FileError(
         table.path,
-        f"no column was found for {missing}{problems}; headings: {headings}; name the columns by columns={{...}}",
+        f"{problem}{problems}; headings: {headings}; name the columns by columns={{...}}",
     )
 
 

@@ -133,7 +133,8 @@ class Identification(Result):
         level : confidence level, in (0, 0.9999].
 
         Returns
-        ------- dict of str to (float or None, float or None)
+        -------
+        dict of str to (float or None, float or None)
             Name of the unknown -> ends of its interval, SI units.
 
         Raises

@@ -39,7 +39,8 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     path : path of the TOML file.
 
     Returns
-    ------- dict
+    -------
+    dict
         Arguments of :func:`.identify.identify` by name.
 
     Raises

@@ -42,8 +42,8 @@ _SPELLINGS = {
 class Reading(NamedTuple):
     """One way to read a heading.
 
-    name : without unit and logarithm.
-    unit : unit in the heading or in the row of units, "" without.
+    name : the heading without unit and without the word for a logarithm.
+    unit : unit in the heading, else in the row of units, as the file spells it; "" without.
     log : whether the column is of logarithms to base 10.
     """
 
@@ -53,11 +53,13 @@ class Reading(NamedTuple):
 
 
 def readings(heading: str, row: str = "") -> list[Reading]:
-    """Return all ways to read a heading, the likeliest first: as a name alone, then with a unit in brackets or at
-    its end.
+    """Return all ways to read a heading, the likeliest first.
+
+    They are: as a name alone, then with a unit in brackets or at its end.
 
     heading : text of the heading, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)".
     row : the cell of a row of units for this column, "" without; a heading without a unit has this one.
+    Returns at least one :class:`Reading`, unless the heading is empty.
     """
     log = False
     if found := _LOGARITHM.fullmatch(heading.strip()):
@@ -76,11 +78,11 @@ def readings(heading: str, row: str = "") -> list[Reading]:
 
 
 def may_be_unit(text: str) -> bool:
-    """Return whether a text may be a unit, for pint to decide: short, of symbols and their powers.
+    """Return whether a text may be a unit, for pint to decide: at most 24 characters, of symbols and their powers.
 
-    Sums and towers of powers, of which pint computes the value, are none.
+    Sums and towers of powers, of which pint computes the value, are none; nor is a text without a letter or one of % °.
 
-    text : without brackets.
+    text : the text, without brackets around it.
     """
     rest = _POWERS.sub("", re.sub(r"^\s*1\s*/", "", text))
     return (
@@ -91,11 +93,12 @@ def may_be_unit(text: str) -> bool:
 
 
 def conversion(unit: str, wanted: str) -> tuple[float, float]:
-    """Return factor and offset of the conversion of a unit as files spell it: wanted = factor * number + offset.
+    """Return the conversion of a unit as files spell it to another: wanted = factor * number + offset.
 
-    unit : "" and "-" of a ratio; "mpa", "U/min", "C", "Nm" are read as MPa, rpm, degC, N m where pint's own reading
-    has another dimension.
-    wanted : unit in pint's spelling.
+    unit : "" and "-" of a ratio; "mpa", "U/min", "C", "Nm" are read as MPa, rpm, degC, N m where pint's own reading has
+        another dimension.
+    wanted : unit in pint's spelling, "1" of a ratio.
+    Returns (factor, offset); the offset is in the unit ``wanted``, and 0 but for temperatures.
 
     Raises
     ------

@@ -42,12 +42,14 @@ class Line(NamedTuple):
 
 
 def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
-    """Return the lines of a text file.
+    """Return the lines of a text file, without their ends.
 
     path : path of the file.
     encoding : name of the encoding, as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and
     Latin-1 that fits.
-    Raises FileError for workbooks and other binary files, ParameterError for an encoding that Python does not know.
+    Minus signs of typography become "-"; a first line "sep=;" of Excel becomes empty, so that line numbers stay.
+    Raises FileError for a file that cannot be read or decoded, workbooks and other binary files; ParameterError for an
+    encoding that Python does not know.
     """
     try:
         raw = Path(path).read_bytes()
@@ -77,8 +79,8 @@ def cut_lines(text: list[str], separator: str) -> list[Line]:
 
     text : lines of a file.
     separator : a key of :data:`SEPARATORS`.
-    Returns the lines with their cells up to the first that Python's csv cannot cut.  (pandas would ask that all lines
-    of a file, its preamble too, are as wide as its table.)
+    Returns the lines with their cells, as :class:`Line`, up to the first that Python's csv cannot cut; nothing is
+    raised. (pandas would ask that all lines of a file, its preamble too, are as wide as its table.)
     """
     mark = re.compile(_COMMENT.format(separator.strip(" ")))
     plain, found = [mark.sub("", line) for line in text], []
@@ -101,8 +103,9 @@ def cut_by_blanks(text: str) -> list[str]:
 def separator_of(text: list[str], decimal: str | None) -> str:
     """Return the separator that cuts most lines into rows of numbers of one width, of two cells and more.
 
-    text : lines of a file.
-    decimal : the decimal mark, which is no separator then; None: not given.
+    text : lines of a file, of which the first 2000 are examined.
+    decimal : the decimal mark, "." or ",", which is no separator then; None: not given.
+    Returns a key of :data:`SEPARATORS`; a tab where no separator gives such rows.
     """
 
     def count(separator: str) -> int:

@@ -18,10 +18,10 @@ def named_table(
     """Read a table whose headings are the line that has one of the given names, with a unit or without.
 
     path : path of the file.
-    names : names of columns.
+    names : names of columns; where no line has any, the line above the first row of numbers is taken for headings.
     decimal : decimal mark, "." or ","; None: the one that the file has.
-    encoding : name of the encoding; None: by the first bytes of the file.
-    Returns the table; raises the errors of :func:`read_table`.
+    encoding : name of the encoding, as Python calls it; None: by the first bytes of the file.
+    Returns the :class:`Table`; raises the errors of :func:`read_table`, and none for names that are missing.
     """
     return read_table(
         path, lambda cells: any(_is_named(cell, name) for name in names for cell in cells if cell),
@@ -35,7 +35,7 @@ def _is_named(heading: str, name: str) -> bool:
 
 
 def find_column(table: Table, name: str) -> int | None:
-    """Return the index of the column with a name, None where there is none.
+    """Return the index of the column with a name, from 0; None where there is none.
 
     table : table with headings.
     name : a heading as the file has it, which goes first, or a heading without its unit.

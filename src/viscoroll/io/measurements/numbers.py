@@ -55,11 +55,12 @@ def is_row_of_numbers(cells: list[str]) -> bool:
 def decimal_mark(cells: list[str], doubtful: str) -> str:
     """Return the decimal mark of cells, "" where the marks may be separators of thousands.
 
-    They may be where both marks occur, or where three digits stand behind each, as in "1,234".
+    They may be where both marks occur, or where three digits stand behind each mark, as in "1,234".
 
-    cells : cells of a table or a column.
-    doubtful : marks of which the second rule is true: the comma where commas separate cells, both beside "567".
-    Returns ".", "," or "".
+    cells : cells of a table or a column; those that are no numbers with a mark do not count.
+    doubtful : marks, "", ",", or ",.", to which the rule of three digits applies: the comma where commas separate
+    cells, both where a cell of three digits, as "567", occurs beside.
+    Returns ".", "," or ""; "." where no cell has a mark.
     """
     marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]
     marks = set("".join(marked)) & set(",.")
@@ -69,7 +70,7 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 
 
 def fault_of(cell: str, decimal: str) -> str:
-    """Return why a cell cannot be read as a number, "" if it can.
+    """Return why a cell cannot be read as a number, in words that continue a message; "" if it can.
 
     cell : text of the cell.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.

@@ -52,10 +52,11 @@ class Table:
         return any(is_number(row.cells[column]) for row in self.rows)
 
     def numbers(self, column: int) -> Numbers:
-        """Return the numbers of a column.
+        """Return the numbers of a column, with half a unit of their last digits.
 
-        column : index of the column.
-        Raises FileError, with its line, for a gap, a text, a separator of thousands, or the other decimal mark.
+        column : index of the column, from 0.
+        Raises FileError, with the number of the line, for a gap, a text, a separator of thousands, or the other decimal
+        mark.
         """
         cells = [row.cells[column] for row in self.rows]
         threes = any(len(cell) == 3 and cell.isdigit() for cell in cells)
@@ -66,10 +67,10 @@ class Table:
         return numbers_of(cells)
 
     def require(self, holds: Any, problem: str) -> None:
-        """Raise FileError with the line of the first row for which a condition does not hold.
+        """Raise FileError, with the number of its line, for the first row for which a condition does not hold.
 
-        holds : the condition for each row, shape (n,).
-        problem : what is wrong where it does not hold.
+        holds : whether it holds for each row, shape (n,), an array of truth values.
+        problem : what is wrong where it does not hold, in words that end the message.
         """
         if not holds.all():
             raise FileError(self.path, f"line {self.rows[int(np.argmin(holds))].number}: {problem}")
@@ -82,23 +83,26 @@ def read_table(
     """Read the table of a text file, which may have a preamble, comments, and several tables with the same headings.
 
     The separator is that by which most lines are rows of numbers.  Headings are the last line before the numbers that
-    ``is_heading_line``, else the line above the first row.
+    ``is_heading_line``, else the line above the first row; without one columns are "column 0", "column 1" ...
 
     Parameters
     ----------
-    path : a text file in UTF-8, UTF-16 or Latin-1.
-    is_heading_line : a function that returns whether the cells of a line are headings.
-    decimal : "." or ","; default: the mark that is there, both are refused.
-    encoding : name of the encoding, as Python calls it; default: by the first bytes.
+    path : a text file in UTF-8, UTF-16, cp1252 or Latin-1.
+    is_heading_line : a function of the cells of a line, a list of texts, that returns whether they are headings.
+    decimal : "." or ","; None: the mark that is there.  Where both may be meant, the numbers are refused when they are
+        read.
+    encoding : name of the encoding, as Python calls it; None: by the first bytes.
 
     Returns
     -------
     Table
+        The rows of all tables of the file, one after the other.
 
     Raises
     ------
     FileError
-        A file that cannot be read, that is no text, or has no table; rows or headings of unlike numbers of cells.
+        A file that cannot be read, that is no text, or has no table; several tables with different headings; rows or
+        headings of unlike numbers of cells; a line among the rows or above them that is neither numbers nor units.
     ParameterError
         A decimal mark that is neither; an encoding that Python does not know.
     """
@@ -123,12 +127,14 @@ def read_table(
 
 @dataclass
 class _Layout:
-    """Where the tables of a file are.
+    """Where the tables of a file are: their lines of headings, rows of units and rows of numbers.
 
     path : path of the file.
     lines : lines of the file with their cells.
-    separator : separator of the cells.
+    separator : separator of the cells, a key of ``SEPARATORS``.
     is_heading_line : as of :func:`read_table`.
+    width : most frequent number of cells of rows of numbers.
+    cut : words on the separator, for messages.
     """
 
     path: str | PathLike[str]
@@ -156,8 +162,9 @@ class _Layout:
         return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
 
     def heads(self) -> list[int]:
-        """Return the index of the line of headings of each table of the file; without headings columns are "column 0",
-        "column 1" ...
+        """Return the index, in ``lines``, of the line of headings of each table of the file, ascending, at least one.
+
+        In a file without headings a line "column 0", "column 1" ... takes the place of all lines above the numbers.
 
         Raises FileError for a line of headings that is cut by other separators, and for numbers above the headings.
         """
@@ -187,8 +194,9 @@ class _Layout:
 
         head, end : index of its line of headings, and of the first line behind it: the headings of the next table, or
         the end of the file.
-        Returns (headings, units, rows); raises FileError for a line among the rows that is none, and for rows of
-        another number of cells.
+        Returns (headings; units, "" without, both one for each column; rows, without comments).
+        Raises FileError for a line among the rows that is none, for rows of another number of cells than the headings,
+        and for a line above them that is neither units nor numbers.
         """
         line, *body = self.lines[head:end]
         names, first = self.headings(line), [each.numeric for each in body].index(True)
@@ -206,7 +214,13 @@ class _Layout:
         return names, self.units(body[:first], len(names)), rows
 
     def headings(self, line: Line) -> list[str]:
-        """Return the cells of a line of headings; where blanks separate, words of one name go together if that fits."""
+        """Return the cells of a line of headings, a new list.
+
+        Where blanks separate, words of one name, as "storage modulus", go together if that gives as many cells as rows
+        have.
+
+        line : the line.
+        """
         if self.separator != " " or len(line.cells) == self.width:
             return [*line.cells]
         text = re.sub(r"[\[(][^\])]*[\])]", lambda found: found[0].replace(" ", "·"), line.text)
@@ -218,7 +232,8 @@ class _Layout:
 
         between : lines between headings and numbers.
         width : number of columns.
-        Returns the unit of each column, "" for a column without one.
+        Returns the unit of each column as the file spells it, (width), "" for a column without one.
+        Raises FileError for another line there that is no comment.
         """
         found = [""] * width
         for line in between:

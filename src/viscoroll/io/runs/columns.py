@@ -20,10 +20,10 @@ _SERIES = {
 
 
 def attributes(name: str, si: bool) -> dict[str, Any]:
-    """Return the attributes of a column: long_name, units and more, as JSON takes them.
+    """Return the attributes of a column of a store: name -> value, long_name, units and more, as JSON takes them.
 
     name: name of an input (as base_E, tau_2, drive_torque_time_1) or of a field of a motion.
-    si: whether the run is in SI units.
+    si: whether the run is in SI units, else dimensionless.
     """
     if name.startswith(PREFIXES["drive"]):
         load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")

@@ -117,12 +117,14 @@ def run_ensemble(
 def _evaluate_missing(
     store: Store, shared: Any, pool: Executor, workers: int, advance: Callable[..., Any]
 ) -> Iterator[int]:
-    """Submit the missing blocks, and yield the number of motions of each one that is finished.
+    """Submit the missing blocks, and yield the number of motions of each one that is finished and stored.
 
     store: the store of the run.
     shared: the store, or dask's reference to it, as tasks take it.
     pool, workers: executor, and its number of workers.
-    advance: function of the progress bar; it is called with the motions of blocks that were on disk.
+    advance: function (number of motions, on_disk=True) of the progress bar; it is called here for blocks that were on
+    disk.
+    Raises what the evaluation of a block raises; blocks that are not running yet are then cancelled.
     """
     running: set[Future[int]] = set()
     checked = 0  # motions before the block at hand
@@ -149,9 +151,11 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
     """Open the executor of the tasks; a context manager.
 
     store: store of the run.
-    cluster: None (threads of this process), "local" or the address of a scheduler.
+    cluster: None (threads of this process), "local" (processes of this machine) or the address of a scheduler.
     threads: number of threads or local processes; None: all cores available.
-    Yields (executor, number of workers, the store as tasks take it).  Raises ParameterError or FileError.
+    Yields (executor; its number of workers; the store, or dask's reference to it, as tasks take it).
+    Raises ParameterError for an unknown cluster, FileError for one without workers or whose connection is lost,
+    MissingDependencyError without dask.  At an error running blocks of threads are told to stop.
     """
     if cluster is None:
         interrupted = threading.Event()
@@ -192,9 +196,10 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
     """Return a client of dask: of a running scheduler, or of workers that are started on this machine.
 
-    distributed: the module.
-    cluster: "local" or an address.
-    threads: number of local processes.
+    distributed: the module ``distributed``.
+    cluster: "local" or the address of a scheduler.
+    threads: number of local processes; None: all cores available.  A running scheduler has its own.
+    Raises OSError if no scheduler answers within 10 s.
     """
     if cluster != "local":
         return distributed.Client(cluster, timeout=10)
@@ -208,10 +213,10 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
 
 @contextmanager
 def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
-    """Draw the progress of a run; a context manager.
+    """Draw the progress of a run on standard error; a context manager.
 
     run: run whose motions are counted.
-    progress: False, True (a bar) or "lines" (a line every half minute).
+    progress: False (nothing), True (a bar) or "lines" (a line every half minute).
     Yields a function (number of motions, on_disk=False) that advances it; motions that were on disk do not count in the
     rate.
     """
@@ -225,6 +230,11 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
     with tqdm(total=run.settings.n, disable=not progress, **settings) as bar:
 
         def advance(motions: int, on_disk: bool = False) -> None:
+            """Advance the bar.
+
+            motions: number of motions.
+            on_disk: whether they were on disk already.
+            """
             if on_disk and progress:  # a disabled bar has no attribute initial
                 bar.initial += motions
             bar.update(motions)

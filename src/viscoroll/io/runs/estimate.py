@@ -102,8 +102,10 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 def _time_of_laws(run: Run) -> float:
     """Return the seconds that the laws of the covers of the first block take; 0.0 of half-spaces.
 
+    A cover is a layer of finite thickness, each of which has a law of its own.  One law, that of the largest thickness
+    and nu, is computed, and its time multiplied by the number of laws.
+
     run: the run, of half-spaces or of covers.
-    One law is computed, and its time multiplied by the number of laws.
     """
     from ...materials.law.cover_rows import cover_rows
     from ...materials.law.per_element import count_laws

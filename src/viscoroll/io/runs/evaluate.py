@@ -25,11 +25,11 @@ _STARTS = 1000
 
 
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
-    """Return the inputs of the motions of a block, by name, each (motions,), in the units of the run.
+    """Return the inputs of the motions of a block: name -> values, (motions,), in the units of the run file.
 
     run: the run.
-    block: number of the block.
-    most: number of motions at most; None: all of the block.
+    block: number of the block, from 0.
+    most: number of motions at most, the first of the block; None: all of it.
     """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)
@@ -78,8 +78,10 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
     """Draw the inputs of a block, and compute its motions.
 
     run: the run.
-    block: number of the block.
-    Returns (inputs by name, each (motions,), in the units of the run; motions).
+    block: number of the block, from 0.
+    Returns (name of an input -> values, (motions,), in the units of the run file; the motions, an :class:`Ensemble`
+    with the fields that the run needs).
+    Raises ParameterError for inputs that a motion does not allow.
     """
     start, stop = run.edges(block)
     values = block_inputs(run, block)
@@ -89,10 +91,12 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 def warn_of_materials(run: Run) -> None:
     """Warn of motions of a run outside the measured bands of its materials, judged by their starts and by their median.
 
-    The starts of a run in SI units with a start speed are compared with the bands.  In any case the motion of the
-    median inputs is computed, which may warn too.
+    The band of a material is the range of frequencies at which it was measured.  The starts of a run in SI units with a
+    start speed are compared with the bands.  In any case the motion of the median inputs is computed, which may warn
+    too.
 
     run: the run.
+    Returns nothing; warnings are those of :func:`viscoroll.ensemble`.
     """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)
@@ -105,11 +109,11 @@ def warn_of_materials(run: Run) -> None:
 
 
 def _fraction_outside(run: Run) -> float:
-    """Return the fraction of motions whose transit frequency at the start is outside a measured band.
+    """Return the fraction of motions whose transit frequency at the start is outside a measured band of a material.
 
-    A start at rest is inside: M is 0 there.
+    The transit frequency is |V| divided by the contact length.  A start at rest is inside: M is 0 there.
 
-    run: a run in SI units, whose first motions are examined.
+    run: a run in SI units, whose first motions, at most 1000, are examined.
     Returns the fraction, 0 to 1.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))

@@ -63,8 +63,9 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 def _append_motions(store: Path, path: Path) -> None:
     """Copy the motions, chunk by chunk, into the group "motions" of a netCDF-4 file.
 
-    store: folder of the results.
+    store: folder of the results, which has every motion.
     path: the file, which is there already.
+    Raises OSError if the disk is full; the file is then incomplete.
     """
     import h5netcdf
 
@@ -101,8 +102,8 @@ def _reserve(path: Path, size: int) -> None:
 
     HDF5 cuts off at its end what it did not use.
 
-    path: path of the file.
-    size: number of bytes to add.
+    path: path of the file, which must exist.
+    size: number of bytes to add at its end.
     Raises OSError if the disk is full.
     """
     with path.open("r+b") as file:

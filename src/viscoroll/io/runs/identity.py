@@ -22,7 +22,12 @@ ADVICE = "give another folder with -o, or delete this one"
 
 
 def about(run: Run) -> dict[str, Any]:
-    """Return the attributes of a store: title, run file, seed, versions and size of the run."""
+    """Return the attributes of a store: name -> text or number.
+
+    They are title, versions, size, seed, design and method of the run, and the text of its file.
+
+    run: the run.
+    """
     return provenance("Ensemble of motions of a viscoelastic cylinder") | {
         "versions": json.dumps(_software()),
         "motions": run.settings.n,
@@ -39,7 +44,7 @@ def about(run: Run) -> dict[str, Any]:
 def _software() -> dict[str, str]:
     """Return the versions of the packages that the bits of a result depend on, and a digest of the kernels.
 
-    Returns package -> version, and "kernels" -> digest.
+    Returns "viscoroll", "numpy", "scipy", "numba" -> version, and "kernels" -> digest of their sources.
     """
     import numba
     import scipy
@@ -51,12 +56,13 @@ def _software() -> dict[str, str]:
 
 
 def identity(run: Run) -> str:
-    """Return the SHA-256 of all that the blocks of a run depend on, whatever their number, and of the software.
+    """Return a digest of all that the blocks of a run depend on, whatever their number, and of the software.
 
     Two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata depend
     on the number of motions, or ``n`` changes their method or the size of their blocks.
 
     run: the run.
+    Returns a SHA-256, 64 hexadecimal digits.
     """
     n = run.settings.n if run.settings.design == "latin" else None
     text = json.dumps([run.digest, run.method, run.block, n, _software()])
@@ -64,7 +70,7 @@ def identity(run: Run) -> str:
 
 
 def refuse_another(root: Path, run: Run, record: Record) -> None:
-    """Raise FileError if a store is neither of a run nor of the same run with fewer motions.
+    """Raise FileError if a store belongs neither to a run nor to the same run with fewer motions.
 
     root: folder of the store.
     run: the run.
@@ -84,10 +90,10 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
 
 
 def _no_extension(before: Run, run: Run) -> str:
-    """Return why a store cannot be extended, and what to change in the run file; "" if it can.
+    """Return why a store cannot be extended, and what to change in the run file, as words of a message; "" if it can.
 
     before: the run of the store.
-    run: the run that differs from it in ``n``.
+    run: the same run with another ``n``.
     """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:

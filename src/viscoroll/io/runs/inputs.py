@@ -27,8 +27,8 @@ class Input:
 
     Attributes
     ----------
-    name : name of the input, as in the columns of the results.
-    section, key : where it stands in the file.
+    name : name of the input, as in the columns of the results ("mu", "base_E", "tau_2", "drive_torque_time_1").
+    section, key : where it stands in the file; of a number within a table the section is "section.key".
     """
 
     name: str
@@ -52,11 +52,11 @@ class Distribution:
 
     @np.errstate(all="ignore")  # an overflow is infinite, which a motion refuses
     def ppf(self, u: Floats) -> Floats:
-        """Return the quantiles of the truncated distribution.
+        """Return the quantiles of the truncated distribution, in the unit of the input.
 
         An upper tail is inverted from above, by the survival function, so that it keeps its digits.
 
-        u: probabilities in (0, 1), of any shape.
+        u: probabilities in (0, 1), of any shape, which the result has too.
         """
         law = self.law
         if (self.low, self.high) == law.support():
@@ -74,11 +74,12 @@ class Inputs:
 
     Attributes
     ----------
-    content : sections of the file, with an :class:`Input` in place of each uncertain number.
-    random : name -> distribution; one dimension of the cube each.
-    joint : file -> its columns by name; one dimension each: rows are drawn with replacement.
+    content : name of a section of the file -> its content, with an :class:`Input` in place of each uncertain number.
+    random : name -> distribution; one dimension of the unit cube each.
+    joint : file -> name -> its column, (rows,); one dimension for each file: rows are drawn with replacement.
     correlated : names of the distributions under the Gaussian copula.
-    mixing : Cholesky factor of their correlation matrix, (correlated, correlated); None without correlation.
+    mixing : Cholesky factor of their correlation matrix, lower triangular, (correlated, correlated); None without
+        correlation.
     """
 
     content: dict[str, Any]
@@ -104,9 +105,9 @@ class Inputs:
         return {name: values.item() for name, values in middle.items()}
 
     def values(self, points: Floats) -> dict[str, Floats]:
-        """Return the value of each input, by name, (n,).
+        """Return the value of each input at points of the unit cube: name -> values, (n,), in the units of the file.
 
-        points: (dimensions, n), in (0, 1).
+        points: (dimensions, n), in (0, 1), in the order of :attr:`dimensions`.
         """
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
@@ -124,10 +125,10 @@ class Inputs:
         return values
 
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
-        """Return the smallest and the largest draw of an input, (2,).
+        """Return the smallest and the largest draw of an input, (2,), in the unit of the file.
 
         name: name of the input.
-        low, high: shares of the distribution to take as its ends.
+        low, high: probabilities whose quantiles are the ends of a distribution; a column of a file has its extremes.
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
@@ -135,7 +136,10 @@ class Inputs:
         return np.array([column.min(), column.max()])
 
     def corners(self) -> dict[str, Floats]:
-        """Return extreme inputs, (n,): each input at one end and all others at the other, and all at one end."""
+        """Return extreme inputs, name -> (n,): each input at one end and all others at the other, and all at one end.
+
+        Columns of a file with several keep their medians, as their ends need not occur together.
+        """
         names = [*self.random, *(name for columns in self.joint.values() if len(columns) == 1 for name in columns)]
         at_low = np.eye(len(names), len(names) + 1, dtype=bool)
         ends = {name: self.ends(name)[np.r_[row, ~row].astype(int)] for name, row in zip(names, at_low, strict=True)}
@@ -144,21 +148,27 @@ class Inputs:
     def largest(self, name: str) -> float:
         """Return the largest magnitude of a start speed, apart from a millionth of the draws at each end.
 
-        name: "V0" or "omega0".
+        name: "V0" or "omega0", which the file must give.
+        Returns a number in the unit of the file.
         """
         start = self.content["start"][name]
         return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())
 
     def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the sections of the run file with values in place of the inputs.
+        """Return the sections of the run file with values in place of the inputs: name of a section -> content.
 
-        values: name of an input -> number or (n,).
+        values: name of an input -> number or (n,), for every input.
         """
         return _fill_in(self.content, values)
 
 
 def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
-    """Return a part of the content with values in place of its inputs; in a list "same" repeats the number before."""
+    """Return a part of the content with values in place of its inputs; in a list "same" repeats the number before.
+
+    part: an input, or a section, list or number of the file.
+    values: name of an input -> number or (n,).
+    Returns a new part of the same kind.
+    """
     if isinstance(part, Input):
         return values[part.name]
     if isinstance(part, dict):

@@ -50,7 +50,7 @@ def encoded(record: Record) -> bytes:
 
 
 def read_record(path: Path) -> Record | None:
-    """Return the record in a file, or None if it is missing or damaged in any way.
+    """Return the record in a file; None if it is missing, cannot be read, or is damaged in any way.
 
     path: path of the record.
     """
@@ -70,7 +70,12 @@ def _encode_array(array: np.ndarray) -> list[Any]:
 
 
 def _decode_array(kind: Any, value: Any) -> np.ndarray:
-    """Return the array of :func:`_encode_array`; raise ValueError for another type.  ``kind``: required by msgspec."""
+    """Return the array of which :func:`_encode_array` made a list.
+
+    kind: type of the field, which msgspec passes; it is not used.
+    value: [type as of numpy, "<i4" or "<i8"; bytes].
+    Raises ValueError for another type.
+    """
     name, content = value
     if name not in ("<i4", "<i8"):
         raise ValueError("no such array in a record")
@@ -78,7 +83,11 @@ def _decode_array(kind: Any, value: Any) -> np.ndarray:
 
 
 def damaged(root: Path, record: Record) -> list[str]:
-    """Return the files of a record, below ``root``, that are missing or differ from their digest."""
+    """Return the files of a record that are missing or differ from their digest; [] if all is well.
+
+    root: folder of the store.
+    record: the record, whose ``files`` are paths below ``root`` with their SHA-256.
+    """
     return [name for name, digest in record.files.items() if _digest(root / name) != digest]
 
 
@@ -92,13 +101,14 @@ def _digest(path: Path) -> str | None:
 
 
 def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
-    """Write files below a folder, each whole or not at all, and return their digests by name.
+    """Write files below a folder, each whole or not at all, and return their digests.
 
-    A file that has this content already is left alone.
+    A file that has this content already is left alone; folders are created.
 
     root: the folder.
     files: path below root -> content.
-    Returns path below root -> SHA-256.  Raises FileError.
+    Returns path below root -> SHA-256 in hexadecimal digits.
+    Raises FileError if one cannot be written; the files before it stay.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     for name, content in files.items():

@@ -124,7 +124,7 @@ class RunResults(Result):
         return pd.concat(tables)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return the title and the rows that print this result."""
+        """Return the title and the rows that print this result: folder, design, times, last moments, ends."""
         data = self.summaries
         t, about = data["t"], data.attrs
         rows = [

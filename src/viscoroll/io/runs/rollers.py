@@ -30,8 +30,9 @@ class Rollers(Roller):
 
     Attributes
     ----------
-    like : a cylinder with their numbers, which may be arrays, and one of their materials.
-    law : series, bodies or alphas of their materials; the Pair where a body is a cover.
+    like : a cylinder with their numbers, which may be arrays (n,), and one of their materials.
+    law : series, bodies or alphas (n,) of their materials, with times in T; the Pair where a body is a cover, a layer
+        of finite thickness.
     E_prime : contact modulus, Pa, a number or (n,).
     T : unit of time of the law, s.  If each motion has its own, (n,), times are counted in s: gamma only scales time
         (Eq. (22)), and gamma/T in place of gamma makes its unit the second for all motions.
@@ -72,11 +73,11 @@ class Rollers(Roller):
 
 
 def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
-    """Return the roller of the motions of a block: a scene, a cylinder, or a cylinder for each motion.
+    """Return the roller of the motions of a block: a scene, a cylinder, or :class:`Rollers`, one for each motion.
 
     path: path of the run file, for errors and the files that it names.
-    content: sections of the file, with numbers or arrays (n,) in place of the inputs.
-    Raises ParameterError; of a material FileError.
+    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.
+    Raises ParameterError for a value out of range; FileError for a material that cannot be read or is wrong.
     """
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
     one = make_roller(path, content, {name: typical for name, (typical, _) in bodies.items()})
@@ -92,10 +93,11 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
 
 
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the loads of the section [drive] as keywords of :func:`viscoroll.ensemble`.
+    """Return the loads and prescribed speeds of the section [drive] as keywords of :func:`viscoroll.ensemble`.
 
-    content: sections with numbers or arrays (n,).
-    Raises ParameterError.
+    content: name of a section -> keys and values, numbers or arrays (n,); without [drive] the result is empty.
+    Returns name -> number, array (n,) or Schedule, in the units of the file.
+    Raises ParameterError, which names the load, for a wrong schedule.
     """
     drive = content.get("drive", {})
     return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}
@@ -105,7 +107,7 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
     """Return a piecewise linear load; raise ParameterError that names it.
 
     name: name of the load.
-    times, values: times and values of its corners, each a number or (n,).
+    times, values: times and values of its corners, in order, each a number or (n,), in the units of the file.
     """
     try:
         return Schedule(*(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values)))
@@ -118,7 +120,8 @@ def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Sol
 
     path: path of the run file.
     name: "material" or "base".
-    section: content of that section, or the material if all is certain.
+    section: content of that section, with numbers or arrays (n,), or the Material if all of it is certain.
+    Raises ParameterError for a value out of range; FileError for a section that is wrong.
     """
     if isinstance(section, Material):
         return section, section
@@ -140,9 +143,9 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
     """Return the band of angular frequencies that each body was measured in, at the temperature of each motion.
 
     path : path of the run file.
-    content : sections of the file with the inputs of some motions.
-    Returns the record of a measurement -> (lowest, highest frequency), rad/s, numbers or (n,); bodies without a record
-    are left out.
+    content : name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.
+    Returns record of a measurement -> (lowest, highest frequency), rad/s, numbers or (n,); bodies without a record are
+    left out.
     """
     bands: dict[Measured, Any] = {}
     for name in SECTIONS:
@@ -159,8 +162,8 @@ def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats |
 
     path: path of the run file.
     name: "material" or "base".
-    section: content of that section.
-    Returns the factors, dimensionless, (n,); None if the temperature is certain.
+    section: content of that section, whose "temperature", in the unit of the file, may be an array (n,).
+    Returns the factors, dimensionless, (n,); None if the temperature is certain or not given.
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None

@@ -286,7 +286,7 @@ def read_run(path: str | PathLike[str]) -> Run:
 
 @contextmanager
 def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
-    """Raise a ParameterError within as FileError of the section [run]; a context manager.
+    """Raise a ParameterError within the block as FileError of the section [run], with its line; a context manager.
 
     path: path of the run file.
     key: key that is at fault; default: the name of the parameter.
@@ -303,6 +303,7 @@ def _check_inputs(run: Run) -> None:
     It checks the medians, the ends of each input with the others at their medians, and combinations of ends.
 
     run: the run.
+    The error states the line of the input, the range of its draws and the reason.
     """
     inputs, medians = run.inputs, run.inputs.medians
     _check_motions(run, medians)
@@ -324,7 +325,11 @@ def _check_inputs(run: Run) -> None:
 
 
 def _refuses(run: Run, values: dict[str, Any]) -> bool:
-    """Return whether one motion with these ``values``, input -> number, would be refused; ``run``: the run."""
+    """Return whether one motion would be refused.
+
+    run: the run.
+    values: name of an input -> number, for every input.
+    """
     try:
         _begin_motions(run, values)
     except (ParameterError, FileError):
@@ -333,10 +338,10 @@ def _refuses(run: Run, values: dict[str, Any]) -> bool:
 
 
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
-    """Raise FileError, with its line, for motions that would be refused.
+    """Raise FileError, with its line, for motions that would be refused; nothing is rolled.
 
     run: the run.
-    values: input -> number or (n,).
+    values: name of an input -> number or (n,), for every input.
     advice: last words of the message.
     """
     try:
@@ -347,10 +352,11 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
 
 
 def _begin_motions(run: Run, values: dict[str, Any]) -> None:
-    """Raise ParameterError, of a material FileError, for motions that would be refused; nothing is rolled.
+    """Raise the error of motions that would be refused; nothing is rolled.
 
     run: the run.
-    values: input -> number or (n,).
+    values: name of an input -> number or (n,), for every input.
+    Raises ParameterError for a roller, start, drive or setting that a motion refuses, FileError for a material.
     """
     content, settings = run.inputs.filled(values), run.settings
     roller = roller_of(run.path, content)
@@ -366,11 +372,12 @@ def _begin_motions(run: Run, values: dict[str, Any]) -> None:
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
     """Return the ``digest`` of a :class:`Run`; comments and the order of keys do not change it.
 
-    settings: content of the section [run].
-    times: output times.
-    content: sections as read.
+    settings: content of the section [run], of which n, method and block do not count.
+    times: output times, (t,), in the unit of the file.
+    content: name of a section -> content, as read.
     materials: materials without uncertain inputs, as TOML.
-    inputs: uncertain inputs, whose samples count.
+    inputs: uncertain inputs, whose columns of files count.
+    Returns a SHA-256, 64 hexadecimal digits.
     """
     kept = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _NOT_IN_DIGEST}
     sections = {name: section for name, section in content.items() if name != "run"}

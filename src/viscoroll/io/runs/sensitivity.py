@@ -138,7 +138,11 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 
 
 def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
-    """Return the names of the uncertain inputs; raise ParameterError if there are none or they are not independent."""
+    """Return the names of the uncertain inputs of a run, if Sobol indices are defined for them.
+
+    inputs: the inputs.
+    Raises ParameterError if there are none, or they are not independent: correlated, or several columns of one file.
+    """
     if not inputs.uncertain:
         raise described_error("the run file", "has no uncertain input", "one in which an input has a distribution")
     if inputs.correlated:
@@ -153,11 +157,12 @@ def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
 
 
 def _points(count: int, base: int, seed: int) -> Floats:
-    """Return points of the unit cube, (input, motion): A, B, and A with each row of B in turn.
+    """Return points of the unit cube, (input, motion): A, B, and A with the row of each input in turn taken from B.
 
     count: number of inputs.
-    base: number of points of A and of B.
+    base: number of points of A and of B, a power of two.
     seed: seed of the sequence.
+    Returns (count, (count + 2) base), in (0, 1).
     """
     A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
@@ -173,7 +178,9 @@ def _outcomes(
     cube: points of the unit cube, (input, motion).
     threads: number of threads; None: all cores available.
     progress: whether a progress bar is drawn.
-    Returns (quantity -> values, (t, motion); status code of each motion, (motion,)).
+    Raises ParameterError if the values of all motions would take more than 0.5 GB.
+    Returns (name of a quantity -> values, (t, motion), or (1, motion) of one number per motion, in the units of the
+    run; status code of each motion, (motion,)).
     """
     motions = cube.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
@@ -199,10 +206,11 @@ def _outcomes(
 def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     """Estimate the Sobol indices of one quantity at one time, with their bootstrap intervals.
 
-    values: outcomes (A, B and mixed points, base point).
-    noise: part of a value that rtol leaves open.
+    values: outcomes, (2 + inputs, base points): of the points A, of B, and of A with one input from B each.
+    noise: standard deviation, in the unit of the quantity, up to which the values count as equal: their error by rtol.
     seed: seed of the bootstrap.
-    Returns (indices and half-widths, in rows as ``_INDICES``, over inputs; "" or, with NaN, why there are no indices).
+    Returns (first-order indices, half-widths of their 95 % intervals, total indices, half-widths, (4, inputs),
+    dimensionless; "" or, with NaN, why there are no indices).
     """
     from scipy.special import ndtri
 
@@ -219,7 +227,10 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 
 
 def _estimated(values: Floats) -> Floats:
-    """Return first-order and total indices, (2, input), of outcomes (A, B and mixed points, base point)."""
+    """Return first-order and total indices, (2, inputs), dimensionless.
+
+    values: outcomes, (2 + inputs, base points), as of :func:`_indices`.
+    """
     A, B, *others = values - values[:2].mean()
     mixed = np.array(others)
     return np.array([(B * (mixed - A)).mean(axis=1), 0.5 * ((mixed - A) ** 2).mean(axis=1)]) / values[:2].var()
@@ -229,6 +240,7 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
     """Return a row for each quantity, time and input that has indices, the largest total index first at each t.
 
     indices: dataset of :func:`sobol_indices`.
+    Returns the columns "quantity", "t" with its unit, "input", "S1", "S1_conf", "ST", "ST_conf".
     """
     import pandas as pd
 

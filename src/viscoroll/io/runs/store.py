@@ -41,11 +41,11 @@ _END_COLUMNS = ("onset_time", "rest_time", "status", "flow")
 
 @dataclass(frozen=True)
 class Store:
-    """Results of a run in a folder.
+    """Results of a run in a folder; a part is the start (metadata), a block of motions, or the end (summaries).
 
     Attributes
     ----------
-    root : the folder.
+    root : the folder, which need not exist yet.
     run : the run.
     """
 
@@ -69,11 +69,12 @@ class Store:
         self._write_part("start", metadata(self.run), about=about(self.run))
 
     def _write_part(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
-        """Write the files of a part, then its record; raise FileError if that fails.
+        """Write the files of a part, then its record, which makes the part complete.
 
         name: "start", "end" or the number of a block.
         files: path below the store -> content.
-        more: other fields of the :class:`Record`.
+        more: other fields of the :class:`Record`: ``about`` of the start, ``summary`` of a block.
+        Raises FileError if a file cannot be written.
         """
         record = Record(identity(self.run), write_files(self.root, files), self._motions(name), **more)
         write_bytes(_record_path(self.root, name), encoded(record))
@@ -86,7 +87,10 @@ class Store:
         return stop - start
 
     def _remove_old_end(self) -> None:
-        """Remove the summaries of fewer motions, their record first, so that the store is not finished any more."""
+        """Remove the summaries of fewer motions, their record first, so that the store is not finished any more.
+
+        Nothing is removed if there are none, or they are of this number of motions.  Raises FileError if that fails.
+        """
         own = _record_path(self.root, "end")
         end = read_record(own)
         if end is None or end.motions == self.run.settings.n:
@@ -126,10 +130,11 @@ class Store:
                 yield block
 
     def evaluate(self, block: int) -> int:
-        """Roll the motions of a block and store them; raise FileError if writing fails.
+        """Roll the motions of a block and store them.
 
-        block: number of the block.
+        block: number of the block, from 0.
         Returns the number of its motions.
+        Raises ParameterError for inputs that a motion does not allow, FileError if writing fails.
         """
         files, summary, count = block_content(self.run, block)
         self._write_part(block, files, summary=summary)
@@ -163,7 +168,7 @@ class Store:
 class BlockContent(NamedTuple):
     """What a store holds of a block.
 
-    files : path below the store -> content.
+    files : path below the store -> content of the chunks of its motions; empty if summaries alone are kept.
     summary : summary of its motions.
     motions : number of its motions.
     """
@@ -174,11 +179,12 @@ class BlockContent(NamedTuple):
 
 
 def block_content(run: Run, block: int) -> BlockContent:
-    """Roll the motions of a block, and make the files and the summary that the store keeps of it.
+    """Roll the motions of a block, and make the files and the summary that the store keeps of it; nothing is written.
 
     run: the run.
-    block: number of the block.
+    block: number of the block, from 0.
     Returns the :class:`BlockContent`.
+    Raises ParameterError for inputs that a motion does not allow.
     """
     values, motions = roll_block(run, block)
     files = _motion_files(run, columns_of(run, values, motions), block) if run.settings.keep == "all" else {}
@@ -186,7 +192,7 @@ def block_content(run: Run, block: int) -> BlockContent:
 
 
 def metadata(run: Run) -> dict[str, bytes]:
-    """Return the metadata of the group of all motions, if they are kept: path below the store -> content.
+    """Return the metadata of the group of all motions: path below the store -> content; {} if motions are not kept.
 
     run: run whose motion of medians is rolled for names and types.
     """
@@ -197,11 +203,12 @@ def metadata(run: Run) -> dict[str, bytes]:
 
 
 def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
-    """Return the chunks of a block, or without ``block`` the metadata: path below the store -> content.
+    """Return files of the group of all motions: the chunks of a block, or the metadata.
 
     run: the run.
-    columns: name -> values over (motion,) or (motion, t).
+    columns: name -> values over (motion,) or (motion, t), in the units of the run.
     block: number of the block; None: return the metadata.
+    Returns path below the store -> content.
     """
     import xarray as xr
 
@@ -214,11 +221,12 @@ def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = Non
 
 
 def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
-    """Return the columns that are kept of motions: inputs, fields and how they ended, by name.
+    """Return the columns that are kept of motions: inputs, fields and how they ended.
 
     run: run that states the fields.
-    values: inputs by name.
+    values: name of an input -> values, (n,).
     motions: motions with these inputs.
+    Returns name -> values over (motion,) or (motion, t), in the units of the run; "flow" as 0 or 1.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
     columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
@@ -226,11 +234,12 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
 
 
 def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
-    """Return the paths, below the store, that are missing or damaged of a part; its record, or files that it names.
+    """Return the paths, below the store, of a part that are missing or damaged: its record, or files that it names.
 
     root: folder of the store.
     name: "start", "end" or the number of a block.
     run, motions: identity and number of motions that the record must state.
+    Returns [] if the part is complete; the record alone if that is missing, damaged or of another run.
     """
     path = _record_path(root, name)
     record = read_record(path)
@@ -246,10 +255,10 @@ def _record_path(root: Path, name: str | int) -> Path:
 
 @contextmanager
 def locked(root: Path) -> Iterator[None]:
-    """Keep other processes from writing to a store; a context manager.
+    """Keep other processes from writing to a store; a context manager, which creates the folder.
 
     root: folder of the store.
-    Raises FileError if another process writes to it, or the disk does not allow locks.
+    Raises FileError if another process writes to it, or the disk does not allow locks; it does not wait.
     """
     from filelock import FileLock, Timeout
 

@@ -32,10 +32,11 @@ _KEYS_OF_INPUT = {"distribution", "file", "column"}
 
 
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
-    """Return the inputs of a run file, without correlations; raise FileError.
+    """Return the inputs of a run file, without correlations; files of samples are read.
 
-    path: path of the run file.
-    content: sections of the file, as read.
+    path: path of the run file, to which the paths of samples are relative.
+    content: name of a section -> content, as tomllib reads it.
+    Raises FileError, with its line, for an uncertain number that is wrong.
     """
     reader = _Reader(path, "cylinder" in content)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
@@ -47,7 +48,7 @@ class _Reader:
     """Collects the uncertain numbers of a run file, and replaces each by an :class:`Input`.
 
     path, si: path of the run file, and whether it is in SI units.
-    random, joint: as of :class:`Inputs`.
+    random, joint: as of :class:`Inputs`; they grow while the sections are read.
     files: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows.
     """
 
@@ -58,10 +59,11 @@ class _Reader:
     files: dict[Path, str] = field(default_factory=dict)
 
     def section(self, name: str, section: Any) -> Any:
-        """Return a section with inputs in place of its uncertain numbers.
+        """Return a section with inputs in place of its uncertain numbers, which are collected.
 
         name: name of the section.
-        section: content of the section, or what stands in its place, which is refused elsewhere.
+        section: content of the section, or what stands in its place, which is returned as it is and refused elsewhere.
+        Raises FileError for an uncertain number that is wrong.
         """
         if not isinstance(section, dict):
             return section
@@ -69,12 +71,14 @@ class _Reader:
         return {key: self.part(value, name, key, (key,)) if key in keys else value for key, value in section.items()}
 
     def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
-        """Return a value of the file, or an :class:`Input` if it is uncertain; of a list or table, each member in this
-        way.
+        """Return a value of the file, or an :class:`Input` if it is uncertain; of a list or table, each member so.
+
+        A table with a key distribution, file or column is an uncertain number; it is collected.
 
         value: value at a key of the file.
         section, key: section and key of the value; of a member of a table "section.key" and its key.
-        words: keys from the section down to it, and positions in lists, of which its name is made.
+        words: keys from the section down to it, and positions in lists from "1", of which its name is made.
+        Raises FileError for an uncertain number that is wrong, or a misspelt key of one.
         """
         if isinstance(value, list):
             return [self.part(member, section, key, (*words, str(n))) for n, member in enumerate(value, 1)]
@@ -95,19 +99,22 @@ class _Reader:
         return number
 
     def fault(self, number: Input, problem: str) -> FileError:
-        """Return the error of an uncertain number, with its line.
+        """Return the error of an uncertain number, with the number of its line.
 
         number: the uncertain number.
-        problem: words on what is wrong.
+        problem: words on what is wrong, which end the message.
         """
         return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
 
     @np.errstate(all="ignore")  # scipy may overflow for parameters that are refused here
     def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
-        """Return the distribution of an uncertain number, truncated if the file says so; raise FileError.
+        """Return the distribution of an uncertain number, truncated if the file says so.
 
         number: the uncertain number.
-        table: its table of TOML, with distribution, parameters and perhaps truncate.
+        table: its table of TOML: distribution, parameters of scipy.stats by name, and perhaps truncate = [low, high],
+        either of which may be infinite.
+        Raises FileError for an unknown distribution, parameters that it does not allow, or an interval of zero
+        probability.
         """
         law = self.frozen_law(number, table)
         low, high = (float(end) for end in law.support())
@@ -122,10 +129,12 @@ class _Reader:
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
-        """Return the frozen distribution of scipy.stats that a table names, with its parameters; raise FileError.
+        """Return the frozen distribution of scipy.stats that a table names, with its parameters, not truncated.
 
         number: the uncertain number, for errors.
-        table: its table of TOML.
+        table: its table of TOML: distribution, its shapes, loc and scale; truncate is ignored.
+        Raises FileError for a name that is no continuous distribution, unknown, missing or non-numeric parameters, or
+        some that it does not allow.
         """
         from scipy import stats
 
@@ -151,11 +160,12 @@ class _Reader:
         return frozen
 
     def add_column(self, number: Input, table: dict[str, Any]) -> None:
-        """Read the column of a CSV, netCDF or Parquet file that is the sample of an uncertain number; raise
-        FileError.
+        """Read the column of a file that is the sample of an uncertain number, and collect it in ``joint``.
 
         number: the uncertain number.
-        table: its table of TOML, with file and column.
+        table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and column.
+        Raises FileError for a file or column that cannot be read, or whose length differs from that of its other
+        columns.
         """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")
@@ -180,12 +190,13 @@ def _is_number(value: Any) -> bool:
 
 
 def read_column(path: Path, column: str, unit: str) -> Floats:
-    """Return a column of finite numbers, (n,).
+    """Return a column of finite numbers, (n,), from a file.
 
     path: a .csv, .nc or .parquet file.
     column: name of the column.
-    unit: unit to convert to, if a CSV states another.
-    Raises ValueError, OSError, KeyError or FileError.
+    unit: unit to convert to, if a CSV states another; "1": a ratio.  Other files are not converted.
+    Raises FileError for a CSV, ValueError, OSError or KeyError for the others and for what are no finite numbers;
+    MissingDependencyError without pyarrow.
     """
     if path.suffix == ".csv":
         values = column_in_unit(named_table(path, (column,)), column, unit)
@@ -207,10 +218,12 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
 
 def correlated(path: Path, inputs: Inputs) -> Inputs:
-    """Return the inputs with the Gaussian copula of the section [correlation]; raise FileError.
+    """Return the inputs with the Gaussian copula that the section [correlation] states; without it nothing is added.
 
     path: path of the run file.
-    inputs: inputs of the run without correlations.
+    inputs: inputs of the run without correlations; ``content["correlation"]`` holds a -> b -> correlation in (-1, 1) of
+    the normal variables behind inputs a and b.
+    Raises FileError for a name without distribution, a value out of range, or a matrix that is not positive definite.
     """
     section, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(section, dict):

@@ -84,9 +84,10 @@ def verify(path: str | PathLike[str]) -> Verdict:
 
 
 def start_of(path: str | PathLike[str]) -> Record:
-    """Return the record "start" of a store; raise FileError if the folder has none, or a damaged one.
+    """Return the record "start" of a store, which states the run.
 
     path: folder of the store.
+    Raises FileError if the folder does not exist, may not be read, or has no such record or a damaged one.
     """
     if not Path(path).is_dir():
         raise FileError(path, "is not a results store: the folder does not exist")

@@ -21,11 +21,11 @@ _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
 def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None = None) -> dict[str, bytes]:
-    """Return files of the group of all motions: path below the group -> content.
+    """Return files of the group of all motions: path below the group -> content; nothing is written.
 
     motions: dataset over (motion, t), of one block.
-    count: motions of the run.
-    block: motions of a full block.
+    count: number of motions of the run.
+    block: number of motions of a full block, which is one chunk.
     number: number of the block whose chunks are returned; None: return the metadata and the arrays that all motions
     share.
     """

@@ -122,7 +122,11 @@ def build(
 
 
 def _roller_of(what: Any) -> Scene | Cylinder:
-    """Return the roller of a grid: ``what`` itself, or the scene with kappa = mu = 1 of a law; else ParameterError."""
+    """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa = mu = 1.
+
+    what: a Scene, a Cylinder, a law, or the dataset of a law.
+    Raises ParameterError for anything else, and for a roller with arrays.
+    """
     if getattr(what, "attrs", {}).get(schema.KIND) == "law":
         what = parse_law(dataset_content(what), "law")
     if isinstance(what, LawTable):
@@ -138,10 +142,11 @@ def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: s
     """Return all fields on the nodes of a grid.
 
     roller: roller of the grid.
-    axes: V, delta and perhaps alpha -> nodes.
+    axes: "V", "delta" and perhaps "alpha" -> nodes, (n,), in the units of the roller.
     method: "table" or "direct".
 
-    Returns field -> values over all axes, or over V and alpha for fields that do not depend on the creepage.
+    Returns field -> values over all axes, or over V and alpha for fields that do not depend on the creepage, in the
+    units of the roller.
     """
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
@@ -153,12 +158,12 @@ def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: s
 def _evaluate(
     roller: Scene | Cylinder, points: dict[str, Floats], names: tuple[str, ...], method: Any = "table"
 ) -> dict[str, Floats]:
-    """Return fields of the contact by name.
+    """Return fields of the contact: name -> values in the shape of the points, in the units of the roller.
 
     roller: roller of the grid.
-    points: V, and perhaps delta (else 0) and alpha (else that of the roller), which broadcast.
+    points: "V", and perhaps "delta" (else 0) and "alpha" (else that of the roller) -> arrays that broadcast.
     names: names of the fields.
-    method: "table" or "direct".
+    method: "table" (rows of the law) or "direct" (root solves of the printed equations).
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
     creep = points.get("delta", np.zeros(1))
@@ -166,9 +171,9 @@ def _evaluate(
 
 
 def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
-    """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields.
+    """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields of a grid.
 
-    table: the grid.
+    table: the grid; its fields get the attributes spline_error, spline_error_at, linear_error and linear_error_at.
     roller: roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)
@@ -184,12 +189,12 @@ def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
 def errors_at(
     table: xr.Dataset, roller: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
 ) -> dict[str, Floats]:
-    """Return the absolute errors of interpolation in a grid, field -> errors.
+    """Return the absolute errors of interpolation in a grid: field -> errors, (n,), in the unit of the field.
 
     table: the grid.
-    roller: roller of the grid.
-    points: axis -> coordinates, (n,).
-    linear: whether interpolation is linear, else by splines.
+    roller: roller of the grid, of which the exact values are.
+    points: axis -> coordinates, (n,), in the units of the grid.
+    linear: whether interpolation is linear in the axes as they are, else by cubic splines.
     """
     exact = _evaluate(roller, points, schema.VOLUME + schema.PLANE)
     found = Interpolant(table, linear)(**points)
@@ -219,10 +224,10 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
 def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the law.
 
-    table: the grid.
+    table: the grid, by whatever method it was computed.
     roller: roller of the grid.
-    Returns field -> difference, dimensionless: relative for :data:`RELATIVE_FIELDS`, else divided by the largest value
-    of the field.
+    Returns field -> difference, dimensionless, >= 0: relative at each node for :data:`RELATIVE_FIELDS`, else divided by
+    the largest value of the field.
     """
     rows = _evaluate_nodes(roller, {name: table[name].values for name in schema.axes_of(table)}, "table")
     found = {}

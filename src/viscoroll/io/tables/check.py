@@ -33,8 +33,9 @@ ROUNDING = 2e-15
 class Check(NamedTuple):
     """A largest difference and its bound.
 
-    name : name of the check.  measured : largest difference.  allowed : its bound.  meaning : words: of which
-    quantity, in which unit, at which points.
+    name : name of the check.
+    measured, allowed : largest difference and its bound, in the unit that ``meaning`` states.
+    meaning : words: relative or absolute, at which points, against which reference.
     """
 
     name: str
@@ -120,8 +121,8 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
     table: dataset of a grid.
     count: number of random points.
     seed: seed of these points.
-    source: path of the grid.
-    Raises FileError for a grid that is not of a scene with an alpha.
+    source: path of the grid, for messages.
+    Raises FileError for what is no grid, or a grid that is not of a scene with an alpha.
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:

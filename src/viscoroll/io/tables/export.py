@@ -36,14 +36,15 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     table : dataset of :func:`law`, :func:`build` or :func:`load`.
     path : its suffix is that of the format: of either .nc, or .cdf for readers without HDF5; of a law .h (C99 and C++:
         table and evaluator in one header) or .json; of a grid .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or
-        .mat (MATLAB, Simulink).
+        .mat (MATLAB, Simulink).  A file of that name is replaced.
 
     Raises
     ------
     ParameterError
-        Another suffix; for Modelica a grid over alpha, as its tables have two inputs.
+        Another suffix; for C a file name that is no identifier; for Modelica a grid over several alphas, as its tables
+        have two inputs.
     FileError
-        If it cannot be written there.
+        If it cannot be written there, or ``table`` is neither a law nor a grid.
 
     Examples
     --------
@@ -81,7 +82,12 @@ def _write_csv(table: xr.Dataset, path: Path) -> None:
 
 
 def _write_modelica(table: xr.Dataset, path: Path) -> None:
-    """Write a grid ``table`` to ``path``: Q over (V, delta) for CombiTable2D, M over V for CombiTable1D blocks."""
+    """Write tables of a grid for Modelica: Q over (V, delta) for CombiTable2D, M over V for CombiTable1D blocks.
+
+    table: dataset of a grid over V and delta, or one alpha too.
+    path: file to write.
+    Raises ParameterError for a grid over other axes.
+    """
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if schema.axes_of(plane) != ("V", "delta"):
         allowed = "a grid on V and delta, the two inputs of a Modelica table: select one alpha by table.sel(alpha=...)"
@@ -99,7 +105,10 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
 
 
 def _modelica_header(table: xr.Dataset) -> list[str]:
-    """Return the lines that describe a grid ``table`` and its use in Modelica."""
+    """Return the lines that describe a grid and its use in Modelica, without marks of a comment.
+
+    table: dataset of the grid.
+    """
     units = {name: table[name].attrs["units"].replace("1", "dimensionless") for name in ("V", "Q", "M")}
     errors = []
     for name in ("Q", "M"):
@@ -120,18 +129,22 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
 
 
 def linear_error(field: xr.DataArray) -> float:
-    """Return the stated error of linear interpolation in a ``field``: NaN of an atlas, which states none.
+    """Return the stated error of linear interpolation in a field, absolute, in its unit.
 
-    Files before 1.2 state it under another name.
+    field: variable of a grid; of kind "atlas", which states no error, the result is NaN.  Files before 1.2 state the
+    error under another name.
     """
     spline = field.attrs.get("interpolation_error", np.nan) if "V" in field.dims else np.nan
     return float(field.attrs.get("linear_error", spline))
 
 
 def _write_matlab(table: xr.Dataset, path: Path) -> None:
-    """Write a grid ``table`` to ``path`` as one struct ``viscoroll``: breakpoints, tables, their linear errors.
+    """Write a grid as one struct ``viscoroll`` of MATLAB: breakpoints, tables, linear errors, dimensions, parameters.
 
     alpha and beta are functions of MATLAB, so that variables of these names would hide them.
+
+    table: dataset of the grid.
+    path: file to write.
     """
     from scipy.io import savemat
 
@@ -155,6 +168,7 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
 
     dataset : dataset of a law, of half-spaces or of a cover.
     path : file to write; its stem becomes the name of the variable, of type vr_law.
+    Raises ParameterError for a stem that is no identifier of C, FileError if the file cannot be written.
     """
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
@@ -196,7 +210,7 @@ def _initializer(values: Floats) -> str:
 
 
 def _write_json(dataset: xr.Dataset, path: Path) -> None:
-    """Write variables and main attributes of a law as JSON.
+    """Write the variables, as nested lists of numbers, and the main attributes of a law as one JSON object.
 
     dataset: dataset of the law.
     path: file to write.

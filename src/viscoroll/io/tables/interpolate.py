@@ -49,7 +49,8 @@ class Interpolant:
         """Check a table and choose its axes and bounds; splines are computed at the first use of a field.
 
         table : the grid, dataset of a file or of ``build``.
-        linear : whether interpolation is linear, else by cubic splines.
+        linear : whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln
+        alpha.
         Raises FileError if it is not a table.
         """
         schema.check(table, "interpolate")
@@ -64,9 +65,10 @@ class Interpolant:
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolate fields at points.
 
-        fields: names of fields of the table; None: all.
-        points: coordinates by the name of the axis, in the units of the table; they broadcast.
-        Returns the fields as :class:`Values`, each in the shape of the points.  Raises as :func:`interpolate`.
+        fields: names of fields of the table; None: all, which needs a coordinate on every axis.
+        points: axis -> coordinates, numbers or arrays that broadcast, in the units of the table.
+        Returns the fields as :class:`Values`, each in the shape of the points, a number where all are numbers.
+        Raises ParameterError and OutOfTableError as :func:`interpolate`.
         """
         known = schema.fields_of(self._table)
         names = check_names("fields", known if fields is None else fields, known, "a field of this table")
@@ -127,8 +129,10 @@ class Interpolant:
     ) -> tuple[dict[str, Floats], tuple[int, ...]]:
         """Check the points of a call, and convert them to the coordinates of the splines.
 
-        points: axis -> coordinates that the caller gave.
+        points: axis -> coordinates that the caller gave, which broadcast.
         names: fields to interpolate.
+        Raises ParameterError for axes that are missing or unknown and for values that are no finite numbers,
+        OutOfTableError for a point outside of an axis.
         Returns (axis -> coordinates in the shape of the points; that shape).
         """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
@@ -155,10 +159,11 @@ class Interpolant:
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
-        """Return the spline of a field, computed at its first use.
+        """Return the spline of a field, computed at its first use and kept.
 
         name: name of the field.
-        Returns (axes of more than one node, spline over them; without axes the value of the field).
+        Returns (names of the axes of more than one node; spline, a function of coordinates (..., axes); without such
+        axes the value of the field).
         """
         if name not in self._splines:
             field = self._table[name].squeeze()

@@ -100,7 +100,8 @@ def measured_errors(
     seed : seed of the points.
 
     Returns
-    ------- dict of str to float
+    -------
+    dict of str to float
         Function -> largest relative error, dimensionless.
     """
     random = np.random.default_rng(seed)
@@ -133,12 +134,13 @@ def measured_errors(
 def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Generator) -> dict[str, float]:
     """Return the largest errors of the law of a layer against its solve with more terms, at random speeds.
 
-    table: the law.
-    count: number of speeds, around the rates of the layer.
-    random: generator.
-
     Errors of share and press follow from those of the other functions and of L = 2 kappa delta_star/mu.
-    Returns function -> largest relative error, dimensionless.
+
+    table: the law.
+    count: number of speeds, from a tenth of the slowest rate of the layer to ten times the fastest.
+    random: generator.
+    Returns function -> largest relative error, dimensionless: "lam", "epsilon", "m_half_space", "m_cylinder" (both that
+    of M), "share", "press", "limit" (of L), "free" (of delta_0, divided by L).
     """
     cover: Any = table.material
     slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
@@ -162,8 +164,8 @@ def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
     """Return a function of a law from its coefficients, at arguments before its fast limit.
 
     table: the law.
-    function: index in FUNCTIONS.
-    x: kappa |V| or v, (n,).
+    function: index in :data:`FUNCTIONS`: 0 lam, 1 epsilon, 2 m_half_space, 3 m_cylinder, 4 N, 5 share, 6 press.
+    x: kappa |V| for functions 0 to 4, v = 1/F(eta) for the others, (n,), dimensionless.
     Returns values, (n,), dimensionless.
     """
     m, e = np.frexp(x)

@@ -102,9 +102,10 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     """Return the nodes of an axis as a new vector.
 
-    name: name of the axis.
-    nodes: what a caller gave.
-    bounds: ``unit``, ``low``, ``above`` and ``high`` of the values.
+    name: name of the axis, for messages.
+    nodes: a number or numbers as a caller gave them.
+    bounds: keywords of :func:`.check_array`: ``unit``, and ``low``, ``above`` and ``high``, between which the values
+    must lie.
     Raises ParameterError for nodes that are out of range or do not increase strictly.
     Returns the nodes, (n,), strictly increasing, in the unit of ``bounds``.
     """

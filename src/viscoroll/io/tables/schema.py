@@ -58,10 +58,10 @@ def fields_of(table: xr.Dataset) -> tuple[str, ...]:
 
 
 def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
-    """Return a variable with long_name, units, symbol, range, equation and reference.
+    """Return a variable of a grid with long_name, units, symbol, range, equation and reference as attributes.
 
-    name: name of the quantity.
-    dims: axes of the variable.
+    name: name of the quantity, a key of ``core.symbols.SYMBOLS``.
+    dims: names of the axes of the variable.
     values: array of its values, over ``dims``.
     si: whether it is in SI units, else dimensionless.
     """
@@ -73,11 +73,11 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
 
 
 def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
-    """Return the global attributes of a grid that is computed now.
+    """Return the global attributes of a grid that is computed now: name -> text.
 
     title: title of the grid.
     grid: axes of the grid in words.
-    command: command that computed it; default: the command line of this process.
+    command: command that computed it, for ``history``; None: the command line of this process.
     """
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {

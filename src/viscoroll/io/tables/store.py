@@ -27,7 +27,11 @@ def is_law(table: Any) -> bool:
 
 
 def check(table: Any, path: Any) -> None:
-    """Raise FileError, which names ``path``, if ``table`` is neither a law nor a grid."""
+    """Raise FileError if a dataset is neither a law nor a grid, or is incomplete.
+
+    table: the dataset.
+    path: path of its file, or another name, for the message.
+    """
     if is_law(table):
         law_file.check_law(law_file.dataset_content(table), path)
     else:

@@ -66,29 +66,28 @@ ASYMPTOTE_LOSS = 5 * TERMS
 
 
 class FlowTables(NamedTuple):
-    """The tables of one scene; those of one variable have shape (rows, numbers of a row).
+    """The tables of one scene: polynomials of 24 coefficients, or of 12 by 12 in the layer; :data:`SHAPES` has the
+        shapes.
 
-    The slow logarithm of V falls linearly in time along the slow manifold, at the rate T_mean/(1 + j).  It tends to
-    ln V plus a constant as V -> 0 and is 0 at about kappa V = 1/4.  E = k0 (tau - tau_onset) is the stiff time since
-    the onset of partial slip, with the relaxation rate k0 of omega - V at onset.  A motion may pass delta = 0, where
-    the law has a kink: the split, a value of E near there, or 1, divides its layer.  The layer coordinate is u =
+    The slow logarithm of V falls linearly in time along the slow manifold, at the rate T_mean/(1 + j).  It tends to ln
+    V plus a constant as V -> 0 and is 0 at about kappa V = 1/4.  E = k0 (tau - tau_onset) is the stiff time since the
+    onset of partial slip, with the relaxation rate k0 of omega - V at onset.  A motion may pass delta = 0, where the
+    law has a kink: the split, a value of E near there, or 1, divides its layer.  The layer coordinate is u =
     2^LAYER_LOW + (1 - 2^LAYER_LOW) E/split before the split and 1 + E - split behind.
 
-    Attributes ----------
-    slide : two tables, V > 0 and V < 0 in full slip, over kappa |V|: (T = integral of dV/V' from rest, delta_star
-    |V|),
-        X = integral of V dT.
-    after : two tables over kappa mu |T|: |V|.
-    onset : two tables by the sign of V at onset, over kappa |I|/(1 + j), I = V - j omega - 2 mu T: (V, T), X at
-    onset.
+    Attributes
+    ----------
+    slide : two tables, V > 0 and V < 0 in full slip, over kappa |V|: (T = integral of dV/V' from rest,
+        delta_star |V|), X = integral of V dT.
+    after : two tables, T > 0 and T < 0, over kappa mu |T|: |V|.
+    onset : two tables by the sign of V at onset, over kappa |I|/(1 + j), I = V - j omega - 2 mu T: (V, T), X at onset.
     slow : over the slow logarithm: (V, delta), remaining (distance, angle) to rest, remaining slip loss, on the
-    manifold.
+        manifold.
     manifold : over kappa V: (slow logarithm, delta) on the slow manifold.
-    asymptote : PLUS and MINUS, over kappa V at onset, the motion on the slow manifold that the motion approaches:
-    (slow
+    asymptote : PLUS and MINUS, over kappa V at onset, the motion on the slow manifold that the motion approaches: (slow
         logarithm at onset, k0), split, (distance, angle) and slip loss in excess of the motion on the manifold.
-    layer : (family, octave of kappa V, octave of u, column, power of u, power of kappa V): ln(V/V0), delta,
-        integral of (V/V0 - 1) dE, integral of (omega/V0 - 1) dE, slip loss divided by V0^2.
+    layer : (family, octave of kappa V, octave of u, column, power of u and power of kappa V): ln(V/V0), delta, integral
+        of (V/V0 - 1) dE, integral of (omega/V0 - 1) dE, slip loss divided by V0^2.
     """
 
     slide: Any

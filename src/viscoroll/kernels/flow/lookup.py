@@ -1,10 +1,25 @@
 """Values from a flow map: polynomials instead of integration.
 
 In full slip, mirrored so that omega > V, I = V - j omega - 2 mu T(V) is constant and determines the onset of partial
-slip.  Behind the onset the boundary layer is a table over (V at onset, E); then the motion follows the slow
-manifold, a function of the slow logarithm.
+slip.  Behind the onset the boundary layer is a table over (V at onset, E); then the motion follows the slow manifold, a
+function of the slow logarithm.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+
+Terms of this file:
+
+- Flow: record of the flow map of one scene: ``table``, the vector of all its tables, of layout.SIZE numbers; kappa, mu,
+  j; ``first``, the exponent from which kappa V at onset is tabulated; ``slow_rate``.
+- Times are tau = gamma t.  Distances and angles are integrals over tau: gamma times x and gamma times the angle.
+- Level: SPEEDS (0): V and delta or omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
+- Mirrored frame: the signs of V and omega are changed where needed, so that omega > V in full slip and V > 0 in partial
+  slip.
+- T: time of full slip from V = 0 to V, with the sign of V; X: distance of full slip between rest and V, >= 0.
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep.
+- Slow logarithm: coordinate along it, which falls linearly in tau; close to ln V plus a constant at low speed.
+- Boundary layer: the time behind the onset of partial slip in which delta approaches the manifold.  E = k0 (tau -
+  tau_onset) is its stiff time, k0 the relaxation rate at onset, u the layer coordinate (:func:`layer_coordinate`).
+- Family: PLUS (0) if omega > V at the onset of partial slip, MINUS (1) if omega < V.
 """
 
 import numpy as np
@@ -65,14 +80,14 @@ _GAUSS_W = gauss(5)[1]
 
 @inline_kernel
 def full_slip_integrals(V, level, flow):
-    """Return time and distance of sliding from rest to V, and delta_star |V|, in the mirrored frame (omega > V).
+    """Return time and distance of sliding between rest and the speed V, and the limit of full slip, from the map.
 
-    V : speed of the axis.
-    level : SPEEDS, PATH (and distance) or LOSS (and slip loss).
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    V : speed of the axis in the mirrored frame (omega > V), of either sign, kappa |V| < 2^layout.HIGH.
+    level : SPEEDS, PATH or LOSS: the distance is computed from PATH on.
+    flow : Flow, of the scene.
 
-    Returns (T, X, limit): time gamma t with the sign of V; distance, computed from level PATH on, else 0; delta_star
-    |V|.
+    Returns (T, X, limit): time tau from V = 0 to V, with the sign of V; distance times gamma, >= 0, or 0 at level
+    SPEEDS; delta_star |V|, the least omega - V of full slip.  Below the tables they are their limits as V -> 0.
     """
     speed = abs(V)
     row, t, _ = locate_octave(flow.kappa * speed, layout.LOW)
@@ -86,7 +101,9 @@ def full_slip_integrals(V, level, flow):
 
 @inline_kernel
 def speed_at_slide_time(T, flow):
-    """V in full slip at the time T since (or before) rest, in the mirrored frame."""
+    """Return V in full slip at the time T = gamma t after (T > 0) or before (T < 0) V = 0, in the mirrored frame;
+    ``flow``: Flow, of the scene.  V has the sign of T.
+    """
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
         return flow.mu * T
@@ -96,13 +113,15 @@ def speed_at_slide_time(T, flow):
 
 @kernel
 def slide_distance(start, tau, flow):
-    """Return the distance of sliding for the time tau from a given state of full slip.
+    """Return the distance of sliding during a time from a given state of full slip.
 
-    start : (T, X) at the beginning: integrals of time and distance of full slip from rest to the speed there.
-    tau : time, > 0.
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    start : (T, X) at the beginning, as :func:`full_slip_integrals` returns them: time and distance between rest and the
+        speed there, in the mirrored frame.
+    tau : time gamma t of sliding, > 0.
+    flow : Flow, of the scene.
 
-    Returns the distance, dimensionless: the difference of X, or the integral of V where that difference cancels.
+    Returns gamma times the distance, with the sign of the motion in the mirrored frame: the difference of X, or, for
+        tau up to 0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
     """
     T, X = start
     if tau > _SHORT * abs(T):
@@ -117,12 +136,12 @@ def slide_distance(start, tau, flow):
 def read_onset(I, level, flow):
     """Return the state at the onset of partial slip of a sliding motion, in the mirrored frame (omega > V).
 
-    I : V - j omega - 2 mu T, constant while sliding, with T the time that the table gives for V.
-    level : SPEEDS, PATH (and distance) or LOSS (and slip loss); X from PATH on.
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    I : V - j omega - 2 mu T, constant while sliding, with T the time that :func:`full_slip_integrals` gives for V.
+    level : SPEEDS, PATH or LOSS: X is computed from PATH on.
+    flow : Flow, of the scene.
 
-    Returns (V, T, X): speed at the onset, integrals of time and distance of full slip from rest to it; V = 0 where the
-    onset is outside the tables.
+    Returns (V, T, X): speed at the onset, with the sign opposite to that of I; time tau and distance times gamma of
+    full slip between rest and that speed; X = 0 at level SPEEDS.  All are 0 where the onset is outside the tables.
     """
     x = flow.kappa * abs(I) / (1.0 + flow.j)
     if not LOWEST <= x < HIGHEST:
@@ -138,10 +157,11 @@ def read_onset(I, level, flow):
 def _locate_on_manifold(slow_log):
     """Return the position of a slow logarithm in the table of the slow manifold.
 
-    slow_log : slow logarithm of V, the coordinate along the slow manifold (:mod:`.layout`).
+    slow_log : slow logarithm of V, the coordinate along the slow manifold; any number up to the end of the table.
 
-    Returns (position, t, factor): position of the row in the map's vector; argument in [-1, 1) of its polynomials;
-    factor of the values, 1 inside the table.  Below the table all values fall as exp(slow_log).
+    Returns (position, t, factor): index in the map's vector at which the row begins, int; argument in [-1, 1] of its
+    polynomials; factor of V, delta and the remaining path: 1 inside the table, below it the exp(slow_log - lowest) by
+    which they fall.
     """
     if slow_log >= 0.0:
         row, t, _ = locate_octave(1.0 + slow_log, 0)
@@ -156,7 +176,8 @@ def _locate_on_manifold(slow_log):
 
 @inline_kernel
 def manifold_speeds(slow_log, table):
-    """(V, delta) on the slow manifold at a slow logarithm."""
+    """Return (V, delta) on the slow manifold: speed > 0 and creepage; ``slow_log``: slow logarithm; ``table``: of Flow.
+    """
     at, t, share = _locate_on_manifold(slow_log)
     V, delta = evaluate_pair(table, at, t)[:2]
     return share * V, share * delta
@@ -164,7 +185,9 @@ def manifold_speeds(slow_log, table):
 
 @inline_kernel
 def _remaining_path(slow_log, table):
-    """(distance, angle) that remain to rest on the slow manifold."""
+    """Return (distance, angle), each times gamma, that remain to rest on the slow manifold at the slow logarithm
+    ``slow_log``; ``table``: vector of all tables, of Flow.
+    """
     at, t, share = _locate_on_manifold(slow_log)
     x, angle = evaluate_pair(table, at + layout.SLOW_PATH, t)[:2]
     return share * x, share * angle
@@ -175,12 +198,12 @@ def manifold_path(start, span, rate, table):
     """Return distance and angle along the slow manifold while the slow logarithm falls by ``span``.
 
     start : slow logarithm at the beginning.
-    span : decrease of the slow logarithm.
-    rate : decrease of the slow logarithm in unit time gamma t.
-    table : vector with all tables of the map.
+    span : decrease of the slow logarithm, >= 0.
+    rate : decrease of the slow logarithm in unit time tau = gamma t, > 0: ``slow_rate`` of Flow.
+    table : vector with all tables of the map, ``table`` of Flow.
 
-    Returns (distance, angle): the difference of the remaining path, or the integral of V where that difference
-    cancels.
+    Returns (distance, angle), each times gamma and >= 0 for V > 0: the difference of the remaining path, or, where that
+    difference cancels, the integral of V by a five-point Gauss rule.
     """
     end = start - span
     if span > 0.25 * max(1.0 + end, 1.0):
@@ -197,34 +220,42 @@ def manifold_path(start, span, rate, table):
 
 @kernel
 def remaining_slip_loss(slow_log, table):
-    """Slip loss that remains to rest at a slow logarithm on the slow manifold; it falls as V^3 as V -> 0."""
+    """Return the slip loss that remains to rest on the slow manifold, divided by m (R/T_epsilon)^2; it falls as V^3 as
+    V -> 0.  ``slow_log``: slow logarithm; ``table``: vector of all tables, of Flow.
+    """
     at, t, share = _locate_on_manifold(slow_log)
     return share**3 * evaluate_single(table, at + layout.SLOW_LOSS, t)[0]
 
 
 @kernel
 def manifold_at_speed(v, table):
-    """(slow logarithm, delta) on the slow manifold at v = kappa V >= LOWEST."""
+    """Return (slow logarithm, delta) on the slow manifold; ``v``: kappa V, from LOWEST to the end of the tables;
+    ``table``: vector of all tables, of Flow.
+    """
     row, t, _ = locate_octave(v, layout.LOW)
     return evaluate_pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
 
 
 @kernel
 def asymptote_on_manifold(slow_log):
-    """The asymptote of a motion that is on the slow manifold already."""
+    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow logarithm
+    ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
+    """
     return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
 
 
 @inline_kernel
 def read_asymptote(family, v, level, flow):
-    """Return the asymptote on the slow manifold of the motion that enters partial slip at v = kappa V.
+    """Return the motion on the slow manifold that a motion approaches after the onset of partial slip: its asymptote.
 
-    family : PLUS or MINUS.
-    v : kappa V at onset.
-    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
+    v : kappa V at the onset, in the octaves of the table, from 2^first on.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene.
 
-    Returns an :class:`Asymptote`; quantities beyond ``level`` are 0.
+    Returns an :class:`.records.Asymptote`: slow_log, that of the asymptote at the time of the onset; rate, the k0 of
+    the stiff time E; split, the E that divides the layer; x, angle (both times gamma; 0 below level PATH) and loss (0
+    below level LOSS), by which the motion exceeds the asymptote from the onset to rest.
     """
     table = flow.table
     row, t, _ = locate_octave(v, flow.first)
@@ -240,14 +271,23 @@ def read_asymptote(family, v, level, flow):
 
 @inline_kernel
 def layer_coordinate(E, split):
-    """Layer coordinate u at the stiff time E, where the layer is divided at ``split``."""
+    """Return the layer coordinate u, 2^LAYER_LOW at the onset and 1 at the split; ``E``: stiff time since the onset, >=
+    0; ``split``: the E at which the layer is divided.
+    """
     return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
 
 
 @inline_kernel
 def locate_in_layer(family, v, u, flow):
-    """(position in the table, t, s) in the layer of a family at v = kappa V of the onset and at the layer coordinate
-    u.
+    """Return the position of a motion in the table of the boundary layer.
+
+    family : PLUS or MINUS.
+    v : kappa V at the onset, in the octaves of the table.
+    u : layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
+    flow : Flow, of the scene.
+
+    Returns (position, t, s): index in the map's vector at which the polynomials of column 0 begin, int; their arguments
+    in [-1, 1] over v and over u, each linear within an octave.
     """
     row, t, _ = locate_octave(v, flow.first)
     part, s, _ = locate_octave(u, layout.LAYER_LOW)
@@ -256,7 +296,9 @@ def locate_in_layer(family, v, u, flow):
 
 @inline_kernel
 def _evaluate_in_t(p, t):
-    """Value at t of a polynomial whose twelve coefficients are three vectors of four."""
+    """Return the value of a polynomial of 12 coefficients; ``p``: they, as three vectors of four, ascending; ``t``:
+    argument.
+    """
     square = t * t
     per = broadcast(square * square)
     a, b, c, d = unpack(fma4(fma4(p[2], per, p[1]), per, p[0]))
@@ -267,11 +309,12 @@ def _evaluate_in_t(p, t):
 def layer_value_and_slopes(table, column, at, t, s):
     """Return value and slopes of one quantity of the boundary layer behind the onset of partial slip.
 
-    table : vector with all tables of the map.
-    column : the quantity, LAYER_LN_V to LAYER_LOSS.
-    at, t, s : position from :func:`locate_in_layer`.
+    table : vector with all tables of the map, ``table`` of Flow.
+    column : the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE (distance and angle beyond
+        those at constant V0, in units of V0/k0), LAYER_LOSS (slip loss divided by V0^2); V0 is V at the onset.
+    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and over u.
 
-    Returns (value, slope in t (speed at onset), slope in s (layer coordinate)).
+    Returns (value, slope in t, slope in s).
     """
     at += column * layout.BLOCK
     per, value = broadcast(s), _powers(table, at + layout.BLOCK - LAYER_TERMS)
@@ -289,21 +332,22 @@ def layer_value_and_slopes(table, column, at, t, s):
 
 @kernel
 def layer_value(table, column, at, t, s):
-    """Value of one column of a layer, as in :func:`layer_value_and_slopes`."""
+    """Return the value alone of one column of the layer; arguments as of :func:`layer_value_and_slopes`."""
     return layer_value_and_slopes(table, column, at, t, s)[0]
 
 
 @kernel
 def layer_state(stick, asymptote, elapsed, level, flow):
-    """Return the state of a motion within the boundary layer behind the onset of partial slip.
+    """Return the state of a motion within the boundary layer behind the onset of partial slip, mirrored so that V > 0.
 
-    stick : :class:`StickOnset`: speed, time and path at the onset.
-    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
-    elapsed : time since the onset, gamma t.
-    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    stick : :class:`.records.StickOnset`, of which family and v = kappa V at the onset are read.
+    asymptote : :class:`.records.Asymptote` of the motion, of which rate k0 and split are read.
+    elapsed : time tau = gamma t since the onset, >= 0.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene.
 
-    Returns (V, delta, distance, angle, slip loss); the last three since the onset.
+    Returns (V, delta, distance, angle, slip loss): speed > 0; creepage; distance and angle since the onset, times
+    gamma, 0 below level PATH; slip loss since the onset, divided by m (R/T_epsilon)^2, 0 below level LOSS.
     """
     table, E = flow.table, elapsed * asymptote.rate
     at, t, s = locate_in_layer(stick.family, stick.v, layer_coordinate(E, asymptote.split), flow)
@@ -323,9 +367,9 @@ def layer_state(stick, asymptote, elapsed, level, flow):
 def slow_log_at_rest(rest, flow):
     """Return the slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold.
 
-    rest : threshold, > 0; beyond the tables their highest speed counts.
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
-    Returns the slow logarithm, the coordinate along the slow manifold, dimensionless.
+    rest : threshold, > 0; a larger one than half the highest V of a start counts as that.
+    flow : Flow, of the scene.
+    Returns the slow logarithm, the coordinate along the slow manifold; below the tables it follows ln V.
     """
     rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
     for _ in range(4):

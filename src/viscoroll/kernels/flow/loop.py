@@ -1,6 +1,23 @@
 """Look up many motions of one scene in its flow map.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+
+Terms of this file (records in :mod:`.records`):
+
+- Flow: the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``, the exponent from
+  which kappa V at onset is tabulated; ``slow_rate``.
+- Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma times the angle, until
+  :func:`look_up_motions` divides them by gamma.
+- Level: SPEEDS (0): V and omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
+- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5, slip loss 6, rolling loss 7.
+- Mirrored frame: the signs of V and omega are changed (frame -1) or not (frame 1), so that omega >= V in full slip and
+  V > 0 in partial slip.
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep; the slow
+  logarithm is a coordinate along it that falls linearly in tau.
+- StickOnset: the onset of partial slip: frame, family (PLUS if omega > V there, MINUS if omega < V), v = kappa V, tau,
+  distance, angle and slip loss.
+- Asymptote: the motion on the slow manifold that a motion approaches behind its onset: slow logarithm at the onset,
+  relaxation rate k0, split of the boundary layer, excess of distance, angle and slip loss.
 """
 
 import numpy as np
@@ -57,7 +74,9 @@ ROWS = 8
 
 @inline_kernel
 def _write_output(out, column, state):
-    """Write one output state into a column of ``out`` (ROWS, times)."""
+    """Write one output state; ``out``: (ROWS, times), of which column ``column`` is written, all rows but ROLLING_LOSS;
+    ``state``: :class:`.records.Output`.
+    """
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
     out[_ANGLE, column], out[_DELTA, column], out[_REGIME, column] = state.angle, state.delta, state.regime
     out[SLIP_LOSS, column] = state.loss
@@ -65,7 +84,9 @@ def _write_output(out, column, state):
 
 @inline_kernel
 def _write_rest(at, x, angle, loss, out):
-    """Write outputs at rest, at distance x and angle with this slip loss, from column ``at`` of ``out`` on."""
+    """Write outputs at rest, V = omega = delta = 0, into the columns of ``out``, (ROWS, times), from ``at`` on; ``x``,
+    ``angle``, ``loss``: distance and angle times gamma, and slip loss, of all of them.
+    """
     for column in range(at, out.shape[1]):
         _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
 
@@ -74,13 +95,14 @@ def _write_rest(at, x, angle, loss, out):
 def _start_in_full_slip(frame, V, omega, start, level, flow):
     """Locate the onset of partial slip of a motion that starts in full slip.
 
-    frame : +1, or -1 where the motion is mirrored.
-    V, omega : initial speeds in the mirrored frame, omega > V.
-    start : (T, X), time and distance of sliding from rest to V, from the table of full slip.
-    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    frame : 1, or -1 where the motion is mirrored.
+    V, omega : initial speeds in the mirrored frame, omega >= V.
+    start : (T, X), time tau and distance times gamma of sliding between rest and V, from the table of full slip.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene.
 
-    Returns (:class:`FullSlipStart`, :class:`StickOnset`, whether the map covers the motion).
+    Returns (:class:`FullSlipStart`, :class:`StickOnset` at a time tau >= 0, whether the map covers the motion: its V at
+    onset is tabulated and the initial speeds are at most 4096 times that).  Distance and loss need level PATH.
     """
     mu, (T, X) = flow.mu, start
     w = V - flow.j * omega
@@ -99,12 +121,13 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
 def _start_in_partial_slip(V0, omega0, edge, level, flow):
     """Locate the earlier onset of partial slip of a motion that starts inside the stick zone.
 
-    V0, omega0 : initial speeds.
+    V0, omega0 : initial speeds, V0 != 0.
     edge : delta_star at V0.
-    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene.
 
-    Returns (:class:`StickOnset` at a time <= 0, its :class:`Asymptote`, whether the map covers the motion).
+    Returns (:class:`StickOnset` at a time tau <= 0, its :class:`Asymptote`, whether the map covers the motion). A start
+    on the slow manifold has its onset at practically tau = 0 and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
@@ -124,12 +147,12 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     """Write the outputs before the onset of partial slip.
 
     at : first column to write.
-    tau_out : output times, gamma t, ascending.
-    until : time of the onset.
-    slide : the :class:`FullSlipStart`.
-    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
-    out : outputs (ROWS, times).
+    tau_out : output times tau = gamma t, ascending, (times,).
+    until : time tau of the onset; an output at that time is not written.
+    slide : :class:`FullSlipStart`: frame, V - j omega, and (T, X) of the start.
+    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are 0 below PATH.
+    flow : Flow, of the scene.
+    out : outputs (ROWS, times), written in the frame of the caller.
     Returns the index of the next column to write.
     """
     mu, per_j = flow.mu, 1.0 / flow.j
@@ -152,16 +175,16 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
 
 @inline_kernel
 def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
-    """Write the outputs in partial slip up to a time.
+    """Write the outputs in partial slip up to a time, in the boundary layer and then on the slow manifold.
 
     at : first column to write.
-    tau_out : output times, gamma t, ascending.
-    until : last time.
-    stick : :class:`StickOnset`: speed, time and path at the onset.
+    tau_out : output times tau = gamma t, ascending, (times,).
+    until : last time tau; an output at that time is written.
+    stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
-    level : quantities to compute: SPEEDS, PATH (and distance) or LOSS (and slip loss).
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
-    out : outputs (ROWS, times).
+    level : SPEEDS, PATH or LOSS: quantities beyond it are those of the onset.
+    flow : Flow, of the scene.
+    out : outputs (ROWS, times), written in the frame of the caller.
     Returns the index of the next column to write.
     """
     frame = stick.frame
@@ -191,18 +214,18 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
 
 @inline_kernel
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
-    """Write all outputs from the onset of partial slip to the end, or to rest.
+    """Write all outputs from the onset of partial slip to the last output time, those after coming to rest included.
 
     at : first column to write.
-    tau_out : output times, gamma t, ascending.
-    stick : :class:`StickOnset`: speed, time and path at the onset.
+    tau_out : output times tau = gamma t, ascending, (times,).
+    stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
-    request : :class:`.records.Request`: quantities and rest threshold.
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
-    out : outputs (ROWS, times).
+    request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
+    flow : Flow, of the scene.
+    out : outputs (ROWS, times), written in the frame of the caller.
 
-    Returns (status, time gamma t at which the motion comes to rest or NaN); status is an int, a code of
-    :mod:`..motion.records`.
+    Returns (status, time tau at which the motion comes to rest, NaN if it does not).  The status is COMPLETED (0) or
+    CAME_TO_REST (1), or NOT_COVERED (-1), and nothing is written, where rest is reached within the boundary layer.
     """
     layer_end = stick.tau + LAYER_END / asymptote.rate
     rest_time, end = np.inf, tau_out[tau_out.size - 1]
@@ -226,16 +249,17 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
 
 @inline_kernel
 def look_up_motion(V0, omega0, tau_out, request, flow, out):
-    """Look up one motion.
+    """Look up one motion and write its outputs.
 
-    V0, omega0 : initial speeds.
-    tau_out : output times, gamma t, ascending.
-    request : :class:`.records.Request`: quantities and rest threshold.
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
-    out : outputs (ROWS, times), written.
+    V0, omega0 : initial speeds, of any sign.
+    tau_out : output times tau = gamma t, ascending, >= 0, (times,).
+    request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
+    flow : Flow, of the scene.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS; not whole if the status is NOT_COVERED.
 
-    Returns (status, time of the onset of partial slip, time of coming to rest); status is COMPLETED or CAME_TO_REST of
-    :mod:`..motion.records`, or NOT_COVERED; times are gamma t, NaN where there is none.
+    Returns (status, time of the onset of partial slip, time of coming to rest).  The status is COMPLETED (0),
+    CAME_TO_REST (1) or NOT_COVERED (-1); times are tau, NaN where there is none: the onset of a start in partial slip,
+    or of one below the rest threshold, whose time of rest is 0.
     """
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
@@ -273,10 +297,17 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
 def look_up_motions(flow, motions, result, start, stop):
     """Look up some motions in the flow map and write their outputs; motions outside the map get the status NOT_COVERED.
 
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
-    motions : :class:`.records.Motions`: starts, output times and requested quantities, of all motions.
-    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, written.
+    flow : Flow, of the scene.
+    motions : :class:`.records.Motions` of all n motions: gamma; rest threshold, 0 for none; initial speeds V0, omega0,
+        of length 1 or n; output times t, ascending, (times,); requested rows of an output, int, (q,).
+    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these motions are written:
+        out, (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1); onset and rest, (n,),
+        times t of the onset of partial slip and of coming to rest, NaN where there is none; switches, (n,), 1 with an
+        onset, else 0.
     start, stop : int, index of the first motion and of the one behind the last.
+
+    Distance and angle are written as x and angle, divided by gamma.  Entries of ``out`` of a motion that is not covered
+    have no meaning.
     """
     gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j

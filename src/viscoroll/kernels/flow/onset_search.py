@@ -1,7 +1,17 @@
-"""Flow map, starts inside the stick zone: the search for the onset of partial slip that the start would have come
-from.
+"""Flow map, starts inside the stick zone: the search for the onset of partial slip that the start would have come from.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+
+Terms of this file:
+
+- Flow: record of the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``, the
+  exponent from which kappa V at onset is tabulated.
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep.
+- Boundary layer: the time behind the onset of partial slip in which delta approaches the manifold.  E = k0 (tau -
+  tau_onset) is its stiff time, k0 the relaxation rate at onset.
+- Layer coordinate u: a function of E, 2^LAYER_LOW at the onset; u = 1 at the split, an E near the place where motions
+  of the family pass delta = 0, or 1 where they do not.
+- Family: PLUS (0) if omega > V at the onset, MINUS (1) if omega < V; V > 0.
 """
 
 import numpy as np
@@ -29,15 +39,14 @@ _HIGHEST_U = 2.0**layout.LAYER_HIGH * (1.0 - 2.0**-50)
 
 @kernel
 def _initial_u(size, slow, turns):
-    """Return the first guess of the layer coordinate u at which |delta| has fallen to a given value, by Carter's
-    law.
+    """Return the first guess of the layer coordinate u at which delta has fallen to a given value, by Carter's law.
 
-    size : |delta|/delta_star of the start, negative beyond delta = 0.
-    slow : |delta|/delta_star on the slow manifold at the speed of the start, with the same sign.
-    turns : whether motions of this family pass delta = 0 (then the layer has a split there).
+    size : delta/delta_star of the start, in [-1, 1], times 1 for PLUS and -1 for MINUS: negative beyond delta = 0.
+    slow : delta/delta_star on the slow manifold at the speed of the start, times the same sign.
+    turns : bool, whether motions of this family pass delta = 0 (then the layer has a split there).
 
-    Returns u, dimensionless.  Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction
-    is 1 - r^2, so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
+    Returns u, from 2^LAYER_LOW on.  Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the
+    traction is 1 - r^2, so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
     """
     traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)
     a = np.sqrt(1.0 - traction)
@@ -62,15 +71,16 @@ def find_onset(V, delta, edge, flow):
     """Find the onset of partial slip from which a state inside the stick zone would have come.
 
     V : speed of the axis, > 0.
-    delta : creepage.
+    delta : creepage, |delta| < delta_star.
     edge : delta_star at V.
-    flow : :class:`.records.Flow`: tables of the map, kappa, mu, j.
+    flow : Flow, of the scene.
 
-    Returns (family, kappa V at that onset, E = stiff time since then, whether the map covers the state).  On the slow
-    manifold E is infinite and the speed is that of the state.
+    Returns (family, kappa V at that onset, E, whether the map covers the state).  family is PLUS or MINUS; E is the
+    stiff time since that onset, in [0, LAYER_END].  On the slow manifold E is infinite, the speed is that of the state
+    and the family is PLUS.  Where the map does not cover the state, the first three have no meaning.
 
     Method: Newton's iteration in ln V at onset and in u, applied to the logarithm of the distance from the manifold,
-    which decreases nearly linearly in E.
+        which decreases nearly linearly in E; a solution counts if V (relative) and delta (absolute) are met to 1e-10.
     """
     v = flow.kappa * V
     lowest, highest = 2.0**flow.first, 2.0 ** (flow.first + layout.OCTAVES)

@@ -20,13 +20,15 @@ STIFFNESS = 3
 
 @kernel
 def states(V, delta, kappa, mu, law, out):
-    """Evaluate the law at states inside the stick zone, |delta| < delta_star.
+    """Evaluate critical creepage, moment and traction at states inside the stick zone, to which a flow map is
+    fitted.
 
-    V : speeds, > 0, (n,).
+    V : speeds of the axis, > 0, (n,).
     delta : creepage, |delta| < delta_star, (n,).
     kappa, mu : slenderness R/l0 and coefficient of friction.
-    law : :class:`..rows.record.Law` of the material.
-    out : (4, n), written: delta_star, M, Q, dQ/d delta.
+    law : :class:`..rows.record.Law` of the material, of half-spaces.
+    out : (4, n), written: delta_star; M divided by P R; Q divided by P, with the sign of delta; dQ/d delta at
+        fixed V.
     """
     for i in range(V.size):
         u = kappa * V[i]

@@ -73,7 +73,8 @@ def law_axis(low: float, high: float) -> LawAxis:
     low, high : alpha, 1 <= low < high <= 1e12.
 
     Returns
-    ------- LawAxis
+    -------
+    LawAxis
 
     Raises
     ------

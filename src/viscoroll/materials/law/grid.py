@@ -34,13 +34,14 @@ class LawGrid:
     """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes a function of V and
     omega of it.
 
-    Attributes ----------
+    Attributes
+    ----------
     splines : Q, M_half_space and M_cylinder, as :func:`viscoroll.materials.law.splines.pack_spline` writes them; Q
-    divided by the load and M divided by load times radius, or in N/m and N.
+        divided by the load and M divided by load times radius, or in N/m and N.
     V : slowest and fastest speed; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
     slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond
-    them.
+        them.
     R : radius in m; 1 for a dimensionless grid.
     title : title of the file.
     """
@@ -89,7 +90,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
         M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
-    attributes: mu, and where V has a unit R in m and the load in N/m.
+        attributes: mu, and where V has a unit R in m and the load in N/m.
     alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.
 
     Returns
