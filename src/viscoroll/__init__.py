@@ -30,9 +30,11 @@ __all__ = ["__version__", *_MODULES]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
-    """Import the public name ``name`` at its first use; an old name warns.
+    """Import a public name at its first use; an old name causes a warning and gives the object of the new name.
 
+    name: the name that was looked up in the package.
     Returns the public object.
+    Raises AttributeError for a name that is not public.
     """
     if name not in _MODULES:
         from .core.renamed import RENAMED, warn_renamed

@@ -224,7 +224,7 @@ class Cylinder(Methods):
         return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report."""
+        """Return title and rows of the printed report: the numbers with their SI units, load, plane and materials."""
         values = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in values.items()]
         for name in ("material", "base"):
@@ -272,8 +272,8 @@ class Cylinder(Methods):
     def _scene(self) -> Scene:
         """The dimensionless :class:`viscoroll.Scene`, computed once.
 
-        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  With arrays T_epsilon, T_sigma its material
-        is a series for each cylinder.
+        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  With an array T_epsilon its material is a
+        series for each cylinder.
         Raises ParameterError for the law of a layer that was computed for another load, and for a scene out of range.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
@@ -316,7 +316,12 @@ class Cylinder(Methods):
 
 
 def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
-    """Return l0 of Sect. 3.1, m, of a radius, m, a load, N/m, and a contact modulus, Pa."""
+    """Return l0, the contact length at rest, Sect. 3.1, m, in the broadcast shape of the arguments.
+
+    R: radius, m.
+    load: force per length that presses the cylinder on the base, N/m.
+    E_prime: contact modulus, Pa.
+    """
     return np.sqrt(32.0 * R * load / E_prime)
 
 

@@ -69,7 +69,11 @@ SCENES = ("preset", *SCHEMA)
 
 
 def preset(name: str) -> Scene:
-    """Return the scene of the preset ``name``; raise ParameterError if there is none."""
+    """Return the scene of a preset, one of :data:`.presets.PRESETS`.
+
+    name: name of the preset, as "paper-section-5".
+    Raises ParameterError, with the nearest name, if there is none.
+    """
     if not isinstance(name, str) or name not in PRESETS:
         raise unknown_name_error("preset", name, PRESETS, "a preset")
     return PRESETS[name]
@@ -84,11 +88,12 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
         creep), kappa, mu (gamma, j), or changes those of the preset; its [cylinder] gives R, m, E, nu, T_epsilon,
         T_sigma, mu (j, g, plane, load) in SI units.  E to T_sigma may stand in a section [material], and [base] is
         the half-space if it is another material.
-    more : further sections that the file may have.
+    more : names of further sections that the file may have; they are not read.
 
     Returns
     -------
     Scene or Cylinder
+        A Cylinder if there is a section [cylinder].
 
     Raises
     ------
@@ -175,11 +180,13 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     Returns
     -------
     Pair, Prony, Bodies, float or Cylinder
+        A Pair of [material] and [base], or of a cylinder; of a scene its series or bodies, or its alpha, a float; a
+        Cylinder where one body has a layer of finite thickness, since the law then depends on load and radius.
 
     Raises
     ------
     FileError
-        As :func:`read_materials` and :func:`read_roller`.
+        As :func:`read_materials` and :func:`read_roller`; a file without a section [material] and without a roller.
     """
     content = {} if Path(path).suffix == SUFFIX else read_toml(path)
     if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):

@@ -70,7 +70,7 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     Returns
     -------
     Sample
-        A mapping from name to array (n,).
+        A mapping from name to draws, an array (n,), with attributes ``seed`` and ``design``.
 
     Raises
     ------
@@ -199,7 +199,12 @@ def _feistel(index: Words, half: int, key: Words) -> Words:
 
 
 def _mix_bits(x: Words) -> Words:
-    """Return the finaliser of splitmix64 for the words ``x`` (G. Steele, D. Lea, C. Flood, OOPSLA 2014)."""
+    """Return words whose bits depend on all bits of the given ones: the finaliser of splitmix64.
+
+    (G. Steele, D. Lea, C. Flood, OOPSLA 2014.)
+
+    x: words, (k,), uint64; the result has their shape.
+    """
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return x ^ (x >> np.uint64(31))
@@ -207,7 +212,13 @@ def _mix_bits(x: Words) -> Words:
 
 @lru_cache(maxsize=2)
 def _sequence(seed: int, dimensions: int) -> Any:
-    """Return the scrambled Sobol sequence of a ``seed`` in ``dimensions``."""
+    """Return the scrambled Sobol sequence of scipy.stats.qmc at its start.
+
+    The last two are kept; a caller advances a copy.
+
+    seed: seed of the scrambling.
+    dimensions: number of coordinates of a point.
+    """
     from scipy.stats import qmc
 
     return qmc.Sobol(dimensions, bits=_BITS, rng=np.random.default_rng(seed))

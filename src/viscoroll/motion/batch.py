@@ -146,7 +146,10 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
-        """Integrate the motions ``start`` to ``stop`` - 1 of those without a result, and write their results."""
+        """Integrate those motions of a block that have no result, and write their results.
+
+        start, stop: index of the first motion of the block, and of the one behind the last.
+        """
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:
             return

@@ -63,7 +63,10 @@ def require_single(**arguments: Any) -> None:
 
 
 def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument, of a ragged list as one of objects; () of what is no array."""
+    """Return the shape of an argument; () of what is no array.
+
+    value: what a caller gave; a ragged list counts as an array of objects.
+    """
     try:
         return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
     except (TypeError, ValueError):
@@ -89,7 +92,7 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
-    """Return start speeds, checked: two floats as they are, else both as arrays in the shapes that were given.
+    """Return start speeds, checked: two floats, not both 0, as they are, else both as arrays in their shapes.
 
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
     Raises ParameterError unless both are finite and at most 1e100 in size, the larger of |V0| and |omega0| of each

@@ -115,7 +115,11 @@ class _Sampled:
         self.largest = float(np.abs(self.samples).max())
 
     def values(self, t: Floats) -> Floats:
-        """Return the values at times (n,); raises ParameterError for what is no finite number or too small."""
+        """Return the values of the callable, dimensionless, in the shape of ``t``; they count in ``taken``.
+
+        t: times, (n,), in T_ref.
+        Raises ParameterError for what is no finite number or below the smallest value allowed.
+        """
         self.taken += t.size
         values = check_array(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
         if values.shape != t.shape:
@@ -169,7 +173,7 @@ class _Sampled:
         """Return the neighbouring doubles between which the callable jumps.
 
         t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,).
-        allowed: error allowed to a fit at its end.
+        allowed: absolute error allowed to a fit at its end, dimensionless; a smaller jump is none.
         Returns (last time before the jump, first time behind it), in T_ref; None unless one jump is most of the
         variation.
         """
@@ -180,6 +184,7 @@ class _Sampled:
         ends = values[n : n + 2].tolist()
 
         def is_before(time: float) -> bool:
+            """Return whether the value at ``time`` is nearer to that before the jump, and replace the nearer one."""
             value = self.value(time)
             before = abs(value - ends[0]) < abs(ends[1] - value)
             ends[0 if before else 1] = value

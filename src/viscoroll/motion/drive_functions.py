@@ -78,7 +78,10 @@ class DriveFunctions:
 
     @cached_property
     def _function_motions(self) -> int:
-        """Number of motions that have functions of their own; 1 if all are alike; raises ParameterError if unequal."""
+        """Number of motions that have functions or slopes of their own; 1 if all are alike.
+
+        Raises ParameterError if functions are of different numbers of motions.
+        """
         counts = {name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()}
         shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
         return shape[0] if shape else 1
@@ -151,13 +154,18 @@ class DriveFunctions:
         """Return the drive of some motions as the kernels take it, :data:`KernelDrive`.
 
         index: index of numpy that selects the motions; default: all.
+        Returns (pieces, (1 or m, k, columns), see :attr:`pieces`; gains, (4, 1 or m); code of the prescribed speed:
+        NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V).
         """
         pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
         return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
     def _take(self, index: Any) -> DriveFunctions:
-        """Return the functions of some motions; ``index`` of numpy."""
+        """Return the functions of some motions, without their gains, which stay those of all.
+
+        index: index of numpy that selects the motions.
+        """
         functions = {name: take_motions(f, index) for name, f in self.functions.items()}
         return replace(
             self, functions=functions, tangent=self.tangent[index] if self.tangent.size > 1 else self.tangent
@@ -228,7 +236,10 @@ def prepare_drive(
 
 
 def _refuse_both(drive: Drive) -> None:
-    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given."""
+    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given beside it.
+
+    drive: drive; None where nothing is given.
+    """
     if drive.V is not None and drive.omega is not None:
         raise exactly_one_error("V", "omega", both=True)
     for name, speed, why in _BESIDE:

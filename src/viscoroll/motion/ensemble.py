@@ -58,8 +58,10 @@ def ensemble(
     ----------
     roller : a :class:`Scene`, or a :class:`Cylinder` in SI units; its numbers may be arrays of n too: every motion can
         have a scene of its own.
-    V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
-    t : output times, ascending, common to all; one number: the final state only.
+    V0, omega0 : start speeds, numbers or arrays (n,), divided by R/T_ref and 1/T_ref, or in m/s and rad/s; None where
+        they are prescribed.  Labels of xarray and pandas come back in ``to_xarray``.
+    t : output times, (times,), >= 0, ascending, common to all, divided by T_ref or in s; one number: the final state
+        only.
     force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`; numbers may be
         arrays (n,), times and values of a :class:`Schedule` of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
@@ -72,10 +74,10 @@ def ensemble(
     rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of the result are
         those after the cost of a standstill.  With a material each an unsteady motion takes some milliseconds more,
         for its N.
-    fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
-        work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
+    fields : names of the quantities to compute, out of ``V omega x angle delta regime slip_loss rolling_loss``, and
+        ``force torque work_force work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
         some rtol of the energy that moves.
-    speed : highest speed that the flow map is made for; default the largest of the starts.
+    speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the largest of the starts.
         Where a large ensemble is computed in several calls, one number for all makes the
         bits independent of how it is divided.
     threads : threads to use; default ``$VISCOROLL_THREADS`` or the cores available.
@@ -84,12 +86,14 @@ def ensemble(
     Returns
     -------
     Ensemble
+        Its ``fields``, (n, times) each, in the units of the roller; the others are None.
 
     Raises
     ------
     ParameterError
         NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
-        unknown fields or method; method "flow" with parameters that differ between motions.
+        unknown fields or method; method "flow" with parameters that differ between motions, with a drive, with
+        ``unsteady`` or with bodies that differ; what :func:`roll` refuses.
 
     Examples
     --------

@@ -44,8 +44,9 @@ class Ensemble(RollResult):
     Attributes
     ----------
     roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
-    t : output times.
-    V, omega, x, angle, delta, regime : shape (n, len(t)); those not requested are None.
+    t : output times, (times,), divided by T_ref or in s.
+    V, omega, x, angle, delta, regime : shape (n, times), in the units of a :class:`Motion`; those not requested are
+        None.  Codes of the regime are those of a :class:`Motion` as floats, NaN where it was not reached.
     slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_epsilon)^2 or in J/m: the
         integrals of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what (V^2 + j
         omega^2)/2 has fallen by (at rest: all of it).
@@ -104,20 +105,21 @@ class Ensemble(RollResult):
 
         Parameters
         ----------
-        quantiles : levels of the quantiles, in [0, 1].
+        quantiles : levels of the quantiles, numbers in [0, 1].
 
         Returns
         -------
         xarray.Dataset
-            Of every field kept but the regime, of onset_time and rest_time: ``NAME_counted`` (motions that have a
-            value: outputs that one did not reach do not count), ``_mean``, ``_std``, ``_min``, ``_max``, ``_quantiles``
-            over (quantile, t), which are exact, those of a run to their bin (``comment``), and ``_histogram`` over
-            ``_bin_low``, ``_bin_high``.  ``ended``: how many motions ended in which way.
+            In the units of the roller.  Of every field kept but the regime, with x also of the distance |x|, of
+            onset_time and rest_time: ``NAME_counted`` (motions that have a value: outputs that one did not reach do not
+            count), ``_mean``, ``_std``, ``_min``, ``_max``, ``_quantiles`` over (quantile, t), which are exact, those
+            of a run to their bin (``comment``), and ``_histogram`` over ``_bin_low``, ``_bin_high``.  ``ended``: how
+            many motions ended in which way.
 
         Raises
         ------
         ParameterError
-            If there are no motions, or quantiles are none.
+            If there are no motions, or ``quantiles`` is no list of numbers in [0, 1].
 
         Examples
         --------
@@ -137,8 +139,9 @@ class Ensemble(RollResult):
     def validity(self) -> Validity:
         """Report which assumptions of the model the motions violate, at the highest speeds of each.
 
-        ``steady`` examines all speeds of a motion.  See :func:`viscoroll.validity`; arrays over the motions, for more
-        than 256 over that many of them, evenly spaced.
+        ``steady`` examines all speeds of a motion.  See :func:`viscoroll.validity`.  Returns the report
+        :class:`Validity` with arrays over the motions, (n,); for more than 256 over that many of them, evenly spaced
+        (:meth:`fastest`).
 
         Examples
         --------

@@ -45,9 +45,9 @@ class Histogram(msgspec.Struct):
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
         """Make the histogram of those values that are finite.
 
-        values: numbers, (n,); those that are not finite are left out.
-        exact: whether to keep the values, for exact quantiles.
-        Returns the :class:`Histogram`.
+        values: numbers, (n,), in the unit of the quantity; those that are not finite are left out.
+        exact: whether to keep the values, (count,), for exact quantiles.
+        Returns the :class:`Histogram`; without finite values its moments are NaN.
         """
         kept = values[np.isfinite(values)]
         bits = (kept + 0.0).view(np.int64)  # -0 becomes 0

@@ -69,7 +69,7 @@ class Motion(RollResult):
         are the change of (V^2 + j omega^2)/2 plus the three losses.
     power_force, power_torque : force V and torque omega, divided by P R/T_epsilon or in W/m.
     drive_error : largest difference seen between a callable and the polynomials that fit it, dimensionless.
-    onset_time : first change from full to partial slip; NaN if there is none.
+    onset_time : time of the first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
     success, status, message : whether the motion came to its end, how it ended, and its last state if that was not
         its end; outputs it did not reach are NaN.
@@ -88,7 +88,7 @@ class Motion(RollResult):
 
     @property
     def message(self) -> str:
-        """Return the status in words; for a motion that was given up also the state that it had reached."""
+        """How the motion ended, in words; for one that was given up also the state that it had reached."""
         text = self.status.message
         if self.success or self.status == MotionStatus.CAUGHT:
             return text
@@ -131,13 +131,14 @@ class Motion(RollResult):
 
         Parameters
         ----------
-        fields, **options : as for :func:`viscoroll.contact`.
+        fields : names of fields of the contact state; None: the default of :func:`viscoroll.contact`.
+        **options : its other keywords, apart from creepage and angular velocity, which are those of the motion.
 
         Returns
         -------
         Values
-            Each field over t.  The law is exact to rounding: errors are those of V and delta, which beta
-            and Q magnify near full slip (``tests/motion/test_motion.py``).
+            Each field over t, (times,), in the units of the roller.  The law is exact to rounding: errors are those of
+            V and delta, which beta and Q magnify near full slip (``tests/motion/test_motion.py``).
 
         Raises
         ------
@@ -167,6 +168,7 @@ class Motion(RollResult):
         """Report which assumptions of the model the motion violates, at each output time that it reached.
 
         See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far.
+        Returns the report :class:`Validity` with arrays over these times.
 
         Examples
         --------
@@ -210,12 +212,13 @@ class Motion(RollResult):
 
         Parameters
         ----------
-        t : times, ascending.
+        t : times, a number or (times,), ascending, in the unit of the motion's own times.
 
         Returns
         -------
         Motion
-            As accurate between the steps as at their ends (``tests/motion/test_motion.py``).
+            With these output times; it is integrated anew.  As accurate between the steps as at their ends
+            (``tests/motion/test_motion.py``).
 
         Raises
         ------

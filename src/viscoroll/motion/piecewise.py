@@ -88,7 +88,10 @@ def check_function(
 
 
 def count_motions(function: TimeFunction) -> int:
-    """Return the number of motions that a function tells apart; 1 if it is the same for all."""
+    """Return the number of motions that a function tells apart; 1 if it is the same for all.
+
+    function: number, numbers of the motions, schedule or fitted callable.
+    """
     if isinstance(function, Piecewise):
         return len(function.terms)
     if isinstance(function, Schedule):
@@ -97,7 +100,10 @@ def count_motions(function: TimeFunction) -> int:
 
 
 def count_corners(function: TimeFunction) -> int:
-    """Return the number of corners of a function that is a schedule, of its pieces if it is a fit, else 0."""
+    """Return the number of corners of a schedule, of pieces of a fit (their ends included), 0 of other functions.
+
+    function: number, numbers of the motions, schedule or fitted callable.
+    """
     if isinstance(function, Piecewise):
         return function.starts.shape[-1]
     return function.times.shape[-1] if isinstance(function, Schedule) else 0
@@ -170,16 +176,19 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
 
 
 def values_at_start(terms: Floats) -> Floats:
-    """Return the values at x = -1 of polynomials, (..., terms)."""
+    """Return the values at x = -1 of polynomials, (...).
+
+    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms).
+    """
     return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
 
 
 def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
     """Set the value at the left end of pieces to 0 where it is rounding, as it would move a cylinder at rest.
 
-    terms: polynomials, (..., terms).
-    rounding: ratio of that value to the size of the terms below which it is rounding.
-    Returns the polynomials, (..., terms).
+    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms).
+    rounding: largest ratio of that value to the sum of the magnitudes of the coefficients that counts as rounding.
+    Returns new coefficients, (..., terms), of which the constant ones are shifted.
     """
     first, size = values_at_start(terms), np.abs(terms).sum(axis=-1)
     shifted = terms.copy()
@@ -240,8 +249,9 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
     """Return the index of the piece that acts at each time: the last that starts by then.
 
     begins: when pieces start, (1 or m, k), ascending, the first at 0.
-    times: times in the unit of ``begins``, (m, n), >= 0.
-    Returns (m, n), in 0 ... k - 1.  Takes memory in proportion to its input, and n log k steps.
+    times: times in the unit of ``begins``, (m, n), >= 0; with one row of ``begins`` any number of rows.
+    Returns indices in 0 ... k - 1, in the shape of ``times``.  Takes memory in proportion to its input, and n log k
+    steps.
     """
     if len(begins) == 1:
         return np.searchsorted(begins[0], times, side="right") - 1

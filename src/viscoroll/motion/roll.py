@@ -46,10 +46,14 @@ def roll(
     Parameters
     ----------
     roller : a :class:`Scene`; or a :class:`Cylinder`, in SI units per m of its length: s, m/s, rad/s, m, N, N m, J.
-        One, no arrays.
-    V0 : initial speed of the axis, of any sign.  The larger of |V0| and R |omega0| is 0, or in [1e-300, 1e100] R/T_ref.
-    omega0 : initial angular velocity, of any sign; limits as for V0.
-    t : output times, ascending; one number: the final state only, and ``course`` of the result is the whole motion.
+        One, no arrays.  Below, "divided by" is the unit of a scene, whose unit of time is T_ref (T_epsilon of an
+        ``alpha``); with a cylinder the SI unit takes its place.
+    V0 : initial speed of the axis, divided by R/T_ref or in m/s, of any sign; None is allowed with ``V``.  The larger
+        of |V0| and R |omega0| is 0, or in [1e-300, 1e100] R/T_ref.
+    omega0 : initial angular velocity, divided by 1/T_ref or in rad/s, of any sign; None is allowed with ``omega``.
+        Limits as for V0.
+    t : output times, (times,), >= 0, ascending, divided by T_ref or in s; one number: the final state only, and
+        ``course`` of the result is the whole motion.
     rtol : relative tolerance in [1e-12, 1e-2].  The global relative error of x and of the switch times is
         proportional to it; that of V and omega too, multiplied by t |V'|/|V|, by which a late
         speed magnifies any earlier error.  Errors are mostly below rtol, at most 30 rtol for the scenes
@@ -68,32 +72,36 @@ def roll(
         gamma of that load.
     brake : largest torque of a brake, divided by P R, >= 0; kinds as for ``force``.  It acts against omega, and keeps
         omega = 0 while |Q + M_cylinder - torque| does not exceed it.
-    drag : torque of a bearing against omega, divided by P R, for each unit of omega, >= 0.  It is part of ``torque`` of
-        the result.
-    omega : prescribed angular velocity, in place of ``torque``; continuous; ``omega0`` is then None or its value at
+    drag : torque of a bearing against omega, for each unit of omega, >= 0, a number, divided by P R T_ref or in
+        N m s/m.  It is part of ``torque`` of the result.
+    omega : prescribed angular velocity, in place of ``torque``: a number, a Schedule or a callable of t, continuous;
+        ``omega0`` is then None or its value at t = 0.
+    V : prescribed speed of the axis, in place of ``force``, of the same kinds; ``V0`` is then None or its value at
         t = 0.
-    V : prescribed speed of the axis, in place of ``force``; continuous; ``V0`` is then None or its value at t = 0.
-    rest : end the motion where max(|V|, R |omega|) falls below this once nothing drives any more; refused where
-        something drives to the end.  Nothing stops in finite time: at small V the speed decays like
-        exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.
-        From there on V = omega = 0, and x and angle stay; the omitted distance is close to (1 + j) V/(gamma c).
+    rest : a speed, divided by R/T_ref or in m/s; None: none.  End the motion where max(|V|, R |omega|) falls below
+        this once nothing drives any more; refused where something drives to the end.  Nothing stops in finite time: at
+        small V the speed decays like exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha
+        = 1) rolls for ever.  From there on V = omega = 0, and x and angle stay; the omitted distance is close to
+        (1 + j) V/(gamma c).
     unsteady : in partial slip use M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N) V' = -gamma M where
         creepage is small.  The errors of V by the law of steady rolling become some five times smaller
         (docs/validity.md).  The motion ends where gamma N is 1 + j or -(1 + j)/2, at least -1: below that speed the
         cylinder stays in its own indentation.  A drive may jump; V' then jumps too, which the real contact
         follows with a delay.  Refused where the bodies differ.
-    rested : whether the cylinder stood still for long before the start, or the time for which it did.
-        Leaving its indentation costs energy (``validity(V0).steady.start``), and V0 and omega0 are reduced; a
+    rested : whether the cylinder stood still for long before the start, or the time for which it did, divided by T_ref
+        or in s.  Leaving its indentation costs energy (``validity(V0).steady.start``), and V0 and omega0 are reduced; a
         motion that would lose seven tenths of its energy stays there.  The cost is that of free rolling: with a force
         it is an approximation.
     max_steps : step limit, at most 10^7; every corner of a schedule, at which a step ends, adds one to it.
-    resolve : largest spacing, a time, of the samples of a callable; a pulse that lasts longer is seen.
+    resolve : largest spacing of the samples of a callable, divided by T_ref or in s; a pulse that lasts longer is seen.
         Default, and at most: a thousandth of the motion.  Refused where it requires more than 5 10^5 samples, and where
         nothing is a callable.
 
     Returns
     -------
     Motion
+        Speeds, path, creepage, regime, loads and energies at the output times, (times,) each, in the units of the
+        roller; NaN, and regime -1, at times that the motion did not reach.
 
     Raises
     ------

@@ -41,7 +41,10 @@ class Quantity(NamedTuple):
     over_time: bool = True
 
     def about(self, si: bool) -> dict[str, Any]:
-        """Return its long_name and units; ``si``: of a cylinder."""
+        """Return the attributes long_name and units of the quantity.
+
+        si: whether the units are those of a cylinder.
+        """
         if self.part:
             return {"long_name": f"share of the initial kinetic energy {self.part}", "units": "1"}
         return column_attributes(self.column, si)
@@ -58,7 +61,10 @@ def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
 
 
 def _start_energy(motions: Any) -> NDArray:
-    """Return twice the kinetic energy at the start, (n,); NaN for motions from rest, which have no parts of it."""
+    """Return twice the kinetic energy at the start, divided by m (R/T_ref)^2, (n,); NaN for motions from rest.
+
+    motions: an ensemble.
+    """
     V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
     energy = V**2 + motions.scene.j * omega**2
     return np.where(energy > 0.0, energy, np.nan)
@@ -126,8 +132,8 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     motions: the ensemble.
     levels: levels of the quantiles, in [0, 1].
     Raises ParameterError for an ensemble without motions.
-    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, in the units of
-    the roller.
+    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, of the distance
+    |x|, and of onset and rest time, in the units of the roller.
     """
     if not len(motions):
         raise ParameterError("motions", 0, "at least 1")

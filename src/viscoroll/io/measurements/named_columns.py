@@ -30,7 +30,11 @@ def named_table(
 
 
 def _is_named(heading: str, name: str) -> bool:
-    """Return whether a heading is a name, or that name with a unit."""
+    """Return whether a heading of a file is a name, or that name with a unit; one of logarithms only as a whole.
+
+    heading: text of the heading.
+    name: the name that the user gives.
+    """
     return name == heading or any(not each.log and each.name == name for each in readings(heading))
 
 
@@ -54,7 +58,11 @@ def find_column(table: Table, name: str) -> int | None:
 
 
 def missing_column(table: Table, name: str) -> FileError:
-    """Return the error where no column of a table has a name; it lists the headings of the table."""
+    """Return the error where no column of a table has a name; it lists the headings of the table. It is not raised.
+
+    table: table with headings.
+    name: the name that the user gives.
+    """
     return FileError(
         table.path, f"has no column {name!r}, but {', '.join(table.headings)}{suggestion(name, table.headings)}"
     )
@@ -73,7 +81,8 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
 
     Returns
     -------
-    values, shape (n,)
+    array of shape (n,)
+        The numbers, in the unit ``wanted``.
 
     Raises
     ------

@@ -88,7 +88,10 @@ def fault_of(cell: str, decimal: str) -> str:
 
 
 def numbers_of(cells: list[str]) -> Numbers:
-    """Return the numbers of cells without a fault (:func:`fault_of`)."""
+    """Return the numbers of cells, and half a unit of the last digit of each.
+
+    cells: texts without a fault (:func:`fault_of`), with a decimal point or comma.
+    """
     exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
     half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]
     return Numbers(np.array(exact, np.float64), np.array(half))

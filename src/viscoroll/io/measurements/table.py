@@ -143,7 +143,10 @@ class _Layout:
     is_heading_line: Callable[[list[str]], bool]
 
     def __post_init__(self) -> None:
-        """Find the width, the most frequent number of cells of rows of numbers; raise FileError where none is."""
+        """Find the width, the most frequent number of cells of rows of numbers, and the words on the separator.
+
+        Raises FileError where no line is a row of numbers.
+        """
         widths = Counter(len(line.cells) for line in self.lines if line.numeric)
         if not widths:
             raise FileError(self.path, "has no row of numbers")
@@ -157,7 +160,7 @@ class _Layout:
     def is_row(self, line: Line) -> bool:
         """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone.
 
-        line : the line.
+        line: the line with its cells.
         """
         return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
 

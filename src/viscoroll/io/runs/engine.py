@@ -56,7 +56,8 @@ def run_ensemble(
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    path : folder of the results; it is created if it does not exist.
+    path : folder of the results; it is created if it does not exist, and blocks, records and summaries are written
+        there.
     cluster : None: threads of this process.  "local": processes of this machine.  "tcp://host:port": a running dask
         scheduler, whose workers see ``path`` on a shared disk.
     threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the number of cores available.

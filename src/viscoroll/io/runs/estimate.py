@@ -47,7 +47,7 @@ class Estimate:
     law_seconds: float = 0.0
 
     def __str__(self) -> str:
-        """Return size, time, memory and disk space of the run, a line each."""
+        """Return size, time, memory and disk space of the run in words, a line each, and the size of the trial."""
         run = self.run
         laws = f", {_duration(self.law_seconds)} of it once for the laws of covers" if self.law_seconds else ""
         return (
@@ -73,7 +73,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     Returns
     -------
     Estimate
-        Printed, it states size, time, memory and disk space.
+        Time in s, memory and size of the store in bytes; printed, it states them in words.  Nothing is written.
 
     Examples
     --------
@@ -119,7 +119,10 @@ def _time_of_laws(run: Run) -> float:
 
 
 def _peak_memory() -> float:
-    """Return the largest resident memory of this process so far, in bytes."""
+    """Return the largest resident memory of this process so far, in bytes.
+
+    Where the system does not tell, a usual value is returned.
+    """
     try:
         import resource
     except ImportError:
@@ -128,7 +131,10 @@ def _peak_memory() -> float:
 
 
 def _duration(seconds: float) -> str:
-    """Return a duration in the largest unit of which it has at least two."""
+    """Return a duration as a text, in the largest unit of days, hours, minutes, seconds of which it has at least two.
+
+    seconds: the duration, s.
+    """
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
         if seconds >= 2.0 * size:
             return f"{seconds / size:.1f} {unit}"

@@ -43,8 +43,8 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    values : every uncertain input by name, a number or (n,).
-    count : number of motions, if all inputs are numbers.
+    values : name of each uncertain input -> a number or (n,), in the units of the file.
+    count : number of motions; n where an input is an array (n,).
     threads : number of threads; None: all cores available.
 
     Returns

@@ -92,7 +92,10 @@ def damaged(root: Path, record: Record) -> list[str]:
 
 
 def _digest(path: Path) -> str | None:
-    """Return the SHA-256 of a file; None if it cannot be read."""
+    """Return the SHA-256 of a file in hexadecimal digits; None if it cannot be read.
+
+    path: path of the file.
+    """
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
@@ -119,14 +122,21 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
 
 
 def refuse_unreadable(root: Path) -> None:
-    """Raise FileError if the folder of a store, or that of its records, may not be read."""
+    """Raise FileError if the folder of a store, or that of its records, exists and may not be read.
+
+    root: folder of the store.
+    """
     for folder in (root, root / RECORDS):
         if folder.is_dir() and not os.access(folder, os.R_OK | os.X_OK):
             raise FileError(folder, "cannot be read (Permission denied)")
 
 
 def make_folder(path: Path) -> None:
-    """Create a folder, and those above it, unless they exist; raise FileError if that fails."""
+    """Create a folder, and those above it, unless they exist.
+
+    path: path of the folder.
+    Raises FileError if that fails, as where a file of that name exists.
+    """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:

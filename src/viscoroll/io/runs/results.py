@@ -64,6 +64,11 @@ class RunResults(Result):
     def motions(self) -> xr.Dataset:
         """Open the dataset of every motion with its inputs, over (motion, t); values are read when they are needed.
 
+        Returns
+        -------
+        xarray.Dataset
+            Inputs, fields, onset_time, rest_time, status and flow, in the units of the run file.
+
         Raises
         ------
         FileError
@@ -100,7 +105,8 @@ class RunResults(Result):
     def to_pandas(self) -> pd.DataFrame:
         """Return a row for each quantity and time: mean, std, min, max, and a column for each quantile.
 
-        A unit is part of the name of a quantity, as in "V [m s-1]", the first level of the index.
+        A unit is part of the name of a quantity, as in "V [m s-1]", the first level of the index; the second is the
+        time, NaN for a quantity that is one number per motion.  The label of a quantile is its level, a float.
 
         Examples
         --------

@@ -50,7 +50,7 @@ class Rollers(Roller):
 
     @cached_property
     def _scene(self) -> Parameters:
-        """The dimensionless parameters."""
+        """The dimensionless parameters, computed once; with ``seconds`` gamma counts time in s."""
         one, law = self.like, self.law
         if isinstance(law, Pair):
             law = law.cover(contact_length(one.R, one.load, self.E_prime))
@@ -65,7 +65,7 @@ class Rollers(Roller):
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        """SI value of 1 of each dimensionless quantity."""
+        """SI value of 1 of each dimensionless quantity, by its name; with ``seconds`` the unit of time is 1 s."""
         scale = Scale(self.like.R, self.T, self.like.load, self.like.m)
         if self.seconds:
             scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {"x": scale["V"], "angle": scale["omega"]}
@@ -172,7 +172,11 @@ def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats |
 
 
 def _first(part: Any) -> Any:
-    """Return a part of a section with the first element of each of its arrays."""
+    """Return a part of a section with the first element of each of its arrays, a float, in place of the array.
+
+    part: a table, list, number or text of the section; arrays are (n,).
+    Returns a new part of the same kind.
+    """
     if isinstance(part, dict):
         return {key: _first(member) for key, member in part.items()}
     if isinstance(part, list):

@@ -166,7 +166,10 @@ class Run:
 
     @property
     def method(self) -> Literal["flow", "integrate"]:
-        """Method of all blocks.  It depends on the run as a whole, so that bits do not depend on blocks."""
+        """Method of all blocks: "flow" or "integrate".
+
+        It depends on the run as a whole, so that bits do not depend on blocks.
+        """
         if self.settings.method != "auto":
             return self.settings.method
         if not self.mappable:
@@ -205,7 +208,7 @@ class Run:
 
     @property
     def block(self) -> int:
-        """Number of motions in a full block."""
+        """Number of motions in a full block: as the file states, else as many as fit the memory."""
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)
         # a power of two suits Sobol's sequence

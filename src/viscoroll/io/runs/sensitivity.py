@@ -54,7 +54,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     ----------
     run : a run of :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
     n : number of base points in [16, 65536], rounded up to a power of two.
-    threads : default ``$VISCOROLL_THREADS`` or the number of cores; the bits do not depend on it.
+    threads : number of threads; None: ``$VISCOROLL_THREADS`` or the number of cores.  The bits do not depend on it.
     progress : whether to draw a progress bar if it takes longer than a second.
 
     Returns
@@ -192,6 +192,7 @@ def _outcomes(
     status = np.empty(motions, np.int8)
 
     def work(start: int, stop: int) -> None:
+        """Roll the motions ``start`` to ``stop`` - 1, and write their values and statuses."""
         rolled = roll_inputs(run, run.inputs.values(cube[:, start:stop]), stop - start, threads)
         status[start:stop] = rolled.status
         for name, values in outcomes.items():
@@ -240,7 +241,7 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
     """Return a row for each quantity, time and input that has indices, the largest total index first at each t.
 
     indices: dataset of :func:`sobol_indices`.
-    Returns the columns "quantity", "t" with its unit, "input", "S1", "S1_conf", "ST", "ST_conf".
+    Returns a table of pandas with the columns "quantity", "t" with its unit, "input", "S1", "S1_conf", "ST", "ST_conf".
     """
     import pandas as pd
 

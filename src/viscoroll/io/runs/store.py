@@ -53,9 +53,10 @@ class Store:
     run: Run
 
     def start(self) -> None:
-        """Create the folder and the metadata of all motions, or check that they belong to this run.
+        """Create the folder and write the metadata of all motions; a store of this run stays as it is.
 
-        The store of the same run with fewer motions is extended.
+        The store of the same run with fewer motions is extended: its metadata are written anew, its summaries are
+        removed.  Temporary files of killed processes are removed.
 
         Raises
         ------
@@ -80,7 +81,10 @@ class Store:
         write_bytes(_record_path(self.root, name), encoded(record))
 
     def _motions(self, name: str | int) -> int:
-        """Return the number of motions of a block, or, for "start" and "end", of the run."""
+        """Return the number of motions of a part.
+
+        name: number of a block; "start" and "end" have the motions of the whole run.
+        """
         if isinstance(name, str):
             return self.run.settings.n
         start, stop = self.run.edges(name)
@@ -123,7 +127,10 @@ class Store:
             raise FileError(root, f"is not a results store, it contains {', '.join(others[:3])}: {ADVICE}")
 
     def missing(self) -> Iterator[int]:
-        """Yield the blocks that are missing or damaged; the records of all blocks and all their files are read."""
+        """Yield the numbers of the blocks that are missing or damaged, ascending.
+
+        The records of all blocks and all their files are read.
+        """
         own = identity(self.run)
         for block in range(self.run.blocks):
             if problems(self.root, block, own, self._motions(block)):
@@ -141,7 +148,11 @@ class Store:
         return count
 
     def finish(self) -> None:
-        """Merge the summaries of all blocks and write them; raise FileError if a block is damaged."""
+        """Merge the summaries of all blocks and write them with the consolidated metadata; the store is then finished.
+
+        Temporary files of killed processes are removed.
+        Raises FileError if the record of a block is missing or damaged, or writing fails.
+        """
         dataset = summary_dataset(
             merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
         )

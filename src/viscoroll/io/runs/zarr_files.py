@@ -50,7 +50,10 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
 
 
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
-    """Return all files of a small dataset: path -> content."""
+    """Return all files of a small dataset as zarr writes them: path below its group -> content; nothing is written.
+
+    dataset: dataset that fits the memory.
+    """
     zarr = import_extra("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
@@ -59,9 +62,9 @@ def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
 
 
 def consolidated(files: dict[str, bytes]) -> bytes:
-    """Return the content of .zmetadata, from which readers take all metadata at once.
+    """Return the content of .zmetadata, JSON from which readers take all metadata at once.
 
-    files: path -> content, of the hierarchy.
+    files: path -> content, of the hierarchy; of these only metadata (.zgroup, .zarray, .zattrs) count.
     """
     metadata = {key: json.loads(text) for key, text in sorted(files.items()) if _is_metadata(key)}
     return json.dumps({"metadata": metadata, "zarr_consolidated_format": 1}, indent=1).encode()

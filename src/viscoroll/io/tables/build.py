@@ -53,9 +53,11 @@ def build(
     what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or a law, of :func:`viscoroll.load_law` or
         :func:`viscoroll.io.tables.law`, with kappa = mu = 1: then V is kappa V, delta kappa delta/mu, Q Q/mu and M
         kappa M.  Its parameters are numbers, no arrays.
-    V : speeds of the axis, > 0, strictly increasing; for V < 0 see the signs of Eqs. (17), (18).
-    delta : creepages, any sign, strictly increasing.
-    alpha : strictly increasing, in place of that of a scene without a material.
+    V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
+        of Eqs. (17), (18).
+    delta : creepages, (n,), dimensionless, any sign, strictly increasing.
+    alpha : values of alpha, (n,), in [1, 1e12], strictly increasing, in place of that of a scene without a material;
+        None: no such axis.
     method : "table", from the rows of the law, or "direct", by root solves of the printed equations, of one relaxation
         time.  With "direct" the rows are evaluated too, and ``difference_from_rows`` of a
         field is the largest difference: of lam, zeta and delta_star relative, of other fields divided by their largest
@@ -204,9 +206,9 @@ def errors_at(
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid; along an axis of one node they all have its coordinate.
 
-    table: the grid.
+    table: the grid, dataset of :func:`build`.
     count: number of points.
-    seed: seed of the generator.
+    seed: seed of the generator, >= 0.
     Returns axis -> coordinates, (count,), in the units of the grid.
     """
     random = np.random.default_rng(seed)

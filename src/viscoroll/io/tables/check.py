@@ -62,7 +62,7 @@ class Report:
         return all(check.passed for check in self.checks)
 
     def __str__(self) -> str:
-        """Return a line for each check with the measured and the allowed difference, and the verdict."""
+        """Return a line for each check with the measured and the allowed difference, the verdict and the settings."""
         width = max(len(check.name) for check in self.checks)
         lines = [
             f"{c.name:<{width}} {c.measured:9.2e} {c.allowed:9.2e}  {'ok' if c.passed else 'EXCEEDED':<8}  {c.meaning}"
@@ -92,14 +92,16 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     Returns
     -------
     list of Check
-        One for each function: the largest relative error, and the stated error times :data:`SAMPLE_RATIO`.
+        Of a law one for each function: the largest relative error, allowed up to the stated error times
+        :data:`SAMPLE_RATIO` plus :data:`ROUNDING`.  Of a grid two for each field: its nodes, relative or divided by the
+        largest value, and the splines, absolute.
 
     Raises
     ------
     ParameterError
         A count or seed out of range.
     FileError
-        A grid of a material or a cylinder.
+        A grid of a material or a cylinder, or a dataset that is no table.
     """
     count, seed = check_integer("n", count, 1), check_integer("seed", seed, 0)
     source = table.encoding.get("source", "table")

@@ -65,16 +65,23 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
 
 def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
-    """Write ``table`` to ``path`` in the 64-bit offset format (CDF-2), which every netCDF library since 2004 reads."""
+    """Write a law or a grid in the 64-bit offset format (CDF-2), which every netCDF library since 2004 reads.
+
+    table: dataset of the law or grid.
+    path: file to write.
+    """
     with replace_file(path) as temporary:
         encoding = {name: {"_FillValue": None} for name in table.variables}
         table.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT", encoding=encoding)
 
 
 def _write_csv(table: xr.Dataset, path: Path) -> None:
-    """Write a grid ``table`` to ``path``: a row of names, then one for every node, the first axis slowest.
+    """Write a grid as CSV: a row of names, then one for every node, the first axis slowest.
 
-    The digits read back to the same bits.
+    Columns are the axes, then the fields.  The digits read back to the same bits.
+
+    table: dataset of the grid.
+    path: file to write.
     """
     fields = table[list(schema.fields_of(table))]
     with replace_file(path) as temporary:

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 class Interpolant:
     """A table prepared for repeated interpolation; :func:`interpolate` prepares one in each call.
 
-    A call takes fields and points; it returns what :func:`interpolate` does, with the same errors.
+    A call ``interpolant(fields, V=..., delta=...)`` takes names of fields and points, and returns what
+    :func:`interpolate` does, with the same errors.
 
     Parameters
     ----------
@@ -88,12 +89,13 @@ class Interpolant:
 
         Parameters
         ----------
-        field : a field over V, delta and alpha or some of them.
+        field : name of a field over V, delta and alpha or some of them.
 
         Returns
         -------
-        at : a jitted function of numbers; it returns ``value``, ``dV``, ``ddelta`` and ``dalpha``, clipped as values
-            of this class are, with slopes 0 there, and NaN outside of the axes.  For an axis that the field does not
+        at : a jitted function of numbers, in the units of the table; it returns a record of ``value`` and its
+            derivatives ``dV``, ``ddelta`` and ``dalpha``, clipped as values of this class are, with slopes 0 there,
+            and NaN outside of the axes.  For an axis that the field does not
             depend on any number may be given.
         spline : first argument of ``at``.
 
@@ -153,7 +155,12 @@ class Interpolant:
         return {name: np.broadcast_to(self._map_axis(name, array), shape) for name, array in arrays.items()}, shape
 
     def _map_axis(self, name: str, values: Floats) -> Floats:
-        """Return the coordinate in which the law is smooth, at the ``values`` of the axis ``name``."""
+        """Return the coordinate in which the law is smooth, or, for linear interpolation and for delta, the value.
+
+        name: name of the axis.
+        values: values on the axis, of any shape, which the result has too; of s, of an atlas, the coordinate is
+        s/(1 + sqrt(1 - s)), of the others ln.
+        """
         if self._linear or name == "delta":
             return values
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
@@ -179,9 +186,9 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     Parameters
     ----------
     table : Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
-    fields : names out of the table's fields; default all.
-    **points : ``V``, ``delta`` and, where the table has it, ``alpha``, in the table's units; they broadcast.
-        ``delta`` only for beta and Q.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
+    fields : names out of the table's fields; default all, which need a coordinate on every axis.
+    **points : coordinates, numbers or arrays that broadcast, in the table's units: ``V``, ``delta`` and, where the
+        table has it, ``alpha``.  ``delta`` only for beta and Q.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
 
     Returns
     -------

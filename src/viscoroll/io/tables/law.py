@@ -61,7 +61,7 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     Raises
     ------
     ParameterError
-        An argument that is no material, alphas out of range, both or neither.
+        An argument that is no material, alphas out of range, both or neither of ``material`` and ``alpha``.
 
     Examples
     --------
@@ -96,13 +96,15 @@ def measured_errors(
     Parameters
     ----------
     table : a law, or that of every alpha, of which random alphas are tested.
-    count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave.
-    seed : seed of the points.
+    count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave, and
+        :data:`_COVER_SPEEDS` speeds for the law of a layer.
+    seed : seed of the points and alphas, >= 0.
 
     Returns
     -------
     dict of str to float
-        Function -> largest relative error, dimensionless.
+        Name of a function of the law -> largest relative error, dimensionless; of parts of M relative to M, of N to
+        its largest value.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):

@@ -29,9 +29,9 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
 
     Parameters
     ----------
-    low, high : ends.
-    count : number of values, both ends among them.
-    spacing : "linear" or "log".
+    low, high : ends, low < high; with "log" low > 0.
+    count : number of values, both ends among them, >= 2.
+    spacing : "linear" (equal steps) or "log" (equal ratios).
 
     Returns
     -------
@@ -64,9 +64,9 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     Parameters
     ----------
     what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`.
-    V : speeds of the grid, > 0; of a Cylinder in m/s.
+    V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_epsilon, of a Cylinder in m/s.
     count : number of nodes, odd, at least 5.
-    alpha : those of the grid, in place of that of a scene without a material.
+    alpha : those of the grid, (n,), strictly increasing, in place of that of a scene without a material; None: none.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     Raises
     ------
     ParameterError
-        An even or small count; speeds or alphas out of range.
+        An even or small count; speeds or alphas out of range or not increasing.
 
     Examples
     --------

@@ -46,7 +46,10 @@ COMMENT = (
 
 
 def axes_of(table: xr.Dataset) -> tuple[str, ...]:
-    """Return the names of the axes of a grid ``table``; the first varies slowest."""
+    """Return the names of the axes of a grid, the first of which varies slowest: V, delta and perhaps alpha.
+
+    table: dataset of a grid; one of kind "atlas" has alpha, kappa_V, s.
+    """
     if table.attrs[KIND] == "atlas":
         return ("alpha", "kappa_V", "s")
     return ("V", "delta", *(("alpha",) if "alpha" in table.dims else ()))
@@ -100,8 +103,8 @@ def check(table: Any, path: Any) -> None:
 
     Parameters
     ----------
-    table : dataset.
-    path : path of its file, for messages.
+    table : dataset; anything else is refused too.
+    path : path of its file, or another name, for messages.
 
     Raises
     ------

@@ -118,7 +118,7 @@ def info(path: str | PathLike[str]) -> str:
     Returns
     -------
     str
-        Lines to print.  Errors of a law are relative; those of a grid are its attributes, absolute.
+        Lines to print, joined by newlines.  Errors of a law are relative; those of a grid are its attributes, absolute.
 
     Raises
     ------

@@ -2,10 +2,9 @@
 
     r(x) = I1(x)/I0(x)      k(z) = K0(z)/K1(z)      i2(x) = I2(x)/I0(x) = 1 - 2 r(x)/x
 
-Piecewise polynomials indexed by the bits of the argument (:mod:`layout`, no
-logarithm), the power series below them and the asymptotic series above, economized to the
-same degree: every positive double is served by one polynomial, chosen without a branch.
-Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
+Piecewise polynomials indexed by the bits of the argument (:mod:`layout`, no logarithm), the power series below them and
+the asymptotic series above, economized to the same degree: every positive double is served by one polynomial, chosen
+without a branch. Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
 ``tests/kernels/bessel/test_ratios.py``, against 60 digits, 2).  Slopes come from the Riccati equations
 
     r' = 1 - r/x - r^2      k' = k^2 + k/z - 1
@@ -66,11 +65,11 @@ def _r_power_series(terms: int) -> list[float]:
 
 
 def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
-    """Return the first coefficients a_n of the asymptotic series sum a_n x^-n, from the Riccati equations.
+    """Return the first coefficients a_n of the asymptotic series sum a_n x^-n of r or k, from the Riccati equations.
 
-    sign : -1 for r, +1 for k.
-    terms : number of coefficients.
-    Returns [a_0, a_1, ...], ``terms`` Decimals.
+    sign : -1 for r = I1/I0, 1 for k = K0/K1.
+    terms : number of coefficients, > 0.
+    Returns [a_0 = 1, a_1, ...], ``terms`` Decimals, in the digits of the decimal context.
     """
     a = [Decimal(1)]
     for n in range(1, terms):
@@ -84,10 +83,10 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
 def _tail(sign: int) -> np.ndarray:
     """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the argument.
 
-    The polynomial goes through the asymptotic series at Chebyshev nodes.
+    The polynomial goes through the asymptotic series of that function at Chebyshev nodes.
 
-    sign : -1 for r, +1 for k.
-    Returns coefficients of ascending powers of 1/x or 1/z, (terms,), dimensionless.
+    sign : -1 for r, 1 for k.
+    Returns the 9 coefficients (layout.COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant first, doubles.
     """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]
@@ -159,7 +158,9 @@ def ratio_k(z):
 
 @inline_kernel
 def ratio_i2(x, r):
-    """Return i2 = I2/I0 at x >= 0, to full relative accuracy; ``r``: r(x)."""
+    """Return i2 = I2/I0 of modified Bessel functions at ``x`` >= 0, in [0, 1), to full relative accuracy; ``r``: r(x),
+    of :func:`ratio_r`.
+    """
     if not x < 4.0:  # or a NaN
         return 1.0 - 2.0 * r / x
     near = x < _NEAR

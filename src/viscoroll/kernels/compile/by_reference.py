@@ -40,7 +40,13 @@ class _Attributes(AttributeTemplate):
 
 @lower_getattr_generic(_ReferenceType)
 def _attribute(context, builder, kind, reference, name):
-    """Return a field as :class:`_Attributes` types it; arguments as numba gives them."""
+    """Return instructions that read a field of a reference to a record: its value, or, of a record in it, its address.
+
+    context, builder : numba's context of code generation, and builder of LLVM.
+    kind : numba's type of the reference.
+    reference : the pointer to the record, a value of LLVM.
+    name : name of the field.
+    """
     index = kind.record.fields.index(name)
     at = cgutils.gep_inbounds(builder, reference, 0, index)
     return at if isinstance(kind.record[index], types.NamedTuple) else builder.load(at)
@@ -50,8 +56,9 @@ def _load(context, builder, kind, at):
     """Return instructions that load the value of a type from an address, field by field.
 
     context, builder : numba's context of code generation, and builder of LLVM.
-    kind : numba's type of the value.
+    kind : numba's type of the value; the fields of records and arrays are loaded one by one.
     at : its address, a value of LLVM.
+    Returns a value of LLVM.
 
     LLVM removes the fields that are not used.
     """

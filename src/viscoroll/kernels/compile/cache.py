@@ -1,10 +1,10 @@
 """A disk cache of machine code that cannot go stale.
 
-numba's own cache stamps a function with the file it is defined in and does not notice a change in a
-function it calls from another module.  Here the cache folder is named after a hash of *all* kernel
-sources, their coefficient table and the versions of numba and llvmlite.  It holds one file for each function,
-signature and choice of numba's settings, behind a SHA-256 of itself.  Anything unreadable, or that others may have
-written (:mod:`folder`), is compiled again and replaced: it is never trusted and never ends the process.
+numba's own cache stamps a function with the file it is defined in and does not notice a change in a function it calls
+from another module.  Here the cache folder is named after a hash of *all* kernel sources, their coefficient table and
+the versions of numba and llvmlite.  It holds one file for each function, signature and choice of numba's settings,
+behind a SHA-256 of itself.  Anything unreadable, or that others may have written (:mod:`folder`), is compiled again and
+replaced: it is never trusted and never ends the process.
 """
 
 import hashlib
@@ -50,7 +50,9 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """Return a hash of the kernel sources, of their coefficients and of the versions of numba and llvmlite."""
+    """Return a hash, 16 hexadecimal digits, of the kernel sources, of their coefficients and of the versions of numba
+    and llvmlite.
+    """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
         digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + path.read_bytes())
@@ -76,12 +78,13 @@ class DiskCache:
 
     @contextmanager
     def exclusive(self, signature, codegen) -> Iterator[None]:
-        """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE`.
+        """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE` seconds.
 
-        If the code is stored already, or if no lock can be made, nobody waits.
+        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed behind it.
+        If the code is stored already, or if no lock can be made or had in that time, the block runs without one.
 
-        signature : types of the arguments.
-        codegen : numba's code generator, which knows the processor.
+        signature : tuple of numba's types of the arguments of the kernel.
+        codegen : numba's code generator, which knows the processor. Yields None.  Raises what the block raises.
         """
         path = self._path(signature, codegen)
         if path.exists():
@@ -101,10 +104,13 @@ class DiskCache:
             lock.release()
 
     def load_overload(self, signature, target) -> CompileResult | None:
-        """Return the machine code for a signature, or None.
+        """Return the machine code for a signature, numba's ``CompileResult``; None if it is not stored or cannot be
+        used.
 
-        signature : types of the arguments.
-        target : numba's target context.
+        It is not used if others may have written it, or, with one warning for each process, if its checksum is wrong.
+
+        signature : tuple of numba's types of the arguments of the kernel.
+        target : numba's target context, which the code is linked into.
         """
         target.refresh()
         try:
@@ -119,10 +125,10 @@ class DiskCache:
         return None  # save_overload then replaces the file
 
     def save_overload(self, signature, compiled: CompileResult) -> None:
-        """Store machine code, unless it contains addresses of this process; warn if that fails.
+        """Store machine code for a signature, unless it contains addresses of this process; warn once if that fails.
 
-        signature : numba's types of the arguments of the kernel; their text is part of the name of the file.
-        compiled : numba's result.
+        signature : tuple of numba's types of the arguments of the kernel; their text is part of the name of the file.
+        compiled : numba's ``CompileResult``.
         """
         if compiled.library.has_dynamic_globals:
             return
@@ -138,8 +144,12 @@ class DiskCache:
     def _path(self, signature, codegen) -> Path:
         """Return the path of the machine code: the name of the function, and a hash of all that the code depends on.
 
-        signature : types of the arguments.
+        That is the name and place of the function, the signature, the processor, the version of Python and numba's
+        settings; the sources are in the name of the folder.
+
+        signature : tuple of numba's types of the arguments of the kernel.
         codegen : numba's code generator, which knows the processor.
+        Returns the path of a file that may not exist.
         """
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"

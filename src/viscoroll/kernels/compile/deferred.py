@@ -1,12 +1,11 @@
 """LLVM runs once for each kernel that Python calls, not once for each function and each of its callers.
 
-numba optimises a function, links it into each of its callers, and optimises it there again, level
-by level.  Here a kernel that another one calls, a *part*, is typed and lowered to LLVM's intermediate
-representation (IR) only; a kernel called from Python, the *whole*, links the IR of all parts below it,
-and LLVM works on that once.
+numba optimises a function, links it into each of its callers, and optimises it there again, level by level.  Here a
+kernel that another one calls, a *part*, is typed and lowered to LLVM's intermediate representation (IR) only; a kernel
+called from Python, the *whole*, links the IR of all parts below it, and LLVM works on that once.
 
-This uses private names of numba.  If one of them fails, numba compiles in its own way: the same
-kernels, the same bits, in some three times the time.
+This uses private names of numba.  If one of them fails, numba compiles in its own way: the same kernels, the same bits,
+in some three times the time.
 """
 
 import gc
@@ -35,8 +34,7 @@ def _memoized_types(typing, target):
     These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
     a module, and the signatures of numba's own functions that lower a statement.
 
-    typing, target : numba's typing context and target context, changed within the block.
-    Yields None.
+    typing, target : numba's typing context and target context, changed within the block. Yields None.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -90,10 +88,14 @@ class EntryPipeline:
 
     @_without_garbage_collection()
     def compile_extra(self, function: Callable):
-        """Compile a function by a part and a whole; by numba's own pipeline if a private name of numba has changed.
+        """Compile a kernel that Python calls as a whole, with the parts below it; by numba's own compiler if that
+        fails.
 
-        function : the Python function.
-        Returns numba's ``CompileResult``.
+        It fails if a private name of numba has changed.  This and all later kernels of the process then are compiled by
+        numba's own compiler, with a RuntimeWarning.
+
+        function : the Python function. Returns numba's ``CompileResult``.  Raises numba's error if its own compiler
+        cannot compile the function either.
         """
         announce_compiling()
         global _deferring
@@ -121,12 +123,12 @@ class EntryPipeline:
 
 
 def defer(whole, options: dict[str, Any]):
-    """Let other kernels that call this one compile against its separately compiled part, instead of compiling it
-    again.
+    """Let other kernels that call this one compile against its separately compiled part, instead of compiling it again.
 
-    whole : numba's dispatcher of the kernel, changed.
-    options : options of ``numba.njit`` for the part.
-    Returns None; the dispatcher compiles in the new way from then on.
+    whole : numba's dispatcher of the kernel, whose methods get_call_template and get_overload, by which numba compiles
+        a call from another kernel, are replaced.
+    options : options of ``numba.njit`` by name, those of the kernel, for the part.
+    Returns None.  The part is compiled when another kernel that calls this one is.
     """
     plain = type(whole)
 
@@ -152,7 +154,9 @@ def defer(whole, options: dict[str, Any]):
 def _pipelines():
     """Make numba's compiler classes for the part of a kernel that others call and for the whole that Python calls.
 
-    Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``.
+    Parts are lowered to LLVM's intermediate representation only; wholes link that of all parts and are optimised once.
+
+    Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``, made once in a process.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -226,10 +230,10 @@ def _pipelines():
 
 
 def _link(library, module):
-    """Add to a module of LLVM the libraries that a library calls, directly or not, each once.
+    """Add to a module of LLVM the libraries that a library calls, directly or through parts, each once.
 
-    library : numba's library.
-    module : LLVM's module, changed.
+    library : numba's library, a Part or a Whole of :func:`_pipelines`.
+    module : LLVM's module, into which copies of their modules are linked.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -245,9 +249,10 @@ def _link(library, module):
 
 
 def _pipeline(library_class: type):
-    """Return numba's default compiler, which lowers into libraries of ``library_class``.
+    """Return numba's default compiler without needless passes, which lowers into libraries of ``library_class``.
 
-    Returns the subclass of numba's ``CompilerBase``.
+    library_class : subclass of numba's ``JITCodeLibrary``: Part or Whole of :func:`_pipelines`.
+    Returns a subclass of numba's ``CompilerBase``.
     """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass

@@ -1,8 +1,8 @@
 """The folder of every cache, and files in it that nobody else can have written.
 
-Its files are run (:mod:`cache`) or trusted (``motion/flow_store.py``), and a checksum that a file carries itself
-does not say who wrote it.  So a file is used only if it and every folder above it belong to this user or to the
-system, and nobody else may write to them.
+Its files are run (:mod:`cache`) or trusted (``motion/flow_store.py``), and a checksum that a file carries itself does
+not say who wrote it.  So a file is used only if it and every folder above it belong to this user or to the system, and
+nobody else may write to them.
 
 The folder is ``$VISCOROLL_CACHE_DIR``, else ``$XDG_CACHE_HOME/viscoroll``, else ``~/.cache/viscoroll``, else, of a user
 without a home directory, a folder of this user in ``$TMPDIR`` or ``/tmp``.
@@ -22,9 +22,9 @@ _SUPERUSERS = 0
 
 
 def cache_root() -> Path:
-    """Return the folder that holds every cache of the package.
+    """Return the folder that holds every cache of the package, by the environment as the module says.
 
-    Returns the path; the folder may not exist yet.
+    Returns its path; the folder may not exist yet.  A user without a home directory is warned once of the folder taken.
     """
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
@@ -38,8 +38,8 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def _without_home() -> Path:
-    """Return the cache folder of a user without a home directory, in the folder of temporary files, and warn of it
-    once.
+    """Return the path of the cache folder of a user without a home directory, viscoroll-UID in the folder of temporary
+    files, and warn of it once in a process.
     """
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
     folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
@@ -61,11 +61,11 @@ def read_private(path: Path) -> bytes:
 
 
 def write_private(path: Path, content: bytes) -> None:
-    """Write a file of the cache, whole or not at all, which others may only read.
+    """Write a file of the cache, whole or not at all, which others may only read; folders above it are made.
 
-    path : the file.
-    content : what is written.
-    Raises OSError.
+    path : the file; an existing one is replaced.
+    content : its bytes.
+    Raises OSError if it cannot be written, PermissionError if others may write to a folder above it.
     """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
@@ -89,8 +89,14 @@ def make_private_folder(folder: Path) -> None:
 def refuse_writable_by_others(path: Path) -> None:
     """Raise PermissionError if others may write to ``path``, or to a folder above it, as far as they exist.
 
-    Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile
-    of a user is theirs alone, nothing is tested.
+    Nor may one of them belong to another user than this one, the superuser or the owner of "/".  Where ``path`` is a
+    link, the folders above its target are tested too.
+
+    Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile of a
+    user is theirs alone, nothing is tested.
+
+    path : file or folder, which may not exist.
+    Returns None.  The error says how to change the rights or to choose another folder.
     """
     if not hasattr(os, "geteuid"):
         return
@@ -112,9 +118,10 @@ def refuse_writable_by_others(path: Path) -> None:
 
 
 def _is_private(group: int) -> bool:
-    """Return whether a group is the superuser's, or has the name of this user and no other member.
+    """Return whether nobody but this user can use the rights of a group: it is the superuser's, or has the name of this
+    user and no other member.
 
-    group : number of the group.
+    group : int, number of the group; False for one that has no entry.
     """
     import grp
     import pwd

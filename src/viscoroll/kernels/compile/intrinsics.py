@@ -1,9 +1,9 @@
 """Instructions of LLVM that kernels call like functions: a fused product and sum, bits of a double, calls by address.
 
-**Fused product and sum.**  LLVM could fuse products and sums by itself (``fastmath={"contract"}``).  Its choice
-depends on the functions that it sees, and so on whether they were compiled in the same process or came from the
-cache: the last bits of a result would follow the history of the cache.  So only polynomials, where most of the time
-is spent, call :func:`fma`.
+**Fused product and sum.**  LLVM could fuse products and sums by itself (``fastmath={"contract"}``).  Its choice depends
+on the functions that it sees, and so on whether they were compiled in the same process or came from the cache: the last
+bits of a result would follow the history of the cache.  So only polynomials, where most of the time is spent, call
+:func:`fma`.
 
 **Calls by address.**  A kernel that is called by its address is compiled once, by itself, and not again with each
 caller. Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
@@ -31,9 +31,11 @@ _FUNCTION = ir.FunctionType(ir.VoidType(), [_WORD, _WORD])
 def make_intrinsic(lower: Callable, returned, *kinds):
     """Return a function for kernels that is lowered to instructions of LLVM.
 
-    lower : (context, builder, signature, arguments) -> value of LLVM, as numba calls it.
-    returned : numba's type of the value.
-    kinds : numba's types of the arguments, None for any type.
+    lower : (context, builder, signature, arguments) -> value of LLVM; numba calls it with its context of code
+        generation, the builder of LLVM, its signature of the call and the values of LLVM of the arguments.
+    returned : numba's type of the value; or a function (types of the arguments) -> numba's signature. kinds : numba's
+    types of the arguments, None for any type, in their number and order.
+    Returns numba's intrinsic, which is called in kernels with these arguments.
     """
 
     def give_signature(context, *arguments):
@@ -92,20 +94,21 @@ _to_integers = make_intrinsic(_pointer, types.CPointer(types.int64), types.int64
 def record_type(integers: str, floats: str = "") -> np.dtype:
     """Return the dtype of a record of 64-bit integers, among them addresses, and of doubles behind them.
 
-    integers, floats : names of the fields, separated by blanks.
+    integers, floats : names of the fields of either kind, in their order, separated by blanks.
     """
     return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in floats.split()])
 
 
 @cache
 def function_address(function, record: np.dtype, returned=types.void, *first) -> int:
-    """Return the address of the machine code of a kernel, compiled for the given types.
+    """Return the address of the machine code of a kernel for calls from C or from other kernels, compiled for given
+    types.
 
-    function : the kernel, numba's dispatcher.
-    record : dtype of the record to which its last argument points.
-    returned : numba's type of its value.
-    first : numba's types of the other arguments; default one integer.
-    Returns the address as an int.
+    function : the kernel, numba's dispatcher, whose last argument is a pointer to a record.
+    record : dtype of that record.
+    returned : numba's type of its value; by default nothing. first : numba's types of the other arguments; by default
+    one 64-bit integer.
+    Returns the address as an int, valid in this process.
     """
     kinds = *(first or (types.int64,)), types.CPointer(numba.from_dtype(record))
     function.compile(returned(*kinds))
@@ -133,7 +136,9 @@ def record_at(pointer):
 
 @inline_kernel
 def septic(t, c):
-    """c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme, whose parts are independent of one another."""
+    """Return the polynomial c[0] + c[1] t + ... + c[7] t^7 of a number ``t`` with eight coefficients ``c``, by Estrin's
+    scheme, whose parts are independent of one another.
+    """
     t2 = t * t
     low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))
     high = fma(t2, fma(t, c[7], c[6]), fma(t, c[5], c[4]))

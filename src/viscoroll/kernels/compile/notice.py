@@ -9,9 +9,11 @@ announced = False
 
 
 def announce_compiling() -> None:
-    """Print a line that kernels are being compiled, at most once in a process.
+    """Print a line on standard error that kernels are being compiled, at most once in a process; nothing if it is
+    quiet.
 
-    Their number is not known at that time, so that the line names none.  Returns None.
+    It is quiet as :func:`is_quiet` says.  The number of kernels is not known at that time, so that the line names none.
+    Returns None.
     """
     global announced
     if announced or is_quiet():
@@ -26,14 +28,14 @@ def announce_compiling() -> None:
 
 
 def is_quiet() -> bool:
-    """Return whether nobody waits who could read the line."""
+    """Return whether nobody waits who could read the line: VISCOROLL_QUIET is 1, there is no standard error, or the
+    process is a worker.
+    """
     return os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker()
 
 
 def is_worker() -> bool:
-    """Return whether this process works for another one (multiprocessing or dask), which prints and warns in its
-    place.
-    """
+    """Return whether this process works for another one (multiprocessing or dask), which prints and warns instead."""
     if multiprocessing.parent_process() is not None:
         return True
     distributed = sys.modules.get("distributed")

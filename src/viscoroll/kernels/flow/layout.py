@@ -67,7 +67,7 @@ ASYMPTOTE_LOSS = 5 * TERMS
 
 class FlowTables(NamedTuple):
     """The tables of one scene: polynomials of 24 coefficients, or of 12 by 12 in the layer; :data:`SHAPES` has the
-        shapes.
+    shapes.
 
     The slow logarithm of V falls linearly in time along the slow manifold, at the rate T_mean/(1 + j).  It tends to ln
     V plus a constant as V -> 0 and is 0 at about kappa V = 1/4.  E = k0 (tau - tau_onset) is the stiff time since the
@@ -77,8 +77,8 @@ class FlowTables(NamedTuple):
 
     Attributes
     ----------
-    slide : two tables, V > 0 and V < 0 in full slip, over kappa |V|: (T = integral of dV/V' from rest,
-        delta_star |V|), X = integral of V dT.
+    slide : two tables, V > 0 and V < 0 in full slip, over kappa |V|: (T = integral of dV/V' from rest, delta_star
+        |V|), X = integral of V dT.
     after : two tables, T > 0 and T < 0, over kappa mu |T|: |V|.
     onset : two tables by the sign of V at onset, over kappa |I|/(1 + j), I = V - j omega - 2 mu T: (V, T), X at onset.
     slow : over the slow logarithm: (V, delta), remaining (distance, angle) to rest, remaining slip loss, on the

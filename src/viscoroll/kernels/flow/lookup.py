@@ -176,8 +176,7 @@ def _locate_on_manifold(slow_log):
 
 @inline_kernel
 def manifold_speeds(slow_log, table):
-    """Return (V, delta) on the slow manifold: speed > 0 and creepage; ``slow_log``: slow logarithm; ``table``: of Flow.
-    """
+    """Return (V, delta) on the slow manifold: speed > 0, creepage; ``slow_log``: slow logarithm; ``table``: of Flow."""
     at, t, share = _locate_on_manifold(slow_log)
     V, delta = evaluate_pair(table, at, t)[:2]
     return share * V, share * delta

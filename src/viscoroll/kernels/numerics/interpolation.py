@@ -45,15 +45,15 @@ def in_40_digits(function: Callable) -> Callable:
 
 
 class Interpolation:
-    """Matrices that take values at nodes to what the polynomial through them is.
+    """Matrices from values at nodes to coefficients, values, slopes and integrals of the polynomial through them.
 
     Parameters
     ----------
-    nodes : distinct numbers, dimensionless, (n,).
+    nodes : n distinct numbers, Decimals.
 
     Attributes
     ----------
-    exact : the nodes as Decimals, (n,).
+    exact : the nodes as Decimals, a tuple of n.
     nodes : the nodes as doubles, (n,).
     """
 
@@ -73,22 +73,30 @@ class Interpolation:
         self._basis = np.array(lagrange).T
 
     def powers(self) -> _Floats:
-        """Return the matrix to the coefficients of the powers of x, the constant first, [power, node]."""
+        """Return the matrix from values at the nodes to the coefficients of the powers of x, the constant first:
+        doubles, (n, n), [power, node].
+        """
         return to_doubles(self._basis)
 
     @in_40_digits
     def values(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix to the values at ``points``, [point, node]."""
+        """Return the matrix from values at the nodes to those at ``points``, m Decimals: doubles, (m, n), [point,
+        node].
+        """
         return _values(self._basis, points)
 
     @in_40_digits
     def slopes(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix to the slopes at ``points``, [point, node]."""
+        """Return the matrix from values at the nodes to slopes at ``points``, m Decimals: doubles, (m, n), [point,
+        node].
+        """
         return _values(polyder(self._basis), points)
 
     @in_40_digits
     def integrals(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix to the integrals from -1 to each of ``points``, [point, node]."""
+        """Return the matrix from values at the nodes to the integrals from -1 to each of ``points``, m Decimals:
+        doubles, (m, n), [point, node].
+        """
         return _values(polyint(self._basis, lbnd=-1), points)
 
     @in_40_digits
@@ -99,14 +107,20 @@ class Interpolation:
 
 @in_40_digits
 def radau(n: int, side: int) -> list[Decimal]:
-    """Return the n nodes of Radau's rule on [-1, 1], upward: the end ``side`` (-1 or 1), and n - 1 nodes inside."""
+    """Return the n nodes of Radau's rule on [-1, 1] as Decimals, ascending: one end, and n - 1 nodes inside.
+
+    n : number of nodes, the end included, > 1.
+    side : the end that is a node, -1 or 1.
+    """
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
     return sorted([Decimal(side), *(-side * x for x in inner)])
 
 
 @in_40_digits
 def gauss(n: int) -> tuple[_Floats, _Floats]:
-    """Return (nodes, weights) of the n-point rule of Gauss and Legendre on [0, 1], each (n,)."""
+    """Return (nodes, weights) of the Gauss-Legendre rule of ``n`` points on [0, 1], doubles, each (n,); the weights add
+    up to 1.
+    """
     legendre = leg2poly(_unit_series(n, 1))
     nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))
     weights = 1 / ((1 - nodes * nodes) * polyval(nodes, polyder(legendre)) ** 2)
@@ -115,15 +129,15 @@ def gauss(n: int) -> tuple[_Floats, _Floats]:
 
 @in_40_digits
 def chebyshev(n: int) -> list[Decimal]:
-    """Return the n zeros of Chebyshev's T_n on [-1, 1], upward."""
+    """Return the ``n`` zeros of the Chebyshev polynomial T_n on [-1, 1], ascending, as Decimals."""
     return _zeros(cheb2poly(_unit_series(n, 1)), [(k - 0.5) / n for k in range(1, n + 1)])
 
 
 @in_40_digits
 def to_chebyshev(n: int) -> _Floats:
-    """Return the matrix from values at the zeros of T_n to the coefficients of T_0 ... T_(n-1).
+    """Return the matrix from values at the zeros of T_n, ascending, to the coefficients of T_0 ... T_(n-1).
 
-    n : number of nodes.
+    n : number of nodes and terms, > 1.
     Returns doubles, (n, n), [term, node].
     """
     x = np.array(chebyshev(n))
@@ -157,18 +171,19 @@ def to_doubles(values) -> _Floats:
 def _unit_series(degree: int, *last: int) -> list[Decimal]:
     """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with ``degree`` zeros.
 
-    degree : how many polynomials are left out.
+    degree : how many polynomials, from that of degree 0 on, have the coefficient 0.
     last : coefficients of the next ones.
+    Returns ``degree`` + len(last) Decimals, ascending.
     """
     return [Decimal(c) for c in (*[0] * degree, *last)]
 
 
 def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
-    """Return zeros of a polynomial, upward, by Newton's iteration.
+    """Return zeros of a polynomial, in ascending order, by five steps of Newton's iteration with 60 digits.
 
     polynomial : coefficients of the powers of x, the constant first, Decimals.
-    half_turns : for each zero an angle whose cosine is near it, divided by pi.
-    Returns the zeros as Decimals, in ascending order.
+    half_turns : for each zero an angle whose cosine is near it, to two digits, divided by pi.
+    Returns one Decimal for each angle, rounded to 36 digits behind the point.
     """
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)

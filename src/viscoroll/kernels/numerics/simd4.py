@@ -40,9 +40,7 @@ class _FourModel(models.PrimitiveModel):
 
 
 def shuffle(builder, a, b, order):
-    """Return instructions that take four of the eight numbers of vectors ``a`` and ``b``: those numbered in
-    ``order``.
-    """
+    """Return instructions that take four of the eight numbers of vectors ``a`` and ``b``: those that ``order`` numbers."""
     return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
 
 
@@ -62,11 +60,11 @@ def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
     """Return pointers to ``count`` vectors that follow each other in an array.
 
     context, builder : numba's context of code generation, and builder of LLVM.
-    kind : numba's type of ``array``, an array or a pointer to doubles.
-    start : index of the first number of the first vector.
+    kind : numba's type of ``array``: a contiguous array of doubles, or a pointer to doubles.
     array : the array or pointer, a value of LLVM.
-    count : number of vectors.
-    vector : LLVM's type of the vectors.
+    start : index of the first number of the first vector, a value of LLVM.
+    count : number of vectors, an int.
+    vector : LLVM's type of the vectors; four doubles by default.
     Returns a list of ``count`` pointers to vectors, values of LLVM.
     """
     data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
@@ -75,20 +73,22 @@ def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
 
 
 def load_vectors(context, builder, signature, arguments, count):
-    """Return instructions that load ``count`` vectors.
+    """Return a list of ``count`` instructions that load vectors which follow each other in an array.
 
-    context, builder, signature, arguments : of numba's lowering of a function (array, start, ...).
+    context, builder, signature, arguments : of numba's lowering of a function (array, start, ...): context of code
+        generation, builder of LLVM, signature and values of LLVM of the call.
+    count : number of vectors, an int.
     """
     pointers = vector_pointers(context, builder, signature.args[0], *arguments[:2], count)
     return [builder.load(pointer, align=8) for pointer in pointers]
 
 
 def _define_operator(function, name):
-    """Register with numba an operator of Python for two vectors, and for a number and a vector.
+    """Register with numba an operator of Python for two vectors, and for a number and a vector in either order.
 
-    function : the operator, a function of the module ``operator``.
-    name : method of LLVM's builder that makes its instruction.
-    Returns None.
+    function : the operator, a function (a, b) of the module ``operator``.
+    name : method of LLVM's builder that makes its instruction: "fadd", "fsub", "fmul" or "fdiv".
+    Returns None; kernels may use the operator from then on.
     """
 
     def give_type(context):

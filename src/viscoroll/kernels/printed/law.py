@@ -1,14 +1,12 @@
 """The contact law as the paper prints it: Eqs. (6), (8)-(10), (15), (16) and two Brent-Dekker roots.
 
-Independent of :mod:`..rows` in the Bessel ratios, in the algebra and in the root finder: the
-baseline that the explicit law is timed against and checked against.  The one liberty taken
-is that Eqs. (6) and (10) are divided by I0 K1, so that only r = I1/I0 and k = K0/K1 occur
-and nothing overflows.
+Independent of :mod:`..rows` in the Bessel ratios, in the algebra and in the root finder: the baseline that the explicit
+law is timed against and checked against.  The one liberty taken is that Eqs. (6) and (10) are divided by I0 K1, so that
+only r = I1/I0 and k = K0/K1 occur and nothing overflows.
 
-The printed forms lose digits in corners where the explicit ones do not.  Differences from
-:mod:`..rows`, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
-[1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu,
-M 2e-13/kappa; the docstrings say where relative digits go.
+The printed forms lose digits in corners where the explicit ones do not.  Differences from :mod:`..rows`, measured over
+alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star
+4e-16 relative, beta 3e-15, Q 1.1e-13 mu, M 2e-13/kappa; the docstrings say where relative digits go.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -36,10 +34,10 @@ _EPS = 2.0**-52
 def _residual(equation, x, data):
     """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it; its root is sought.
 
-    equation : _EQ_6 or _EQ_10; numba cannot cache a caller that passes a function.
+    equation : 6 (_EQ_6) or 10 (_EQ_10); numba cannot cache a caller that passes a function.
     x : lam in Eq. (6), beta in Eq. (10).
-    data : four numbers: in Eq. (6) kappa V, alpha and two that are not used; in Eq. (10) 1 + epsilon,
-        2 delta kappa/(mu lam), zeta and alpha.
+    data : four numbers: in Eq. (6) kappa V, alpha and two that are not used; in Eq. (10) 1 + epsilon, 2 |delta|
+        kappa/(mu lam), zeta and alpha.
     """
     if equation == _EQ_6:
         kappa_V, alpha, _, _ = data
@@ -60,11 +58,11 @@ def brent(equation, data, low, high, floor):
     equation, data : arguments of :func:`_residual`.
     low, high : ends of the bracket.
     floor : absolute tolerance; the root is found to floor + 4e-16 |x|.
-    Returns (root, status OK or NOT_CONVERGED).
+    Returns (root, status): OK (0); or NOT_CONVERGED (1), after 60 steps with the best value so far, or with NaN where
+    the residual is NaN at an end.
 
-    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].
-    The residual falls from >= 0 at low to <= 0 at high.  An end where rounding spoils that
-    sign is itself the root, to rounding.
+    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4]. The residual falls from >= 0 at low to <=
+    0 at high.  An end where rounding spoils that sign is itself the root, to rounding.
     """
     a = low
     fa = _residual(equation, low, data)
@@ -127,10 +125,9 @@ def direct_contact_length(kappa_V, alpha):
     alpha : T_epsilon/T_sigma, >= 1.
     Returns (lam, zeta, epsilon, status OK or NOT_CONVERGED), the first three dimensionless.
 
-    At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is
-    -2 c r/zeta <= 0: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative
-    digits where epsilon -> kappa V c is small (4e-9 at kappa V = 1e-8, alpha = 11), but
-    1 + epsilon, which is what Eqs. (9) and (10) need, none.
+    At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is -2 c r/zeta <= 0: the two always
+    enclose the root.  lam^-2 - 1 costs epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V
+    = 1e-8, alpha = 11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
     """
     lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 1.0, 0.0)
     zeta = lam / (2.0 * kappa_V)
@@ -140,7 +137,9 @@ def direct_contact_length(kappa_V, alpha):
 
 @kernel
 def direct_delta_star(kappa, mu, lam, epsilon):
-    """Return delta_star by Eq. (9), the creepage at which stick ends; arguments in the symbols of the paper."""
+    """Return the critical creepage delta_star by Eq. (9), at which full slip begins; ``kappa``, ``mu``: slenderness and
+    coefficient of friction; ``lam``, ``epsilon``: length and shift of the contact, Eqs. (6), (8).
+    """
     return mu * lam * (1.0 + epsilon) / (2.0 * kappa)
 
 
@@ -155,8 +154,8 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
     alpha : T_epsilon/T_sigma.
     Returns (beta, status OK or NOT_CONVERGED).
 
-    At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is
-    -2 delta kappa/(mu lam) (1 + p) <= 0 by Eq. (8).
+    At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is -2 delta kappa/(mu lam) (1 +
+    p) <= 0 by Eq. (8).
     """
     creep = 2.0 * delta_abs * kappa / (mu * lam)
     # 1 + epsilon - beta - creep leaves beta no better than that: asking for more would chase rounding
@@ -167,14 +166,14 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
     """Return the traction |Q| by Eq. (15), divided by the load.
 
-    beta : length of the stick zone divided by that of the contact.
-    delta_abs : |delta|.
+    beta : length of the stick zone divided by that of the contact, >= 0.
+    delta_abs : |delta|, below delta_star.
     kappa, mu : slenderness R/l0 and coefficient of friction.
     lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
 
-    1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at
-    s = 1e-6 (1e-8 for kappa V = 1e3, where K1/K0 magnifies the rounding of the bracket).
-    That magnification grows in proportion to V: 1e-13 mu at kappa V = 1e4, 2e-9 mu at 1e8.
+    1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = 1e-6 (1e-8 for kappa V =
+    1e3, where K1/K0 magnifies the rounding of the bracket). That magnification grows in proportion to V: 1e-13 mu at
+    kappa V = 1e4, 2e-9 mu at 1e8.
     """
     k = ratio_k0k1(beta * zeta)
     if k == 0.0:
@@ -191,8 +190,8 @@ def direct_moment(kappa, lam, epsilon, zeta, alpha):
     lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
     alpha : T_epsilon/T_sigma.
 
-    lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by
-    9e-14 relative at kappa V = 1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and
-    for alpha = 1 + 1e-6 by 9e-5 somewhere below kappa V = 1e3.
+    lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by 9e-14 relative at kappa V =
+    1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and for alpha = 1 + 1e-6 by 9e-5 somewhere below kappa V =
+    1e3.
     """
     return lam / kappa * (0.5 * epsilon * (1.0 - lam * lam) + 0.5 / zeta * (lam * lam - 1.0 / alpha))

@@ -14,11 +14,13 @@ from .law import OK, direct_contact_length, direct_delta_star, direct_moment, di
 def direct_state(alpha, n, request):
     """Evaluate what is requested of one state; V = 0 is the limit of Sect. 3.4.
 
-    alpha : T_epsilon/T_sigma of the material.
-    n : index of the state.
-    request : :class:`Request` of states and quantities, with the output array, written.
+    alpha : T_epsilon/T_sigma of the material, >= 1.
+    n : int, index of the state.
+    request : :class:`..rows.contact_states.Request`: states, and for each quantity its row of ``out``, -1 if it is not
+        requested; lam, zeta (inf at V = 0), epsilon, delta_star, delta, full_slip (1 or 0), beta, Q and M are written,
+        other quantities are not.
 
-    Returns the status: OK or NOT_CONVERGED.
+    Returns the status: OK (0), or NOT_CONVERGED (1) if lam or beta was not found.
     """
     to = request.to
     state = read_state(request.states, n)
@@ -58,13 +60,14 @@ def direct_state(alpha, n, request):
 
 @kernel
 def direct_loop(alpha, request, count):
-    """Evaluate what is requested of ``count`` states.
+    """Evaluate what is requested of ``count`` states by the equations as printed.
 
-    alpha : T_epsilon/T_sigma, (1,), or (count,) with one for each state.
-    request : :class:`Request` of states and quantities, with the output array, written.
+    alpha : T_epsilon/T_sigma, >= 1, (1,), or (count,) with one for each state.
+    request : :class:`..rows.contact_states.Request`, as of :func:`direct_state`; column n + first of ``out`` is written
+        for state n.
     count : int, number of states.
 
-    Returns the status: OK, or NOT_CONVERGED if one state was not solved.
+    Returns the status: OK (0), or NOT_CONVERGED (1) if one state was not solved.
     """
     worst = OK
     for n in range(count):

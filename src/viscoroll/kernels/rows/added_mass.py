@@ -1,4 +1,8 @@
-"""N of M = M(V) + N V', and the added mass gamma N of a law that has it; 0 of a law of steady rolling.
+"""Added mass: N of M = M(V) + N V', the rolling moment while the speed changes slowly, and the factor gamma N.
+
+Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P T_epsilon^2.  A law of steady
+rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of u = kappa |V|
+(``Law.N_rows``: for each row N and its integral over u, a pair; behind the rows the constants of the integral).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -18,13 +22,14 @@ _HEAVY = -4.0
 
 @inline_kernel
 def _evaluate_N(u, law):
-    """Return N, its integral and its slope at u, with the row in which they were evaluated.
+    """Return N of M = M(V) + N V' at u, its integral and its slope, with the row in which they were evaluated.
 
-    u : kappa |V|, dimensionless.
+    u : kappa |V|, >= 0.
     law : :class:`Law` of the material, with polynomials of N.
 
-    Returns (row, N, integral, slope): number of the row, or the number of rows where u lies behind the last one; N;
-    its integral with respect to u from the place where the argument t of that row is 0; its slope with respect to u.
+    Returns (row, N, integral, slope): index of the row from 0, or the number of rows where u lies behind the last one
+    and N has its fast limit; N in units of P T_epsilon^2; its integral over u from the place where the argument t of
+    that row is 0 (behind the last row: from infinity); its slope dN/du.
     """
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
@@ -40,13 +45,13 @@ def _evaluate_N(u, law):
 def _evaluate_added_mass(law, V, kappa, gamma):
     """Return the factor gamma N of the added mass, with its slope and its integral, for a law that has N.
 
-    The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
+    The integral begins at V = 0 or, where V = 0 is out of reach (gamma N < -4 there), at infinity.
 
     law : :class:`Law` of the material, with polynomials of N.
-    V : speed of the axis.
+    V : speed of the axis, of either sign; N is even in V.
     kappa : slenderness R/l0.
-    gamma : mass parameter, Eq. (4), dimensionless.
-    Returns (gamma N, its slope with respect to V, its integral with respect to V), dimensionless.
+    gamma : P T_epsilon^2/(m R), Eq. (4).
+    Returns (gamma N, its slope over V, its integral over V), dimensionless.
     """
     count = law.marks[ROW_COUNT]
     row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
@@ -60,22 +65,23 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 
 @inline_kernel
 def added_mass(law, V, kappa, gamma):
-    """Return the factor gamma N of the added mass, with its slope and its integral.
+    """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law of steady rolling.
 
-    The integral begins at V = 0 or, where V = 0 is out of reach, at infinity.
+    The integral begins at V = 0 or, where V = 0 is out of reach (gamma N < -4 there), at infinity.
 
-    law : :class:`Law` of the material: polynomials of each octave.
-    V : speed.
+    law : :class:`Law` of the material: polynomials of each octave; N_rows is empty for steady rolling.
+    V : speed of the axis, of either sign; N is even in V.
     kappa : slenderness R/l0.
-    gamma : mass parameter, Eq. (4), dimensionless.
-    Returns (gamma N, its slope with respect to V, its integral with respect to V), dimensionless; zeros for a law of
-    steady rolling.
+    gamma : P T_epsilon^2/(m R), Eq. (4).
+    Returns (gamma N, its slope over V, its integral over V), dimensionless.
     """
     return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
 
 
 @kernel
 def unsteady_loop(law, kappa, V, out):
-    """Write N of states into ``out``; ``kappa`` and ``V`` have one value or one for each state; ``law`` has N."""
+    """Write N of n states, in units of P T_epsilon^2, into ``out``, (n,); ``kappa`` and ``V``, of either sign, have
+    length 1 or n; ``law`` is a :class:`Law` that has N.
+    """
     for n in range(out.size):
         _, out[n], _, _ = _evaluate_N(element(kappa, n) * abs(element(V, n)), law)

@@ -85,11 +85,14 @@ _BLOCK = ir.VectorType(ir.DoubleType(), BLOCK_SIZE)
 def _make_sum(lengths):
     """Return a kernel that writes one part of a row, or two: in each block the sum of cubic polynomials times T_4g(s).
 
-    lengths : number of groups of each block; loops of a length that varies cost more than they save.
+    lengths : tuple of ints, the number of groups g of each block, 1 to 4; loops of a length that varies cost more than
+        they save.
 
-    The kernel takes (axis, first, s, c, rows, to).  axis, first : vector of coefficients, and where those of the part
-    begin; of each block the group of the highest degree first.  s : s, T_4(s), T_8(s) and T_12(s).  c : factor of the
-    second function of a pair; 1 of a single function.  rows, to : vector that is written, and where.
+    Returns the kernel, an intrinsic of numba, which takes (axis, first, s, c, rows, to) and returns nothing.  axis,
+    first : vector of coefficients, and index in it where those of the part begin; of each block the group of the
+    highest degree first.  s : the four numbers s, T_4(s), T_8(s) and T_12(s).  c : factor of the second function of a
+    pair; 1 of a single function.  rows, to : vector that is written, and index of the first number written, BLOCK_SIZE
+    for each block.
     """
 
     def lower(context, builder, signature, arguments):
@@ -130,11 +133,12 @@ def select_alpha(n, source):
     """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
     parts.
 
-    n : index of the state.
-    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+    n : int, index of the state.
+    source : pointer to a SOURCE record, with the addresses of alpha (of length 1 or one for each state), rows and
+        marks; heads of rows and marks are written.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
-    selected already.
+    selected already.  Returns nothing.
     """
     source = record_at(source)
     alpha = element(floats_at(source.alpha, source.state_count), n)
@@ -165,8 +169,9 @@ def select_alpha(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
 
-    number : index of the part in the marks.
-    source : pointer to a SOURCE record, with the addresses of alpha, rows and marks.
+    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
+    source : pointer to a SOURCE record, with the addresses of rows and marks; the 24 coefficients of a function, or 48
+        of a pair, are written, and the mark of the part.
 
     The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.
     """

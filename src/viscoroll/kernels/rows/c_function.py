@@ -34,7 +34,9 @@ SCENE = record_type("function slopes unlike rows marks row_count cover_rows", "k
 
 @inline_kernel
 def refuse(out):
-    """Fill the results ``out`` with NaN, and return the status of a state at which the law is not defined."""
+    """Fill ``out``, the RESULTS numbers of a C function, with NaN, and return 1, the status of a state at which the law
+    is not defined.
+    """
     for n in range(RESULTS):
         out[n] = np.nan
     return 1
@@ -42,13 +44,17 @@ def refuse(out):
 
 @kernel(allocates=True)
 def _half_space_law(V, omega, out, scenes):
-    """The C function of half-spaces; ``out`` and ``scenes`` are pointers."""
+    """The C function of half-spaces: :func:`_evaluate` without cover; ``out`` and ``scenes`` are pointers to RESULTS
+    numbers and to a SCENE.  Returns the status.
+    """
     return _evaluate(V, omega, out, record_at(scenes), None)
 
 
 @kernel(allocates=True)
 def _cover_law(V, omega, out, scenes):
-    """The C function of covers; ``out`` and ``scenes`` are pointers."""
+    """The C function of covers: :func:`_evaluate` with the cover's numbers; ``out`` and ``scenes`` are pointers to
+    RESULTS numbers and to a SCENE.  Returns the status.
+    """
     scene = record_at(scenes)
     cover_rows = floats_at(scene.cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * (scene.row_count - 1))
     return _evaluate(V, omega, out, scene, cover_rows)
@@ -58,12 +64,13 @@ def _cover_law(V, omega, out, scenes):
 def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     """Evaluate the law at one state and write the results in the units of the caller.
 
-    caller_V, caller_omega : speed and angular velocity in the units of the caller.
-    pointer : address of the results, written.
+    caller_V, caller_omega : speed and angular velocity in the units of the caller, of any sign.
+    pointer : address of RESULTS = 8 numbers, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV
+        at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, else numbers without meaning.
     scene : a SCENE record: rows of the law, kappa, mu and the units of the caller.
-    cover_rows : numbers that only a cover has, as in :class:`Law`.
+    cover_rows : numbers that only a cover has, as in :class:`Law`; None of half-spaces.
 
-    Returns 0, or another number if V or omega cannot be evaluated.
+    Returns the status: 0; or 1, and all results are NaN, if V or omega is not finite or kappa |V| exceeds MAX_U.
     """
     out = carray(pointer, RESULTS)
     rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)
@@ -101,13 +108,13 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
 
 
 def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> NDArray[Any]:
-    """Return two SCENE records for the C function of a law: without slopes, and with.
+    """Return the user data for the C function of a law: two SCENE records, without slopes and with slopes.
 
-    law : :class:`Law` of one material; its arrays must outlive the records.
-    unlike : whether the two bodies differ.
+    law : :class:`Law` of one material; its arrays must outlive the records, which hold their addresses.
+    unlike : whether the two bodies differ, so that they take unequal parts of M.
     kappa, mu : slenderness R/l0 and coefficient of friction.
-    scale : for V, omega, Q and M the unit of this dimensionless quantity in the units of the caller.
-    Returns an array of two records.
+    scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the caller.
+    Returns an array of shape (2,) and dtype SCENE.
     """
     cover_rows = law.cover_rows
     function, address = (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)
@@ -117,6 +124,8 @@ def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[
 
 
 def c_function_address(function, record: np.dtype) -> int:
-    """Return the address of a kernel (V, omega, pointer to results, pointer to a ``record``) -> status."""
+    """Return the address, an int, of the machine code of a kernel (V, omega, pointer to results, pointer to a record)
+    -> status; ``function``: the kernel; ``record``: dtype of the record.
+    """
     arguments = types.float64, types.float64, types.CPointer(types.float64)
     return function_address(function, record, types.int32, *arguments)

@@ -6,6 +6,18 @@ at small creepage.  There their difference is exact with the mean slope S of H/F
     |Q|/mu = D [(2 L - D) (H/F^2)(v2) - v2 L S]
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+
+Terms of this file:
+
+- Law: polynomials of the functions of one material, a row for each octave of u or v (:mod:`.record`).
+- RowPosition: where u or v lies in them: number of the row, argument t of its polynomials, slope dt/dx.
+- u = kappa |V|: dimensionless speed.  L = 2 kappa delta_star/mu: critical creepage, a function of u.
+- D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for half-spaces; D < L in
+  partial slip, and infinite stands for full slip.
+- v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are functions of the material
+  (:mod:`.rows`), of which only H/F^2 and eta/F occur, as functions of v.
+- State: kappa, mu, V, and ``creep``, which is delta, or omega where ``creep_is_omega``.
+- Request: states, and the quantities of them that are written into rows of ``out``.
 """
 
 import numpy as np
@@ -64,9 +76,9 @@ _DT_DX = np.uint64(2 * TOGETHER)
 def stick_argument(u, L, D):
     """Return v = 2 u/(L - D), the argument of the functions of the stick zone; of no meaning in full slip.
 
-    u : kappa |V|, dimensionless speed.
+    u : kappa |V|.
     L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta|/mu; infinite in full slip.
+    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
     """
     return 2.0 * u / (L - D)
 
@@ -75,10 +87,11 @@ def stick_argument(u, L, D):
 def traction_over_mu(position, v, u, L, D, law):
     """Return |Q|/mu, the fraction of the friction that is used, in [0, 1].
 
-    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
-    u : kappa |V|, dimensionless speed.
+    position : RowPosition of v.
+    v : argument of the stick zone, of :func:`stick_argument`.
+    u : kappa |V|.
     L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta|/mu; infinite in full slip.
+    D : 2 kappa |delta - delta_0|/mu; infinite in full slip, where the result is 1.
     law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
@@ -100,7 +113,7 @@ def _cancels(traction, D, L):
     Beyond D = L/2 the two arguments v1 and v2 may be more than one row apart, and the difference stays.
 
     traction : |Q|/mu as that difference.
-    D : 2 kappa |delta|/mu.
+    D : 2 kappa |delta - delta_0|/mu.
     L : 2 kappa delta_star/mu.
     """
     return traction < 0.1 and D < 0.5 * L
@@ -108,11 +121,12 @@ def _cancels(traction, D, L):
 
 @inline_kernel
 def friction_reserve(position, v, L, D, law):
-    """Return the friction reserve 1 - |Q|/mu, in [0, 1], with all its digits where it is small.
+    """Return the friction reserve 1 - |Q|/mu, in [0, 1], with all its digits where it is small; 0 in full slip.
 
-    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
+    position : RowPosition of v.
+    v : argument of the stick zone, of :func:`stick_argument`.
     L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta|/mu; infinite in full slip.
+    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
@@ -121,12 +135,13 @@ def friction_reserve(position, v, L, D, law):
 
 @inline_kernel
 def stick_fraction(position, v, lam, L, D, law):
-    """Return beta, the length of the stick zone divided by the contact length, in [0, 1].
+    """Return beta, the length of the stick zone divided by the contact length, in [0, 1]: 0 in full slip, 1 at D = 0.
 
-    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
+    position : RowPosition of v.
+    v : argument of the stick zone, of :func:`stick_argument`.
     lam : length of the contact divided by l0.
     L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta|/mu; infinite in full slip.
+    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
     """
     w = L - D
@@ -137,13 +152,13 @@ def stick_fraction(position, v, lam, L, D, law):
 
 @inline_kernel
 def traction_slopes(u, L, dL, D, law):
-    """Return the slopes of |Q|/mu in partial slip with respect to u at fixed delta, and to D.
+    """Return the slopes of |Q|/mu in partial slip: over u at fixed D, and over D at fixed u.
 
-    u : kappa |V|, dimensionless speed.
-    L, dL : 2 kappa delta_star/mu and its slope with respect to u.
-    D : 2 kappa |delta|/mu; infinite in full slip.
+    u : kappa |V|.
+    L, dL : 2 kappa delta_star/mu and its slope dL/du.
+    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns (slope in u, slope in D), dimensionless; (0, 0) in full slip.
+    Returns (slope over u, slope over D), dimensionless; (0, 0) in full slip.
     """
     w = L - D
     if not w > 0.0:
@@ -168,12 +183,12 @@ def traction_slopes(u, L, dL, D, law):
 
 @inline_kernel
 def signed_creep(L, free_creep, state, law):
-    """Return 2 kappa |delta - delta_0|/mu with the sign of the traction; infinite in full slip.
+    """Return D = 2 kappa |delta - delta_0|/mu with the sign of the traction; infinite, with that sign, in full slip.
 
     L : 2 kappa delta_star/mu.
-    free_creep : 2 kappa delta_0, from the creepage of free rolling.
+    free_creep : 2 kappa delta_0, with delta_0 the creepage of free rolling; 0 for half-spaces.
     state : :class:`State`: V, kappa, mu, and delta or omega.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, which tells whether it is of a cover.
     """
     slip, delta = slip_and_creepage(state)
     slip, delta = sliding_creep(slip, delta, free_creep, state, law.cover_rows)
@@ -183,12 +198,13 @@ def signed_creep(L, free_creep, state, law):
 
 @inline_kernel
 def signed_traction(position, v, u, L, D, mu, law):
-    """Return the traction Q, Eq. (15), divided by the load, with the sign of delta - delta_0.
+    """Return the traction Q, Eq. (15), divided by the load P, in [-mu, mu], with the sign of D.
 
-    position, v : :func:`stick_argument`, and its :class:`RowPosition`.
+    position : RowPosition of v.
+    v : argument of the stick zone, of :func:`stick_argument`.
     u : kappa |V|.
     L : 2 kappa delta_star/mu.
-    D : :func:`signed_creep`.
+    D : 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`; infinite in full slip.
     mu : coefficient of friction.
     law : :class:`Law` of the material: polynomials of each octave.
     """
@@ -197,14 +213,15 @@ def signed_traction(position, v, u, L, D, mu, law):
 
 @inline_kernel
 def Q_slopes(u, L, dL, D, state, law):
-    """Return the slopes of the traction Q.
+    """Return the slopes of the traction Q, divided by the load P.
 
     u : kappa |V|.
-    L, dL : 2 kappa delta_star/mu and its slope with respect to u.
-    D : :func:`signed_creep`.
+    L, dL : 2 kappa delta_star/mu and its slope dL/du.
+    D : 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`; infinite in full slip.
     state : :class:`State`: V, kappa, mu, and delta or omega.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns (dQ/dV, dQ/ddelta, dQ/domega), dimensionless; the first at fixed delta or omega, whichever ``state`` has.
+    Returns (dQ/dV, dQ/ddelta, dQ/domega), dimensionless; the first at fixed delta or omega, whichever ``state`` has,
+    the others at fixed V; zeros in full slip.
     """
     if abs(D) == np.inf:
         return 0.0, 0.0, 0.0
@@ -234,12 +251,13 @@ def _state(c, scratch, request):
 
 @inline_kernel
 def _write_positions(arguments, positions, begin, end, laws, scratch):
-    """Write the positions in the rows of the arguments of some states.
+    """Write the positions in the rows of the law of the arguments u or v of some states.
 
-    arguments : place of the arguments in ``scratch``.
-    positions : place of the positions in ``scratch``.
-    begin, end : first column, and the one behind the last.
-    laws, scratch : of :func:`contact_loop`.
+    arguments : index in ``scratch`` of the arguments, _U or _STICK.
+    positions : index in ``scratch`` of the positions, _POSITION or _STICK_POSITION: rows, then t, then dt/dx.
+    begin, end : int, first column (state of a block), and the one behind the last.
+    laws : tuple of :class:`Law`; state k of a block belongs to law k modulo their number.
+    scratch : (SCRATCH_SIZE,), of :func:`contact_loop`, written.
     """
     for k in range(begin, end):
         c = np.uint64(k)
@@ -257,12 +275,12 @@ def _position(place, c, scratch):
 
 @inline_kernel
 def _write_other_fields(n, c, law, scratch, request):
-    """Write the requested quantities of a state except Q and M.
+    """Write the requested quantities of a state except Q and M into ``request.out``.
 
-    n : index of the state.
-    c : its column in ``scratch``.
-    law : :class:`Law` of the material: polynomials of each octave.
-    scratch : of :func:`contact_loop`, after all its stages.
+    n : int, index of the state.
+    c : its column in ``scratch``, 0 to TOGETHER - 1, unsigned.
+    law : :class:`Law` of the material of the state.
+    scratch : (SCRATCH_SIZE,), of :func:`contact_loop`, after all its stages.
     request : :class:`Request` of states and quantities, with the output array, written.
     """
     to = request.to
@@ -304,11 +322,13 @@ def _write_other_fields(n, c, law, scratch, request):
 
 @kernel
 def contact_loop(laws, request, scratch, count):
-    """Evaluate the law at ``count`` states and write what is requested.
+    """Evaluate the law at ``count`` states and write what is requested, in the units of docs/symbols.md for a scene.
 
     laws : tuple of :class:`Law`: one of all states; or of states that have a law of their own, as many records as are
         evaluated together, each with one material selected at a time.
-    request : :class:`Request` of states and quantities, with the output array, written.
+    request : :class:`Request`: ``states`` (one number for all or for each), ``order`` of evaluation, ``to`` (for each
+        quantity its row of ``out``, -1 if not requested), ``out``, (quantities, states), written from column ``first``
+        on.
     scratch : (SCRATCH_SIZE,), written.
     count : int, number of states.
 

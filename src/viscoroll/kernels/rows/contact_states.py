@@ -40,9 +40,11 @@ class State(NamedTuple):
 class Request(NamedTuple):
     """States, and the quantities of them that are requested.
 
-    states : a :class:`State` of arrays.
-    order : numbers of the states in the order of evaluation; empty: in their own order.
-    to : :class:`Fields`.  out : (quantities, states), written.  first : column of ``out`` for state 0.
+    states : a :class:`State` of arrays, each of length 1 or with one number for each state.
+    order : numbers of the states in the order of evaluation, int; empty: in their own order.
+    to : :class:`Fields`, for each quantity its row of ``out``, -1 if it is not requested.
+    out : (requested quantities, states), dimensionless, written.
+    first : int, column of ``out`` for state 0.
     """
 
     states: Any
@@ -71,9 +73,9 @@ def read_state(states, n):
 def write_field(row, value, n, request):
     """Write a quantity of a state, if it is requested.
 
-    row : index of the row of the output, a field of the :class:`Fields` of ``request``; below 0 if it is not requested.
+    row : int, row of the output: a field of the :class:`Fields` of ``request``; below 0 nothing is written.
     value : the quantity, dimensionless.
-    n : index of the state.
+    n : int, index of the state.
     request : :class:`Request` of states and quantities, with the output array.
     """
     if row >= 0:
@@ -84,9 +86,10 @@ def write_field(row, value, n, request):
 def slip_and_creepage(state):
     """Return slip and creepage of a state, whichever of creepage and omega it has.
 
-    state : :class:`State`: V, kappa, mu, and delta or omega.
-    Returns (slip, delta): a number with the sign of omega - V; the creepage (omega - V)/V, where V = 0 counts as V ->
-    0+.
+    state : :class:`State`, of numbers: V, kappa, mu, and delta or omega.
+    Returns (slip, delta): a number with the sign of omega - V, which is that difference only where omega is given; the
+    creepage (omega - V)/V.  V = 0 counts as V -> 0+: where omega is given, delta is 0 if omega is 0 too, else infinite
+    with the sign of omega.
     """
     V = state.V
     creep = state.creep

@@ -1,8 +1,8 @@
 """What the law of a cover of finite thickness has beside its rows: the creep of free rolling and its own fast limit.
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
-nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law
-2 kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.
+nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law 2
+kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -107,11 +107,11 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
     """Return the part of slip and creepage that causes the traction: delta less that of free rolling.
 
     slip : a number with the sign of omega - V.
-    delta : creepage.
-    free_creep : 2 kappa delta_0, from the creepage of free rolling.
-    state : :class:`.contact_states.State`: V, kappa, mu, and delta or omega.
+    delta : creepage (omega - V)/V; may be infinite at V = 0.
+    free_creep : 2 kappa delta_0, with delta_0 the creepage of free rolling.
+    state : :class:`.contact_states.State`, of which kappa and the sign of V are read.
     cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
-    Returns (a number with the sign of the traction, creepage delta - delta_0); the arguments for half-spaces.
+    Returns (a number with the sign of the traction, creepage delta - delta_0); slip and delta for half-spaces.
     """
     if cover_rows is None:
         return slip, delta

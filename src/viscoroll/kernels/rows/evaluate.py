@@ -12,11 +12,20 @@ thread, which makes it for a block of states or motions.
 
 Such a law has one material selected at a time.  ``select_material`` gives a new material the next version number and
 writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader that finds
-another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion pays only for
-the parts that it reads.  A part depends on its material alone, not on what was read before.  Select the material before
-the first ``locate_row``: positions of another material mean nothing.
+another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion pays only for the
+parts that it reads.  A part depends on its material alone, not on what was read before. Select the material before the
+first ``locate_row``: positions of another material mean nothing.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+
+Terms of this file:
+
+- u = kappa |V|: dimensionless speed, >= 0.  L = lam (1 + epsilon) = 2 kappa delta_star/mu.
+- D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
+- zeta, eta: half the transit time of the contact and of its stick zone.  F(z) = z + g(z) and H(z) = z^2 + 2 z h(z) with
+  functions g and h of the material (:mod:`.rows`): Eq. (10) is F(eta) = (L - D)/(2 u), and v = 1/F(eta), >= 0.
+- Fast limit: the expansion of the functions for large u or v, used behind the last row.  Its numbers in the head of the
+  rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).
 """
 
 from typing import NamedTuple
@@ -86,10 +95,10 @@ def locate_octave(x, e0):
     """Return the position of x in rows that span one octave each.
 
     x : argument, >= 0.
-    e0 : binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
+    e0 : int, binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
 
-    Returns (row, t, dt/dx): number of the row; argument of its polynomials, in [0, 1] in row 0, else in [-1, 1];
-    slope of that argument.
+    Returns (row, t, dt/dx): number of the row, an int without upper bound; argument of its polynomials, in [0, 1) in
+    row 0, else in [-1, 1); slope of that argument.
     """
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
     # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
@@ -119,13 +128,13 @@ def in_fast_limit(position):
 def _fast_terms(u, body, law):
     """Return the terms of the fast limit, the expansion for u beyond the last row.
 
-    u : kappa |V|.
-    body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER, the position of W and C of that body in the head of the
-    rows.
+    u : kappa |V|, > 0.
+    body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER, the index in the head of the rows of W of both bodies or of
+        one; C follows.
     law : :class:`Law` of the material.
 
-    Returns (z, shift, part): z = zeta; shift = (alpha z/2) (C - W ln z), the epsilon of a half-space;
-    part = alpha z W/8.
+    Returns (z, shift, part): z = zeta; shift = (alpha z/2) (C - W ln z), which with W and C of both bodies is the
+    epsilon of a half-space; part = alpha z W/8.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[body]
@@ -163,8 +172,8 @@ def moment_factor(position, u, scale, state):
 
     position : :class:`RowPosition` of u: row and argument t in it.
     u : kappa |V|.
-    scale : ``scale`` of the :class:`LengthAndMoment` at u.
-    state : :class:`State`: V, kappa, mu, and delta or omega.
+    scale : ``scale`` of the :class:`LengthAndMoment` at u: 1, or z in the fast limit.
+    state : :class:`State`, of which V (with its sign) and kappa are read.
     """
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
 
@@ -186,13 +195,14 @@ def lam_and_epsilon(position, u, law):
 
 @inline_kernel
 def body_moments(position, u, law):
-    """Return (m_half_space, m_cylinder, d_um_half_space, d_um_cylinder): the parts of M/V and of d(u M/V)/du.
+    """Return the parts of M/V that half-space and cylinder take, and of its slope d(u M/V)/du = dM/dV.
 
     position : :class:`RowPosition` of u: row and argument t in it.
     u : kappa |V|.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    The first two are divided by ``scale`` of the :class:`LengthAndMoment` at u; all are dimensionless.
+    Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), dimensionless; the first two are
+    divided by ``scale`` of the :class:`LengthAndMoment` at u, the slopes are not.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -230,7 +240,9 @@ def limits_at_rest(kappa, law):
 
 @inline_kernel
 def _half_space_eta_over_F(y, law):
-    """Return eta/F and minus its slope with respect to y = F(eta) in the fast limit of ``law``."""
+    """Return (eta/F, minus its slope over y) of a half-space in the fast limit; ``y``: F(eta) = 1/v, >= 0; ``law``:
+    :class:`Law` of the material.
+    """
     half = 0.5 * law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]
     bracket = law.rows[FAST_TOTAL + 1] - W * np.log(y) if y > 0.0 else 0.0
@@ -239,10 +251,10 @@ def _half_space_eta_over_F(y, law):
 
 @inline_kernel
 def eta_over_F(position, v, law):
-    """Return eta/F, dimensionless; eta = beta zeta is half the transit time of the stick zone, Eq. (10).
+    """Return eta/F, dimensionless; eta = beta zeta is half the transit time of the stick zone, Eq. (10), and F = 1/v.
 
     position : :class:`RowPosition` of v: row and argument t in it.
-    v : 1/F(eta).
+    v : 1/F(eta), >= 0.
     law : :class:`Law` of the material: polynomials of each octave.
     """
     if in_fast_limit(position):
@@ -252,10 +264,10 @@ def eta_over_F(position, v, law):
 
 @inline_kernel
 def H_over_F2(position, v, law):
-    """Return the function H/F^2 of the module :mod:`.rows`, which gives the traction, and its slope with respect to v.
+    """Return the function H/F^2 of v, which gives the traction, and its slope over v.
 
     position : :class:`RowPosition` of v: row and argument t in it.
-    v : 1/F(eta), dimensionless.
+    v : 1/F(eta), >= 0.
     law : :class:`Law` of the material: polynomials of each octave.
 
     |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta|)/mu.
@@ -275,12 +287,12 @@ def H_over_F2_secants(position, near, v, x, law):
     """Return H/F^2 and its slope at v, and the mean slopes of both between v/(1 + x) and v, without cancellation.
 
     position : :class:`RowPosition` of v: row and argument t in it.
-    near : position of v/(1 + x), in the same row or in the one before.
-    v : 1/F(eta).
-    x : >= 0, dimensionless.
+    near : :class:`RowPosition` of v/(1 + x), in the same row or in the one before.
+    v : 1/F(eta), >= 0.
+    x : ratio of v to the other argument, less 1; >= 0, and 0 gives the slopes at v.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    Returns (value, slope, mean slope of the value, mean slope of the slope).
+    Returns (value, slope, mean slope of the value, mean slope of the slope), over v, dimensionless.
     """
     if in_fast_limit(position):
         return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
@@ -306,10 +318,10 @@ def H_over_F2_secants(position, near, v, x, law):
 def _fast_secants(v, x, law):
     """Return the mean slopes of H/F^2 and of its slope between v/(1 + x) and v in the fast limit.
 
-    v : 1/F(eta).
-    x : >= 0, dimensionless.
+    v : 1/F(eta), > 0.
+    x : ratio of v to the other argument, less 1; >= 0, and 0 gives the slopes at v.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), dimensionless.
+    Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), over v, dimensionless.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]

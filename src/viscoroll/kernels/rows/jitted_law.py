@@ -43,10 +43,12 @@ class LawType(types.Callable):
         super().__init__("viscoroll.law")
 
     def get_call_type(self, context, args, kws):
-        """Return the signature of a call with two real numbers, or None for other arguments.
+        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real numbers, integer or
+        float.
 
-        context : numba's typing context.
-        args, kws : types of the positional and of the named arguments.
+        context : numba's typing context, not used.
+        args, kws : tuple and dict of numba's types of the positional and of the named arguments.
+        Returns None for other arguments, which numba reports as an error of type.
         """
         try:
             kinds = _SIGNATURE.bind(*args, **kws).args
@@ -120,7 +122,8 @@ def _unbox(kind, law, c):
     """Return the address of the user data of a law that Python passes to jitted code.
 
     kind, c : numba's type of the law and its context of unboxing.
-    law : the Python object.
+    law : the Python object, a :class:`Jitted`, as a value of LLVM.
+    Returns numba's ``NativeValue``: the address, a 64-bit integer, and whether Python raised an error.
     """
     address = c.pyapi.object_getattr_string(law, "address")
     value = c.pyapi.long_as_ulonglong(address)
@@ -133,7 +136,8 @@ def _lower_constant(context, builder, kind, law):
     """Return instructions for the address of a law that is a constant of the code.
 
     context, builder, kind : numba's context of code generation, builder of LLVM and type of the law.
-    law : the :class:`Jitted`, which is kept alive.
+    law : the :class:`Jitted`, which is kept alive until the process ends.
+    Returns a value of LLVM: the address of the user data as a 64-bit integer.
 
     numba does not put code with such an address into its cache: the next process has other addresses.
     """
@@ -146,7 +150,9 @@ def _lower_call(context, builder, signature, arguments):
     """Return instructions that call the C function of a law, whose address begins the user data.
 
     context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
-    arguments : values of the law, V and omega.
+    arguments : values of LLVM: the law, which is the address of its user data, V and omega.
+    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`.  The status of the C function is not read:
+    a state at which the law is not defined has NaN.
     """
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)

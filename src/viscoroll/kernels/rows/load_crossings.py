@@ -38,12 +38,14 @@ class LoadCurve(NamedTuple):
 def _find_crossing(load, n, curve, law):
     """Return u between the nodes ``n`` and n + 1 where the curve equals ``load``: Newton's iteration in a bracket.
 
-    load : value of kappa (M - gain V) between those of the nodes.
-    curve : :class:`LoadCurve`: nodes u and kappa (M - gain V) there.
+    load : value of kappa (M - gain V), between those of the two nodes.
+    n : int, index of the lower node.
+    curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns u = kappa V, > 0; the node itself where the load equals its extremum to rounding (of the node n + 1).
 
-    Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others: 4e-15 of
-    the load, measured.
+    Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others: 4e-15 of the
+    load, measured.
     """
     low = curve.u[n]
     high = curve.u[n + 1]
@@ -81,13 +83,14 @@ def _find_crossing(load, n, curve, law):
 
 @kernel
 def crossing_loop(law, curve, load, node, out, start, stop):
-    """Find u = kappa V where the curve equals each load.
+    """Find u = kappa V where kappa (M(V) - gain V) equals each load.
 
     law : :class:`Law` of the material: polynomials of each octave.
-    curve : :class:`LoadCurve`: nodes u and kappa (M - gain V) there.
-    load : loads, (n,).
-    node : for each load the node below the crossing, (n,).
-    out : (n,), written from ``start`` to ``stop`` - 1.
+    curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
+    load : values of kappa (M - gain V), (n,).
+    node : for each load the index of the node below the crossing, int, (n,).
+    out : values of u, (n,), written from ``start`` to ``stop`` - 1.
+    start, stop : int, index of the first load and of the one behind the last.
     """
     for n in range(start, stop):
         out[n] = _find_crossing(load[n], node[n], curve, law)

@@ -1,7 +1,7 @@
 """What the rows of one material are fitted to: the functions of :mod:`series` with slopes over ln(1/z), and N.
 
-N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed changes slowly, has a closed form: with
-y = sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
+N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed changes slowly, has a closed form: with y
+= sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
 
     W = H g - 2 z (h - z h') g - z H g' + z^2 (y - z y')
     U = H g_s - g H_s + z^2 (y_s + T_mean g)
@@ -38,9 +38,9 @@ _FAST = 1e-9
 def _evaluate_asymptotic(terms, x):
     """Evaluate the asymptotic series sum a_n x^-n with its derivatives.
 
-    terms : coefficients a_n, of which a_0 = 1.
-    x : argument, large.
-    Returns (value, first derivative, second derivative).
+    terms : coefficients a_0, a_1, ..., of which a_0 = 1, (terms,).
+    x : argument, 64 or more.
+    Returns (value, first derivative, second derivative) over x.
     """
     w = 1.0 / x
     value = slope = second_derivative = 0.0
@@ -53,11 +53,11 @@ def _evaluate_asymptotic(terms, x):
 
 @inline_kernel
 def _jet(rate, z, function):
-    """Return the jet of a function of x = (rate - s) z at s = 0.
+    """Return the jet of a function of x = (rate - s) z at s = 0, a vector of four: value, d/dz, d/ds, d2/dz ds.
 
-    rate : a_i or b_j.
-    z : zeta.
-    function : (value, first derivative, second derivative) over x.
+    rate : a_i or b_j, rate of the mode, > 0.
+    z : zeta, half transit time of the contact, > 0.
+    function : (value, first derivative, second derivative) over x, at x = rate z.
     """
     value, slope, second_derivative = function
     return pack(value, rate * slope, -z * slope, -slope - rate * z * second_derivative)
@@ -68,9 +68,9 @@ def _write_ratio_jets(z, series, work):
     """Write the jets of 1/r, k and i2 of every mode: each value with its derivatives d/dz, d/ds, d2/dz ds
     (:mod:`.series`).
 
-    z : zeta, half transit time of the contact, > 0, dimensionless.
+    z : zeta, half transit time of the contact, > 0, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series, written.
+    work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four numbers a mode.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -101,13 +101,15 @@ def _write_ratio_jets(z, series, work):
 
 @kernel
 def _evaluate_N(z, series, of_g, of_h, of_y):
-    """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0.
+    """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0, in the unit of time of the series, squared.
 
-    z : zeta, dimensionless.
+    z : zeta, half transit time of the contact, > 0, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.
-    of_g, of_h, of_y : jets (value, d/dz, d/ds, d2/dz ds) of g, h and sum X_i i2_i (:mod:`.series`).
+    of_g, of_h, of_y : jets of g, h and sum X_i i2_i at z (:mod:`.series`), vectors of four: value, d/dz, d/ds, d2/dz
+        ds.
 
-    N goes from -sum E_i tau_i^2 as V -> 0 to z^2 sum E_i/4 in fast rolling.
+    N goes from -sum E_i tau_i^2 as V -> 0 to z^2 sum E_i/4 in fast rolling; beyond 1e17 times the longest creep time
+    and below 1e-9 times the shortest relaxation time it is that limit.
     """
     T_mean = relaxed = strength = 0.0
     for i in range(series.a.size):
@@ -137,11 +139,11 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 
 @inline_kernel
 def set_alpha_of_state(n, alpha, series):
-    """Write the alpha of state ``n`` into a series of one mode.
+    """Write the alpha of state ``n`` into a series of one mode, whose creep time is the unit of time.
 
-    n : index of the state.
+    n : int, index of the state.
     alpha : alphas, of length 1 or with one for each state; empty: the series is complete and nothing is written.
-    series : :class:`Series`, written.
+    series : :class:`Series`, whose relaxation rate and strengths are written.
     """
     if alpha.size > 0:
         one_alpha = element(alpha, n)
@@ -153,11 +155,12 @@ def set_alpha_of_state(n, alpha, series):
 def modes_loop(series, alpha, work, z, out):
     """Evaluate the functions of a series, their slopes and N at many z.
 
-    series : :class:`Series`: rates and strengths of the modes.
+    series : :class:`Series`: rates and strengths of the modes; written if ``alpha`` is not empty.
     alpha : alphas of a series of one mode, of length 1 or with one for each z; empty: the series is complete.
-    work : the :class:`Workspace` of the series.
-    z : values of zeta > 0, (n,).
-    out : (9, n), written: g/z, h/z, m of half-space and cylinder; their slopes with respect to ln(1/z); N.
+    work : the :class:`Workspace` of the series, scratch.
+    z : values of zeta > 0, (n,), in the unit of time of the series.
+    out : (9, n), written.  Rows 0 to 3: g/z, h/z, m of the half-space, m of the cylinder (m = M/V, in the unit of
+        time); rows 4 to 7: their slopes over ln(1/z); row 8: N of M = M(V) + N dV/dt, in the unit of time squared.
     """
     for n in range(z.size):
         set_alpha_of_state(n, alpha, series)

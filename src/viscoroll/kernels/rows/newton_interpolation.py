@@ -48,11 +48,13 @@ _SLOW_POWERS = powers_of_chebyshev(TERMS, 1.0, 2.0).ravel()
 def divided_differences(count, scratch):
     """Compute the leading divided differences of ``count`` functions from arguments and values in ``scratch``.
 
-    count : number of functions, 1 or 2.
-    scratch : vector of this module with arguments and values; the differences are written in place of the values.
+    count : int, number of functions, 1 or 2.
+    scratch : vector of SCRATCH_SIZE numbers with POINT_COUNT arguments at ARGUMENTS, and values at VALUES and one
+        FUNCTION_STRIDE behind; the differences of each function are written one block behind its values, and the values
+        are overwritten.
 
-    Each order is computed in place, four at a time, from the last point down.  The entries below the first
-    difference of an order are overwritten and are not read again.
+    Each order is computed in place, four at a time, from the last point down.  The entries below the first difference
+    of an order are overwritten and are not read again.
     """
     for order in range(POINT_COUNT):
         first = POINT_COUNT - LANES
@@ -90,12 +92,12 @@ def evaluate_at_nodes(nodes, which, scratch):
 
 @inline_kernel
 def sum_of_rows(matrix, first, terms, factors, to, numbers):
-    """Write the sum of rows of 24 numbers, each times a factor.
+    """Write the sum of rows of 24 numbers, each times a factor: the product of a matrix and a vector.
 
     matrix : vector in which the rows follow each other.
-    first : index in ``matrix`` at which the first row begins.
-    terms : number of rows.
-    factors, to : indices in ``numbers`` at which the factors begin, and the sum.
+    first : int, index in ``matrix`` at which the first row begins.
+    terms : int, number of rows.
+    factors, to : int, indices in ``numbers`` at which the factors begin, and the sum.
     numbers : vector with the factors; the sum, 24 numbers, is written.
     """
     zero = broadcast(0.0)
@@ -109,9 +111,12 @@ def sum_of_rows(matrix, first, terms, factors, to, numbers):
 def to_powers(slow, limit, scratch):
     """Replace the values of a function at the 24 nodes of a row by its coefficients of the powers of t.
 
-    slow : whether this is the slow row, where t is in [0, 1] and coefficients below rounding are set to zero.
-    limit : in the slow row, the value at t = 0, which is subtracted from the values at the nodes.
-    scratch : vector of this module; values at NODE_VALUES are read, and the coefficients are written in their place.
+    slow : whether this is the slow row, where t is in [0, 1] and Chebyshev coefficients below rounding are set to zero;
+        the other rows have t in [-1, 1].
+    limit : in the slow row, the value at t = 0, which has been subtracted from the values at the nodes and is added to
+        the constant coefficient; not read in the other rows.
+    scratch : vector of this module; values at NODE_VALUES are read, and the 24 coefficients, the constant first, are
+        written in their place.
     """
     if not slow:
         limit = scratch[NODE_VALUES + TERMS // 2]

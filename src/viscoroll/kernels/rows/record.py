@@ -95,9 +95,10 @@ def select_material(law, n):
 def ensure_part(part, row, law):
     """Return the position in ``law.rows`` of a part of a row, after making the part if it is not up to date.
 
-    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.
-    row : number of the row, from 0.
-    law : :class:`Law` of the material: polynomials of each octave.
+    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON, BODY_MOMENTS, H_OVER_F2 or ETA_OVER_F.
+    row : int, number of the row, from 0; a row of the law, not one behind the last.
+    law : :class:`Law` of the material; where a part is made, its ``rows`` and ``marks`` are written.
+    Returns an int, the index of the first coefficient.
     """
     number = (row + 1) * PARTS_PER_ROW + part // PART_SIZE
     if unlikely(law.marks[np.uint64(number)] != law.marks[VERSION]):
@@ -107,14 +108,14 @@ def ensure_part(part, row, law):
 
 @kernel(inline=True, allocates=True)
 def select_index(n, addresses, state_count, marks):
-    """Mark the material of state ``n`` as selected.
+    """Mark the material of state ``n`` as selected, with the next version number if it was another one.
 
-    n : index of the state.
-    addresses : address of an array with the index of the material of each state.
-    state_count : length of that array; 1 if all states have one material.
-    marks : ``marks`` of the :class:`Law`, written.
+    n : int, index of the state.
+    addresses : int, address of an array of ints: the index of the material of each state.
+    state_count : int, length of that array; 1 if all states have one material.
+    marks : ``marks`` of the :class:`Law`, whose entries SELECTED and VERSION are written.
 
-    Returns the index of the material, or -1 if it was selected already.
+    Returns the index of the material, or -1 if it was selected already, and then nothing is written.
     """
     index = element(integers_at(addresses, state_count), n)
     if marks[SELECTED] == index:

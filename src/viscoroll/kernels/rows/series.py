@@ -112,11 +112,11 @@ def new_workspace(modes: int) -> Workspace:
 
 @inline_kernel
 def evaluate_ratios(places, series, work):
-    """Write 1/r, k and i2 of every mode at four places z.
+    """Write 1/r, k and i2 of every mode at four places z, the half transit times of the contact.
 
-    places : vector of four z > 0.
+    places : vector of four z > 0, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series, written.
+    work : :class:`Workspace` of the series, whose ``inverse_r``, ``i2`` and ``k`` are written, four numbers a mode.
     """
     z = unpack(places)
     for at in range(LANES * series.a.size):
@@ -133,7 +133,9 @@ def evaluate_ratios(places, series, work):
 
 @inline_kernel
 def multiply(jets, p, q):
-    """Return the product of two vectors, which are jets if ``jets``."""
+    """Return the product of two vectors of four: number by number, or, if ``jets``, as jets (value, d/dz, d/ds, d2/dz
+    ds); ``p``, ``q``: the factors.
+    """
     if not jets:
         return p * q
     p0, p1, p2, p3 = unpack(p)
@@ -173,8 +175,9 @@ def _value(jets, p):
 def _factorize(matrix, count):
     """Factorize symmetric positive definite matrices as L D L^T, four at once, in place.
 
-    matrix : (count, count) vectors of four, flat; overwritten by L in the lower half and 1/D on the diagonal.
-    count : number of rows.
+    matrix : (count, count) vectors of four, flat, row by row, of which the lower half is read; overwritten by 1/D on
+        the diagonal and by L D below it.
+    count : int, number of rows.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
@@ -211,12 +214,13 @@ def _substitute(matrix, right, count):
 def solve_modes(jets, series, work):
     """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes, and write y and k f, f = Q y, into the workspace.
 
-    jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
+    jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series with the ratios 1/r and k, written.
+    work : :class:`Workspace` of the series with the ratios 1/r and k; ``y`` and ``kf`` are written, ``right`` and
+        ``matrix`` are scratch.
 
-    The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor:
-    the second pass leaves one with both, and the third none.
+    The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor: the
+    second pass leaves one with both, and the third none.
     """
     count = series.a.size
     for i in range(count):
@@ -258,12 +262,12 @@ def solve_modes(jets, series, work):
 def _split_moment(jets, lam2, series, work):
     """Return the parts of m = M/V that half-space and cylinder take, by their creep modes; a jet has no slopes in s.
 
-    jets : whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
+    jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     lam2 : lam^2, square of the contact length divided by l0, vector of four.
     series : :class:`Series`: rates and strengths of the modes, with weights of the half-space.
-    work : :class:`Workspace` of the series with X in place of y.
+    work : :class:`Workspace` of the series with i2, k f and, in ``y``, X; ``right`` is scratch.
 
-    Returns (part of the half-space, part of the cylinder), vectors of four.
+    Returns (part of the half-space, part of the cylinder), vectors of four, in the unit of time of the series.
     """
     count = series.a.size
     half_space = cylinder = broadcast(0.0)
@@ -288,13 +292,14 @@ def _split_moment(jets, lam2, series, work):
 def evaluate_functions(jets, z, series, work):
     """Write g/z, h/z and m of both bodies at z > 0 into ``work.functions``.
 
-    jets : whether vectors are jets.
-    z : vector of four z, or the jet of one.
+    jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
+    z : vector of four z, or the jet (z, 1, 0, 0) of one, in the unit of time of the series.
     series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series with the ratios at z, written.
+    work : :class:`Workspace` of the series with the ratios 1/r, k and i2 at z; ``functions`` is written (at G_OVER_Z,
+        H_OVER_Z, M_HALF_SPACE, M_CYLINDER), ``y`` becomes X, the rest is scratch.
 
     Returns (g, h, sum X_i i2_i), vectors of four.  The moments of the two bodies are scaled so that their sum is m:
-    they differ from it by roundings of alpha times the size of one.
+    they differ from it by roundings of alpha times the size of one.  They are halves of m if the bodies are alike.
     """
     solve_modes(jets, series, work)
     unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)

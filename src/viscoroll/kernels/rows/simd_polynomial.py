@@ -26,14 +26,14 @@ def _constant(numbers):
 
 
 def _make_sums(count: int, orders: int):
-    """Return a kernel that evaluates a polynomial with vectors for coefficients, and its derivatives.
+    """Return a kernel that evaluates a polynomial with vectors of four for coefficients, and its derivatives.
 
     count : number of coefficients.
     orders : number of values that the kernel returns: the polynomial, its first derivative, and so on.
 
-    The kernel takes (table, start, x): vector of coefficients, position of the first, argument.
-    Returns the kernel, an intrinsic of numba; its value is a tuple of ``orders`` vectors of four doubles, with
-    derivatives with respect to x.
+    Returns the kernel, an intrinsic of numba, which takes (table, start, x): vector of numbers; index in it at which
+    the first coefficient begins; argument, a number.  It returns a tuple of ``orders`` vectors of four doubles,
+    derivatives over x, by Estrin's scheme.
     """
 
     def lower(context, builder, signature, arguments):
@@ -62,8 +62,9 @@ def _lower_secants(context, builder, signature, arguments):
     """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its slope.
 
     context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
+    Returns a value of LLVM: a tuple of four vectors, p and its secant of the function, then both of its slope in t.
 
-    p is the polynomial with vectors for coefficients; x and z are fourth powers of two arguments.
+    p is the polynomial with vectors for coefficients; x and z are fourth powers of two arguments t.
     """
     terms = load_vectors(context, builder, signature, arguments, _ONE)
     sums = []
@@ -111,10 +112,11 @@ def evaluate_pair(table, start, t):
 
 @inline_kernel
 def _join(sums, t, square):
-    """Return the value at t from the four polynomials of the coefficients modulo four.
+    """Return the value at t of a function from the four polynomials of its coefficients whose index is 0, 1, 2, 3
+    modulo 4.
 
-    sums : their values at t^4, one vector.
-    square : t^2.
+    sums : their values at t^4, one vector of four.
+    t, square : argument, and t^2.
     """
     a, b, c, d = unpack(sums)
     return fma(square, fma(t, d, c), fma(t, b, a))

@@ -1,21 +1,20 @@
 """Pressure and shear along the contact, Eqs. (11)-(14), in a form where nothing cancels.
 
-As printed the integrals start at the rear edge and lose a factor exp(2 alpha zeta).  Here, with
-Y measured from the middle of the contact, p(z) = r(alpha z) k(z), B = c/(1 + p), cos phi = Y/z,
+As printed the integrals start at the rear edge and lose a factor exp(2 alpha zeta).  Here, with Y measured from the
+middle of the contact, p(z) = r(alpha z) k(z), B = c/(1 + p), cos phi = Y/z,
 
     S(Y; z) = sqrt(z^2 - Y^2) + alpha z B Int_0^phi (r(alpha z) + cos t) exp(-alpha (z cos t - Y)) dt
     p/E'    = V/(4 pi) S(Y; zeta)
     |tau|/E' = mu V/(4 pi) [S(Y; zeta) - S(Y - (zeta - eta); eta)]      second term in the stick zone
 
-Inside, lengths are in half contacts: u = 1 - Y/z from the front edge, w = 1 + Y/z from the rear
-edge (each passed on its own: 2 - u would spoil a small w), S/z instead of S.  V zeta = lam/(2 kappa)
-then removes the speed from the formulas, and V = 0 is zeta = inf: Hertz.
+Inside, lengths are in half contacts: u = 1 - Y/z from the front edge, w = 1 + Y/z from the rear edge (each passed on
+its own: 2 - u would spoil a small w), S/z instead of S.  V zeta = lam/(2 kappa) then removes the speed from the
+formulas, and V = 0 is zeta = inf: Hertz.
 
-With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = alpha z.  Only the
-part of [0, phi] with a D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40
-digits S is within 3e-15 of its peak and 2e-14 of itself for a from 1e-8 to 1e8, alpha from 1.01
-to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum over
-the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
+With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = alpha z.  Only the part of [0, phi] with a
+D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40 digits S is within 3e-15 of its peak and 2e-14
+of itself for a from 1e-8 to 1e8, alpha from 1.01 to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes
+the second term is a sum over the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -41,9 +40,12 @@ _DEEP = 38.0
 
 
 class MemoryWeights(NamedTuple):
-    """What the memory integrals of a series have in common at one z; filled by :func:`unit_shape`.
+    """The strengths of the modes at one z, which all points of a contact have in common; filled by :func:`unit_shape`.
 
-    weight : a_i X_i of each mode.  complement : 1 - r(a_i z) of each mode.  z : the z, (1,).  work : a workspace.
+    weight : a_i X_i of each mode, (modes,).
+    complement : 1 - r(a_i z) of each mode, (modes,).
+    z : the z, (1,); NaN: of none yet.
+    work : :class:`.series.Workspace`.
     """
 
     weight: Any
@@ -70,15 +72,15 @@ class Points(NamedTuple):
 
 @kernel
 def _memory_integral(u, w, a, r_complement):
-    """Return the memory integral of one relaxation mode at a point of the contact.
+    """Return the memory integral of one relaxation mode at a point of the contact, dimensionless.
 
-    u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
-    a : alpha z, half transit time times the rate of the mode.
+    u, w : distances from the front and the rear edge, divided by half the contact length, > 0; u + w = 2.
+    a : a_i z (of one mode alpha z): half transit time z times the rate of the mode, > 0, finite.
     r_complement : 1 - r(a), r the ratio I1/I0.
 
-    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0,
-    pi] is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign, where
-    a (cos phi - cos t) <= a w < 1.
+    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0, pi]
+    is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign, where a (cos
+    phi - cos t) <= a w < 1.
     """
     rear = w < 1.0 and a * w < 1.0
     sine = np.sqrt(u * w)
@@ -110,12 +112,14 @@ def new_memory_weights(series) -> MemoryWeights:
 
 @kernel
 def unit_shape(u, w, z, series, weights):
-    """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point; 0 outside the contact.
+    """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point, dimensionless; 0 outside the contact.
 
     u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
-    z : half transit time of the contact, or of the stick zone, dimensionless; inf is the elastic limit V = 0.
+    z : half transit time of the contact, or of the stick zone, in the unit of time of the series; inf is the elastic
+        limit V = 0.
     series : :class:`Series`: rates and strengths of the modes.
-    weights : :class:`MemoryWeights`, the strengths of the modes at z; computed again here if they belong to another z.
+    weights : :class:`MemoryWeights`, the strengths of the modes at z; computed and written here if they belong to
+        another z.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
@@ -139,13 +143,14 @@ def unit_shape(u, w, z, series, weights):
 
 @kernel
 def stress_loop(series, alpha, whole, stick, points, p, tau):
-    """Compute pressure and shear stress at points of the contact.
+    """Compute pressure and shear stress at n points of the contact.
 
-    series : :class:`Series`: rates and strengths of the modes.
-    alpha : alphas of a series of one mode, of length 1 or one for each point; empty: the series is complete.
+    series : :class:`Series`: rates and strengths of the modes; written if ``alpha`` is not empty.
+    alpha : alphas of a series of one mode, of length 1 or n; empty: the series is complete.
     whole, stick : :class:`MemoryWeights` for the contact and for the stick zone, scratch.
-    points : :class:`Points`: position, kappa, mu and the contact state of each point.
-    p, tau : (n,), pressure p/E' and shear stress |tau|/E' at every point, written.
+    points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or n.
+    p, tau : (n,), pressure p/E' and modulus |tau|/E' of the shear stress at every point, written; 0 outside the
+        contact.
     """
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:

@@ -36,10 +36,10 @@ def _interpolate(source, marks, first, to, out, count):
 
     source : SOURCE record, with the weights of the nodes for each cover.
     marks : ``marks`` of the law, with the selected cover and the address of the laws at the nodes of its octave.
-    first : index of the first number in the laws at the nodes.
-    to : index in ``out`` of the first number that is written.
-    out : vector, written.
-    count : number of numbers.
+    first : int, index of the first number in each of the laws at the nodes (head, rows, then cover rows).
+    to : int, index in ``out`` of the first number that is written.
+    out : vector of the law, of which ``count`` numbers are written.
+    count : int, number of numbers.
     """
     law_size = (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
     weights = floats_at(source.weights + 8 * source.law_count * marks[SELECTED], source.law_count)
@@ -56,9 +56,11 @@ def _interpolate(source, marks, first, to, out, count):
 def select_cover(n, source):
     """Make the cover of a state the selected one: interpolate the numbers in front of its rows, and its cover rows.
 
-    n : index of the state.
+    n : int, index of the state.
     source : pointer to a SOURCE record, whose rows, marks and cover rows are written; not if that cover is selected
         already.
+
+    Rows of the law are then interpolated when they are first read (:func:`make_part`).
     """
     source = record_at(source)
     marks = integers_at(source.marks, PARTS_PER_ROW)
@@ -75,10 +77,11 @@ def select_cover(n, source):
 
 @kernel(allocates=True)
 def make_part(number, source):
-    """Make a part of a row of the selected cover.
+    """Make a part of a row of the selected cover, by interpolation, and write it into the rows of the law.
 
-    number : index of the part in the marks.
-    source : pointer to a SOURCE record.
+    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
+    source : pointer to a SOURCE record; the 24 coefficients of a function, or 48 of a pair, are written, and the mark
+        of the part.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)

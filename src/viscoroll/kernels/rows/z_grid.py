@@ -1,10 +1,10 @@
 """Rows for one series or pair after another, from a grid of z that all rows of a material share.
 
 At the nodes z = 2^(n/10) the formulas of the modes (:mod:`series`) give lam and eta/F = z/(z + g), and with them a
-point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v through the 36
-points around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that octave.  The polynomial of
-the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is
-needed.  A row depends on its material alone, not on the rows that were made before.
+point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v through the 36 points
+around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that octave.  The polynomial of the slow row
+goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is needed.  A row
+depends on its material alone, not on the rows that were made before.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -102,7 +102,9 @@ _OUTWARDS = np.array([POINT_COUNT // 2 + (n + 1) // 2 * (-1) ** n for n in range
 
 
 def _leja_order(points: np.ndarray) -> np.ndarray:
-    """Return points in an order in which divided differences stay small: each is farthest from those before it."""
+    """Return points, (n,), in an order in which divided differences stay small: from the largest on, each has the
+    largest product of distances from those before it.
+    """
     order = [points.argmax()]
     while len(order) < points.size:
         order.append(np.prod(np.abs(4.0 * (points[:, None] - points[order])), axis=1).argmax())
@@ -172,8 +174,9 @@ def work_size(nodes: int) -> int:
 def select_series(n, source):
     """Make the material of a state the selected one: write its data into the heads of rows and marks.
 
-    n : index of the state.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.
+    n : int, index of the state.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks; heads of rows and marks
+        are written, nothing if that material is selected already.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).
     """
@@ -195,8 +198,9 @@ def select_series(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected material, and write it into the rows of the law.
 
-    number : index of the part in the marks.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.
+    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks, and scratch; the 24
+        coefficients of a function, or 48 of a pair, are written, and the mark of the part.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)
@@ -219,12 +223,13 @@ def make_part(number, source):
 
 @kernel
 def _make_functions(part, row, grid):
-    """Compute one function of v, or a pair of functions of u, for one row, and write the coefficients of the powers
-    of t.
+    """Compute one function of v, or a pair of functions of u, for one row, and write the coefficients of the powers of
+    t.
 
-    part : offset in a row, LENGTH_MOMENT to ETA_OVER_F.
-    row : index of the row, from 0.
-    grid : :class:`Grid` of function values over ln z of the selected material, whose ``rows`` are written.
+    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON or BODY_MOMENTS of functions of u, H_OVER_F2 or ETA_OVER_F of v.
+    row : int, index of the row, from 0; 0 is the slow row, where t is in [0, 1].
+    grid : :class:`Grid` of function values over ln z of the selected material, whose ``rows`` are written; the
+        coefficients of a pair are interleaved by two.
     """
     over_v = part >= H_OVER_F2
     slow = row == 0
@@ -262,11 +267,12 @@ def _is_times_u(function):
 
 @inline_kernel
 def _slow_limit(function, grid):
-    """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t.
+    """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t, t = u 2^-e0.
 
-    function : column of the function in the grid, _L to _ETA_OVER_F.
-    grid : :class:`Grid` of function values over ln z of the selected material.
-    Returns the value, dimensionless.
+    function : column of the function in the grid: _L, _M, _LAM, _EPSILON, _HALF_SPACE, _CYLINDER, _H_OVER_F2 or
+        _ETA_OVER_F.
+    grid : :class:`Grid` of the selected material, of whose head the sums J_j T_j of both bodies are read.
+    Returns the value, dimensionless: of M/V and its parts those sums, else 1.
     """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
@@ -282,9 +288,9 @@ def _slow_limit(function, grid):
 
 @inline_kernel
 def _z_of_node(node, grid):
-    """Return z of a node: a power of 2^(1/10), or a point of the slow row.
+    """Return z, a half transit time, of a node: a power of 2^(1/10), or, of the last 36 nodes, a point of the slow row.
 
-    node : index of the node.
+    node : int, index of the node, from 0 to node_count - 1.
     grid : :class:`Grid` of function values over ln z of the selected material.
     """
     slow = node - (grid.node_count - POINT_COUNT)
@@ -298,10 +304,10 @@ def _z_of_node(node, grid):
 
 @kernel
 def _fill_block(first, grid):
-    """Compute the functions at four nodes.
+    """Compute the 12 functions at four nodes by the formulas of the modes, and write them into ``grid.functions``.
 
-    first : number of the first node, a multiple of four.
-    grid : :class:`Grid` of function values over ln z of the selected material, written.
+    first : int, index of the first node, a multiple of four.
+    grid : :class:`Grid` of function values over ln z of the selected material, written; its workspace is scratch.
     """
     places = pack(
         _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
@@ -351,13 +357,13 @@ def _ensure_nodes(first, stop, grid):
 
 @inline_kernel
 def _ln_from_end(node, row, over_v, grid):
-    """Return ln(u/end) or ln(v/end) at a node of the grid, with the right end of an octave of u or v.
+    """Return ln(u/end) or ln(v/end) at a node of the grid, where end is the right end of an octave of u or v.
 
-    node : index of the node.
-    row : index of the row that spans the octave.
-    over_v : True for v, False for u.
+    node : int, index of the node, not one of the slow row.
+    row : int, index of the row that spans the octave.
+    over_v : bool, True for v, False for u.
     grid : :class:`Grid` of function values over ln z of the selected material, in which the node is made if it is
-    missing.
+        missing.
     """
     _ensure_nodes(node, node + 1, grid)
     end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
@@ -370,13 +376,13 @@ def _ln_from_end(node, row, over_v, grid):
 def _collect_points(row, first, count, over_v, grid):
     """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
 
-    Arguments are ln u or ln v, counted from the end of the octave.
+    Arguments are ln u or ln v, counted from the end of the octave.  The points are nodes around its middle.
 
-    row : index of the row that spans the octave.
-    first : index of the first function at a node.
-    count : number of functions, 1 or 2.
-    over_v : True if they are functions of v, False for u.
-    grid : :class:`Grid` of function values over ln z of the selected material.
+    row : int, index of the row that spans the octave, > 0.
+    first : int, column of the first function in the grid, _L to _ETA_OVER_F.
+    count : int, number of functions, 1 or 2, that are neighbours.
+    over_v : bool, True if they are functions of v, False for u.
+    grid : :class:`Grid` of function values over ln z of the selected material; missing nodes are made.
     """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
@@ -400,13 +406,13 @@ def _collect_points(row, first, count, over_v, grid):
 def _collect_slow_points(first, count, over_v, grid):
     """Write the 36 points of the slow row, from 1/z = 0 to a little beyond its end, into the scratch of ``grid``.
 
-    first : index of the first function at a node.
-    count : number of functions, 1 or 2.
-    over_v : True if they are functions of v, False for u.
-    grid : :class:`Grid` of function values over ln z of the selected material.
+    first : int, column of the first function in the grid, _L to _ETA_OVER_F.
+    count : int, number of functions, 1 or 2, that are neighbours.
+    over_v : bool, True if they are functions of v, False for u.
+    grid : :class:`Grid` of function values over ln z of the selected material; missing nodes are made.
 
-    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided
-    by t.
+    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided by
+    t.
     """
     end = math.ldexp(1.0, int(grid.e0))
     _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)

@@ -1,8 +1,8 @@
 """The law of a grid at one alpha as a C function, like :mod:`..rows.c_function`: splines in ln |V| and delta.
 
-``int law(double V, double omega, double out[8], void *grid)``; ``grid`` is its user data, a :data:`GRID`.
-Below the slowest speed of the grid Q is that of the slowest at the same creepage, and M is in proportion to V.  Beyond
-both ends of delta |Q| is mu P, if the grid slips fully there.  The status of other states outside is not 0.
+``int law(double V, double omega, double out[8], void *grid)``; ``grid`` is its user data, a :data:`GRID`. Below the
+slowest speed of the grid Q is that of the slowest at the same creepage, and M is in proportion to V.  Beyond both ends
+of delta |Q| is mu P, if the grid slips fully there.  The status of other states outside is not 0.
 """
 
 import numpy as np
@@ -27,11 +27,13 @@ GRID = record_type(
 def _grid_law(V, omega, pointer, grids):
     """Evaluate the splines of a grid at one state and write the results; it is the C function of the grid.
 
-    V, omega : speed and angular velocity in the units of the grid.
-    pointer : address of the results, written.
+    V, omega : speed of the axis and angular velocity in the units of the grid, of any sign.
+    pointer : address of RESULTS = 8 numbers, written: Q, M, M_half_space, M_cylinder; then, if ``grid.slopes``, dQ/dV
+        at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV; all in the units of the grid.
     grids : pointer to a GRID record: addresses of the splines and the bounds of the grid.
 
-    Returns 0, or another number outside the grid.
+    Returns 0; or 1, and all results are NaN, outside the grid (of V above, of delta where the grid does not slip
+    fully).
     """
     out = carray(pointer, RESULTS)
     grid = record_at(grids)
@@ -68,10 +70,12 @@ def _grid_law(V, omega, pointer, grids):
 def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Jitted:
     """Return the law of a grid, tables of Q and M over V and delta, as a function for jitted code.
 
-    splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline (:mod:`.spline`), which the law keeps alive.
-    numbers : fields of :data:`GRID` by name, in the units of the grid: slips (0 or 1), slowest (V), low and high
-        (delta), R.
-    Returns the :class:`Jitted` law: (V, omega) -> loads and slopes, in the units of the grid, NaN outside it.
+    splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline (:mod:`.spline`), doubles, (numbers,), which
+        the law keeps alive.
+    numbers : fields of :data:`GRID` by name, in the units of the grid: slips (1 if the grid
+        slips fully at both ends of delta, else 0), slowest (least V), low and high (ends of delta), R (radius, which
+        turns omega into a speed).
+    Returns the :class:`Jitted` law: (V, omega) -> :class:`LoadsAndSlopes`, in the units of the grid, NaN outside it.
     """
     grids = np.zeros(2, GRID)
     grids["slopes"] = 0, 1

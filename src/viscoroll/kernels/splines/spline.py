@@ -41,7 +41,9 @@ TERMS = 4
 
 
 class Value(NamedTuple):
-    """A field at a point and its slopes over V, delta and alpha; NaN outside of the axes."""
+    """A field at a point and its slopes over V, delta and alpha; NaN outside of the axes, slopes 0 where the value is
+    clipped to the bounds.
+    """
 
     value: float
     dV: float
@@ -79,8 +81,9 @@ def _locate(spline, name, x):
     """Return the :class:`AxisPosition` of a coordinate on an axis of the spline.
 
     spline : vector of the spline: bounds, axes and coefficients.
-    name : V_AXIS, DELTA_AXIS or ALPHA_AXIS.
-    x : the coordinate, in the units of the grid.
+    name : V_AXIS, DELTA_AXIS or ALPHA_AXIS, index in the head of the spline.
+    x : the coordinate, in the units of the grid; any number if the field does not depend on it.
+    Returns a t of NaN outside of the axis.
     """
     axis = _integer_at(spline, name)
     interval = np.int64(0)
@@ -106,9 +109,10 @@ def _basis(spline, position, n):
 
     spline : vector of the spline: bounds, axes and coefficients.
     position : the :class:`AxisPosition`.
-    n : index of the basis spline in the interval, 0 to its degree.
+    n : int, index of the basis spline among those that are not 0 in the interval, from 0.
 
-    Returns (value, slope, offset): the offset is added to the position of a coefficient in the vector.
+    Returns (value, slope, offset): value, dimensionless; slope over the coordinate, also of a logarithmic axis; int
+    that is added to the position of a coefficient in the vector.
     """
     axis = position.axis
     at = (position.interval * TERMS + n) * TERMS + EDGES + 1 + _integer_at(spline, axis + INTERVALS) + axis
@@ -126,8 +130,9 @@ def evaluate(spline, V, delta, alpha):
     """Return the :class:`Value` of a field at a point, for kernels that inline it.
 
     spline : vector of the spline: bounds, axes and coefficients.
-    V, delta, alpha : coordinates in the units of the grid; any number for an axis on which the field does not
-    depend.
+    V, delta, alpha : coordinates in the units of the grid; any number for an axis on which the field does not depend.
+    Returns value and slopes, in the units of the grid: NaN outside of the axes; a value beyond the bounds of the field
+    is clipped to them, and its slopes are 0.
     """
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)
@@ -157,9 +162,11 @@ def evaluate(spline, V, delta, alpha):
 
 @kernel
 def spline_at(spline, V, delta, alpha):
-    """Return the :class:`Value` of a field at a point.
+    """Return the :class:`Value` of a field at a point: value and slopes over V, delta and alpha, in the units of the
+    grid.
 
-    spline : the vector of :meth:`viscoroll.io.tables.Interpolant.jitted`.
+    spline : the vector of :meth:`viscoroll.io.tables.Interpolant.jitted`: bounds, axes and coefficients.
     V, delta, alpha : coordinates in the units of the grid; for an axis that the field is not over any number does.
+    Returns NaN outside of the axes; a value beyond the bounds of the field is clipped to them, and its slopes are 0.
     """
     return evaluate(spline, V, delta, alpha)
