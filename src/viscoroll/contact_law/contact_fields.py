@@ -42,20 +42,30 @@ _KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, FREE_
 def field_names(
     fields: Iterable[str] | None, slopes: bool, method: str, *, like: bool, si: bool, cover: bool, split: bool = True
 ) -> tuple[str, ...]:
-    """Return the names of the fields of a call.
+    """Return the names of the fields that a call of :func:`.contact.contact` has to return, in their order.
 
     Parameters
     ----------
-    fields, slopes, method : arguments of :func:`.contact.contact`.
-    like : whether both bodies are of one material.
-    si : whether the roller is a cylinder.
-    cover : whether it has a cover of finite thickness.
-    split : whether it is known how slip and M are split between the bodies; not if the body beside a cover relaxes.
+    fields : names of fields; None: the default fields of such a roller.
+    slopes : whether the slopes are added to these fields.
+    method : "table", which has every field, or "direct" (the printed equations), which has no slopes, N, grip and
+        delta_0.
+    like : whether both bodies are of one material; if not, the parts of M in either body are default fields too.
+    si : whether the roller is a cylinder, in SI units; it has ``length``, ``C_rr`` and the parts of M too.
+    cover : whether a body is a cover, a layer of finite thickness.
+    split : whether it is known how slip and M are split between the bodies.  It is not if the body beside a cover
+        relaxes; the fields are then those of :data:`_BEFORE_THE_SPLIT`.
+
+    Returns
+    -------
+    tuple of str
+        Those of ``fields``, or the default fields, then slopes that were not among them.  The
+        default fields of a cover end with ``delta_0``.
 
     Raises
     ------
     ParameterError
-        An unknown field or method, or a field that the method or the roller does not have.
+        An unknown field or method, or a named field that the method or the roller does not have.
     """
     check_choice("method", method, "table", "direct")
     if fields is not None:
@@ -89,10 +99,12 @@ def field_names(
 
 @lru_cache(maxsize=64)
 def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
-    """Return the fields that the kernels compute, a row each, so that :func:`complete` has all fields of a call.
+    """Return the fields that the kernels compute, a row each, from which :func:`complete` makes all fields of a call.
 
-    names: fields of the call.
-    unlike: whether the bodies are of two materials; if not, the parts of M are halves.
+    names: fields of the call, as of :func:`field_names`.
+    unlike: whether the bodies are of two materials; if not, each part of M is half of M, and is not computed.
+    Returns names without repetition: a field that is a multiple of another (``length`` of ``lam``, ``C_rr`` of ``M``)
+    is replaced by that other one.
     """
     derived = _MULTIPLES if unlike else _MULTIPLES | _HALVES
     return tuple(dict.fromkeys(derived.get(name, name) for name in names))
@@ -109,12 +121,14 @@ def kernel_rows(names: tuple[str, ...]) -> Any:
 def complete(
     names: tuple[str, ...], computed: tuple[str, ...], rows: np.ndarray, shape: tuple[int, ...]
 ) -> dict[str, Any]:
-    """Return the fields of a call by name, numbers or arrays.
+    """Return the fields of a call by name, from the rows that the kernels computed.
 
-    names: fields of the call.
-    computed: field of each row.
-    rows: values, (fields, states).
-    shape: shape of the call.
+    names: fields of the call, as of :func:`field_names`.
+    computed: name of the field in each row, as of :func:`computed_fields`.
+    rows: values, (rows, states), dimensionless.
+    shape: shape of the call; () for one state.
+    Returns a dict from each of ``names`` to an array of ``shape``, a float for shape (); ``full_slip`` is boolean.
+    ``length`` and ``C_rr`` are lam and M still, which the caller multiplies by their units.
     """
     found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
     if computed != names:

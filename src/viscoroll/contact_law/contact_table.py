@@ -40,25 +40,30 @@ _FASTEST_DIRECT = 1e12
 def evaluate_contact(
     scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
 ) -> dict[str, Any]:
-    """Return dimensionless fields of the contact by name, at checked arguments.
+    """Return dimensionless fields of the contact by name, at speeds and creepages that were checked to be finite.
 
     Parameters
     ----------
-    scene : parameters of the roller.
-    V : speeds, dimensionless.
-    creep : angular velocities if ``creep_is_omega``, else creepages.
+    scene : dimensionless parameters of the roller, numbers or arrays.
+    V : velocities of the axis divided by R/T_ref, any sign, an array of any shape, () for a number.
+    creep : angular velocities times T_ref if ``creep_is_omega``, else creepages (omega - V)/V; any shape.
+    creep_is_omega : whether ``creep`` is omega.
     names : fields, as of :func:`.contact_fields.field_names`.
     method : "table", from the rows of the law, or "direct", by root solves of the printed equations.
 
     Returns
     -------
     dict of str to array
-        The fields in the shape of the broadcast arguments; numbers if these are numbers.
+        The fields in the shape to which V, creep and the parameters of the scene broadcast; floats (``full_slip``: a
+        bool) if all of these are numbers.
 
     Raises
     ------
     ParameterError
-        Speeds out of range, shapes that do not broadcast, a material with method "direct", N of many materials.
+        kappa |V| above :data:`FASTEST` (for Q by method "direct" above :data:`_FASTEST_DIRECT`), shapes that do not
+        broadcast, a material with method "direct", N of many materials.
+    ConvergenceError
+        If an iteration of method "direct" reaches its limit.
     """
     arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
     arrays["omega" if creep_is_omega else "delta"] = creep
@@ -96,17 +101,19 @@ def evaluate_law(
 
     Parameters
     ----------
-    material : one law for all states; or many materials; or None: laws of one relaxation time.
-    arrays : alpha (the index of the material, where there are many), kappa, mu, V, and delta or omega; dimensionless,
-        broadcast to ``shape``.
-    shape : shape of the states.
+    material : the rows of one law, for all states; or many materials, of which each state names one; or None: each
+        state has a law of one relaxation time, by its alpha.
+    arrays : five numbers or arrays that broadcast to ``shape``, dimensionless: alpha (index of the material, where
+        there are many; not used with the rows of one law), kappa, mu, V, and delta or omega.
+    shape : shape of the states; () for one state.
     creep_is_omega : whether the last of ``arrays`` is omega, else delta.
-    names : fields that kernels compute.
-    direct : whether to solve the printed equations (without a material).
+    names : fields that kernels compute, as of :func:`.contact_fields.computed_fields`.
+    direct : whether to solve the printed equations; ``material`` is None then.
 
     Returns
     -------
     array, (fields, states)
+        A row for each of ``names``; the states are those of ``shape``, flattened.  ``full_slip`` is 0 or 1.
 
     Raises
     ------
@@ -120,10 +127,11 @@ def evaluate_law(
     record = material.record if isinstance(material, LawTable) else None
 
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
-        """Evaluate the states ``start`` to ``stop`` - 1 and write them into the columns of ``out``.
+        """Evaluate the states ``start`` to ``stop`` - 1 and write them into these columns of ``out``.
 
-        alpha: alphas, or indices of materials, of these states.
-        parts: kappa, mu, V and creep of these states.
+        alpha: alphas, or indices of materials, of these states, (stop - start,) or (1,).
+        parts: kappa, mu, V and creep of these states, (stop - start,) or (1,) each, dimensionless.
+        Raises ConvergenceError if an iteration of the printed equations reaches its limit.
         """
         laws, order = ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
@@ -180,11 +188,14 @@ def _kernel(direct: bool) -> tuple[Any, Any]:
 def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool) -> tuple[Any, NDArray]:
     """Make the laws of the states of a block, and choose the order in which the states are evaluated.
 
-    material, direct: arguments of :func:`evaluate_law`.
-    alpha: alphas of the states, or indices of their materials, (n,) or (1,).
-    parts: kappa, mu, V, creep, each (n,) or (1,).
+    Called where the states have no law in common, which would be evaluated in the order given.
+    material: many materials, or None: a law of one relaxation time for each state.
+    alpha: alphas of the states, or indices of their materials as floats, (n,) or (1,).
+    parts: kappa, mu, V, creep, each (n,) or (1,), dimensionless.
+    direct: whether the printed equations are solved, which need alpha alone.
     Returns (a tuple of the records of the laws that kernels take, or ``alpha`` if ``direct``; indices of the states in
-    order of evaluation, none for the given order).
+    order of evaluation, (n,), or an empty array for the order given).  States are ordered by material, or of laws of
+    one relaxation time by octave of their speed, so that neighbours read the same numbers.
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
@@ -205,10 +216,11 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
-    """Raise ParameterError where kappa |V| exceeds its largest allowed value.
+    """Raise ParameterError where kappa |V| exceeds its largest allowed value; without elements nothing is refused.
 
-    kappa: slenderness.
-    V: speeds, dimensionless; the arrays broadcast.
+    kappa: slenderness R/l0, > 0, any shape.
+    V: velocities divided by R/T_ref, any sign; broadcasts with kappa.  (Or V in another unit, with kappa divided by
+    that unit.)
     fastest: largest allowed kappa |V|.
     """
     if not (kappa.size and V.size):

@@ -46,7 +46,11 @@ class Law:
     """
 
     def __init__(self, roller: Roller) -> None:
-        """Check that ``roller`` is one scene of one material, and compile its law; raises ParameterError."""
+        """Check that ``roller`` is one scene or cylinder of one material, and compile its law.
+
+        roller: a scene or a cylinder whose alpha or material, kappa and mu are single.
+        Raises ParameterError for what is neither, for arrays in alpha, kappa or mu, and for several materials.
+        """
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted
 
@@ -87,19 +91,23 @@ class Law:
 
         Parameters
         ----------
-        V, omega : numbers, or arrays that broadcast, in the units of the roller.
-        slopes : also the derivatives.
+        V, omega : numbers, or arrays that broadcast, in the units of the roller: of a Cylinder m/s and rad/s, of a
+            Scene divided by R/T_ref and multiplied by T_ref.
+        slopes : whether the derivatives are computed too.
 
         Returns
         -------
         Loads or LoadsAndSlopes
             Q, M, M_half_space, M_cylinder, and with slopes dQ_dV at fixed omega, dQ_domega, dM_half_space_dV,
-            dM_cylinder_dV; in the units of what rolls.
+            dM_cylinder_dV; floats for two numbers, else arrays of the broadcast shape.  Of a Cylinder Q is in N/m and
+            M in N m/m, of a Scene they are divided by P and P R.
 
         Raises
         ------
         ParameterError
             NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
+        OutOfTableError
+            The law of a grid: a state outside of its axes.
         """
         if slopes is not False:
             slopes = check_bool("slopes", slopes)
@@ -134,11 +142,12 @@ class Law:
     @property
     def address(self) -> tuple[int, int]:
         """Return the address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and
-        of its user data.
+        of its user data, as integers.
 
-        It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
-        error, with NaN, and returns another number.  Any number of threads may call it, while this law exists.  All
-        laws of half-spaces share the function, and all laws of covers another one.
+        It takes V and omega in the units of the roller, fills ``out`` with the eight numbers of
+        :class:`LoadsAndSlopes` and returns 0; where the law would raise an error, it fills ``out`` with NaN and
+        returns another number.  Any number of threads may call it, while this law exists.  All laws of half-spaces
+        share the function, and all laws of covers another one.
         """
         return self._jitted.function_address, self._jitted.address
 

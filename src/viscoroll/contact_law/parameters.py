@@ -68,7 +68,12 @@ class Roller:
         raise NotImplementedError
 
     def take(self, index: Integers, count: int) -> Self:
-        """Return some of ``count`` rollers, by an index of numpy."""
+        """Return some of ``count`` rollers.
+
+        index: index of numpy into (count,).
+        count: number of rollers; parameters of shape (count,) are indexed, all others stay as they are.
+        Returns a roller of the same class; itself if no parameter has that shape.
+        """
         parts = {name: value[index] for name, value in self._arrays.items() if getattr(value, "shape", ()) == (count,)}
         return self.replace(**parts) if parts else self
 
@@ -93,9 +98,16 @@ class Roller:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Parameters(Roller):
-    """Dimensionless parameters, as a :class:`viscoroll.Scene` takes them.
+    """Dimensionless parameters, as a :class:`viscoroll.Scene` takes them; each a number or an array, and they
+    broadcast.
 
-    ``shape`` is what the parameters broadcast to; () for one scene.
+    alpha : T_epsilon/T_sigma, in [1, :data:`HIGHEST_ALPHA`]; of a material its alpha, which the class sets.
+    kappa : slenderness R/l0, > 0.
+    mu : coefficient of friction, > 0.
+    gamma : P T_ref^2/(m R), > 0; None where the roller does not move.
+    j : moment of inertia divided by m R^2, > 0.
+    material : in place of alpha: a series, two bodies, or the rows of a law, whose material it becomes; None of an
+    alpha. ``shape`` is what the parameters broadcast to; () for one scene.
     """
 
     alpha: Any = None
@@ -109,7 +121,11 @@ class Parameters(Roller):
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
 
     def __post_init__(self) -> None:
-        """Check and freeze the parameters; raises ParameterError as :class:`viscoroll.Scene` says."""
+        """Check the parameters, and replace them by floats or read-only arrays.
+
+        Raises ParameterError: both or neither of alpha and material, a material of another type, values out of range,
+        NaN or infinite, shapes that do not broadcast, mu/kappa outside :data:`RATIO_RANGE`.
+        """
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
         check_one_given(alpha=values["alpha"], material=material)
@@ -139,8 +155,8 @@ class Parameters(Roller):
 
     @property
     def table(self) -> LawTable | None:
-        """Return the law of the one material of the scene, as given or computed; None if it has several alphas or
-        materials.
+        """Return the rows of the law of the one material of the scene, as given or computed at first use; None if it
+        has several alphas or materials.
         """
         if self._law is not None:
             return self._law
@@ -208,7 +224,12 @@ class Parameters(Roller):
         return not isinstance(self.material, Bodies) or self.material.like
 
     def on_slope(self, slope: Any) -> Self:
-        """Return the scene under the load P cos(slope), see :meth:`Roller.on_slope`."""
+        """Return the scene under the load P cos(slope), the normal part of the weight on a slope.
+
+        slope: angle, rad, in (-pi/2, pi/2), a number or an array; None: level.
+        Returns a scene whose kappa is divided by sqrt(cos(slope)) and whose gamma is multiplied by cos(slope).
+        Raises ParameterError for a slope out of range.
+        """
         cosine = slope_tan_cos(slope)[1]
         changes = {"kappa": self.kappa / np.sqrt(cosine), "gamma": None if self.gamma is None else self.gamma * cosine}
         if self.cover is not None:  # its thickness is divided by the l0 of that load
@@ -249,12 +270,15 @@ def resolve_model(
 ) -> tuple[Roller, Parameters, Scale]:
     """Check the first argument of a call, and return the roller on its slope with its parameters and its scale.
 
-    roller: the first argument of the call.
-    call: name of the function that is called, for errors.
+    roller: the first argument of the call, of any type.
+    call: name of the function that is called, for errors, and to decide whether it takes two bodies of which one is a
+    layer.
     moves: whether the function needs gamma, which only a roller that moves has.
-    slope: angle, rad; None: level.
-    Returns (roller, dimensionless parameters, scale).
-    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma.
+    slope: angle, rad, a number or an array; None: level.
+    Returns (the Scene or Cylinder under the load on the slope; its dimensionless parameters; its scale: 1 of each
+    dimensionless quantity in the units of the roller).
+    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma, and for a
+    layer beside a body that relaxes where the call needs slip or the parts of M.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"

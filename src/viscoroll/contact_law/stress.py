@@ -41,14 +41,16 @@ def stress(
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a :class:`Cylinder`, in SI units.
     x : position divided by l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
         value: the stresses are 0 outside the contact.
-    V : velocity of the axis, any sign; of a Cylinder m/s.
-    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity (rad/s).  All arguments broadcast.
+    V : velocity of the axis, any sign; of a Cylinder m/s, of a Scene divided by R/T_ref.
+    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity, any sign; omega of a Cylinder in rad/s,
+        of a Scene multiplied by T_ref.  All arguments broadcast.
 
     Returns
     -------
     Values
-        ``p``: pressure divided by E', >= 0.  ``tau``: shear stress on the cylinder divided by E', of the sign of
-        omega - V, |tau| <= mu p.  Of a Cylinder in Pa.  Of a cover ``p`` alone: its shear stress is not known.
+        ``p``: pressure divided by E', >= 0.  ``tau``: shear stress on the cylinder divided by E', of the sign of omega
+        - V, |tau| <= mu p.  Of a Cylinder in Pa.  Of a cover ``p`` alone: its shear stress is not known.  Both have
+        the broadcast shape of arguments and roller; they are floats if all of these are numbers.
 
     Raises
     ------
@@ -112,12 +114,13 @@ def stress(
 
 
 def _compute_stresses(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
-    """Compute the stresses at points, material by material.
+    """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
 
     scene: parameters of the roller.
-    alpha: alphas, or of many materials their indices; points of one material lie together.
-    points: record of the kernel, whose fields have one value, or one for each point.
-    p, tau: pressure and shear stress divided by E', (n,), written.
+    alpha: alphas, or of many materials their indices as floats, (n,) or (1,); points of one material lie together.
+    points: record of the kernel; its fields (position, kappa, mu, lam, epsilon, beta, zeta) are (n,) or (1,),
+        dimensionless, positions in the frame where V > 0.
+    p, tau: pressure and size of the shear stress divided by E', (n,), written; of a cover tau is not written.
     """
     from ..kernels.rows.stress import new_memory_weights, stress_loop
 
@@ -142,8 +145,9 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
 
     scene: parameters with a cover.
     index: index of the cover, if there are many.
-    points: record of the kernel, with the position and the contact state of each point.
-    Returns p/E', (n,).
+    points: record of the kernel, with position (divided by l0), kappa, lam, epsilon and zeta of each point, (n,) or
+    (1,).
+    Returns p/E', (n,), where n is the common length of these fields.
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = CoverModes(cover)

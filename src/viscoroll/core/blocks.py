@@ -27,14 +27,15 @@ _BLOCKS_IN_QUEUE = 8
 
 
 def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
-    """Return a function that gives the elements of a block of a broadcast array.
+    """Return a function that gives the elements of a block of a broadcast array, without the whole broadcast array in
+    memory.
 
     array: numbers that broadcast to ``shape``.
     shape: shape to which all arrays of the work broadcast.
-
-    Returns a function (start, stop) -> vector of the elements start to stop of the flattened broadcast array; of a
-    single number always that number, (1,).  Vectors are views where memory allows it, else copies, and read-only,
-    because a kernel is compiled again for each kind of array.
+    Returns a function (start, stop) -> vector of the elements ``start`` to ``stop`` - 1 of the flattened broadcast
+    array, (stop - start,); of a single number always that number, (1,).  Vectors are views where ``array`` is
+    contiguous and of that shape, else copies, and read-only, because a kernel is compiled again for each kind of
+    array.
     """
     if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
         vector = broadcast_vector(array, array.shape)
@@ -58,10 +59,12 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
 
 
 def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
-    """Return an array, broadcast to a shape and flattened, as a contiguous read-only vector; a single number as (1,).
+    """Return an array, broadcast to a shape and flattened, as a contiguous read-only vector.
 
     array: numbers that broadcast to ``shape``.
     shape: shape of the result before it is flattened.
+    Returns a vector with the number of elements of ``shape``, a view where possible; of a single number (1,), for any
+    shape.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
     vector = whole.reshape(-1).view()
@@ -71,6 +74,8 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
 def thread_count(threads: int | None = None) -> int:
     """Return the number of threads: ``threads``, else ``$VISCOROLL_THREADS``, else that of the available cores.
+
+    threads: a whole number >= 1; None: as the environment has it.
 
     Raises
     ------
@@ -115,20 +120,23 @@ def run_blocks(
     threads: int | None = None,
     progress: str | None = None,
 ) -> None:
-    """Call a function for consecutive blocks of ``range(count)``, on several threads.
+    """Call a function for consecutive blocks of ``range(count)``, on several threads, and return when all are done.
 
     Parameters
     ----------
-    work : function of (start, stop), the ends of a block.
-    count : number of elements.
-    block : elements of a block.
+    work : function (start, stop) -> None, which computes the elements ``start`` to ``stop`` - 1 of a block and writes
+        them where they belong.  Several threads call it at the same time; its exceptions are raised here.
+    count : number of elements, >= 0.
+    block : elements of a block; the last one may have fewer.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.
     progress : title of a progress bar on standard error, which appears after one second; None: no bar.
 
     Raises
     ------
     CancelledError
-        If the event of :func:`cancel_with` is set.
+        If the event of :func:`cancel_with` is set and the blocks run one after another on this thread.
+    ParameterError
+        If ``threads`` or ``$VISCOROLL_THREADS`` is not a whole number >= 1.
     """
     edges: Iterable[tuple[int, int]] = ((start, min(start + block, count)) for start in range(0, count, block))
     workers = blocks = -(-count // block)
@@ -154,10 +162,9 @@ def run_blocks(
 def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int) -> None:
     """Run all blocks on a pool, and await them in order.
 
-    After an error no further block starts.
-
+    After an error no further block starts, and the error of the first block that failed is raised.
     pool: threads.
-    work: function of (start, stop).
+    work: function (start, stop) -> None.
     edges: (start, stop) of each block.
     most: blocks that wait at the same time.
     """

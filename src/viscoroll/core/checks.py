@@ -61,8 +61,13 @@ def check_array_extent(
 
     Returns
     -------
-    array : float64, of the shape of ``value``, in ``unit``.
+    array : float64, of the shape of ``value``, finite, in ``unit``.
     extent : (smallest, largest element); (0, 0) if the array is empty.
+
+    Raises
+    ------
+    ParameterError
+        If it is not numeric, not finite, beyond a bound, or of another dimension.
     """
     if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)
@@ -83,12 +88,15 @@ def _range_words(low: float, above: float, high: float) -> str:
 
 
 def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:
-    """Return numbers as float64 in the unit of the argument.
+    """Return numbers as float64 in the unit of the argument; they may be out of range, infinite or NaN still.
 
     name: name of the argument.
     value: what a caller gave.
     unit: unit of the argument, a text or an object that has units by name.
-    bounds: low, above and high of the range, for the ParameterError of a value that is not numeric.
+    bounds: low, above and high of the range, for the words of the error alone.
+    Returns an array of the shape of ``value``.
+    Raises ParameterError for a value that is not numeric (texts, truth values, complex numbers, ragged lists), a
+    masked array, and a unit of another dimension.
     """
     plain = value
     if not has_no_unit(value):
@@ -111,10 +119,11 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
 
 
 def _first_wrong(array: Floats, wrong: Booleans) -> str:
-    """Return the first wrong element of an array, its index, and the number of further ones.
+    """Return the first wrong element of an array, its index, and the number of further ones, in words for an error.
 
     array: numbers.
-    wrong: mask of the same shape.
+    wrong: mask of the same shape, true for at least one element.
+    Returns a text as "nan at row 3, and 2 more"; of a single number that number alone.
     """
     if array.size == 1:
         return str(array.item())
@@ -141,14 +150,15 @@ def check_number(
     ----------
     name : name of the argument, for errors.
     value : a number, perhaps with a unit.
-    unit : unit of the argument, to which a value with a unit is converted.
+    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
+        dimensionless number, or an object that has units by name.
     low, high : smallest and largest allowed value.
     above : number that the value must exceed.
 
     Raises
     ------
     ParameterError
-        A value that is no finite number, that is outside these limits or in another unit; an array.
+        If it is not one finite number, if it is outside these limits, or if its unit has another dimension.
     """
     if type(value) is float and above < value < high and low <= value:
         return value
@@ -159,7 +169,10 @@ def check_number(
 
 
 def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
-    """Return the common shape of arrays by name.
+    """Return the common shape of arrays, by numpy's rule of broadcasting.
+
+    arrays: arrays by the name that an error states; those without axes fit every shape.
+    Returns the shape; () if no array has axes.
 
     Raises
     ------
@@ -191,9 +204,9 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
 
     Parameters
     ----------
-    name : name of the argument.
-    value : what a caller gave.
-    low, high : smallest and largest allowed value.
+    name : name of the argument, for errors.
+    value : what a caller gave; an int or an integer of numpy is accepted, a truth value or a float is not.
+    low, high : smallest and largest allowed value; ``high`` is infinite by default.
 
     Raises
     ------

@@ -49,7 +49,10 @@ class Schedule:
     units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the fields, and make them read-only arrays."""
+        """Check the fields, make them read-only arrays, and keep their units.
+
+        Raises ParameterError as the class states.
+        """
         for name, low in (("times", 0.0), ("values", -np.inf)):
             _check_field(self, name, low)
         times, values = self.times, self.values
@@ -97,7 +100,10 @@ class Feedback:
     units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the fields; a schedule or a function is checked with its motion."""
+        """Check the fields; a value that is a schedule or a function is checked with its motion.
+
+        Raises ParameterError as the class states.
+        """
         if not (callable(self.value) or isinstance(self.value, Schedule)):
             _check_field(self, "value", -np.inf)
         for name in ("V", "omega"):
@@ -114,9 +120,11 @@ class Feedback:
 def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
     """Replace a field by its checked numbers, and keep the unit that it was given in.
 
-    load: the schedule or feedback.
+    load: the schedule or feedback, whose field becomes a float or a read-only array; a unit is entered into its
+    ``units``.
     name: name of the field.
     low: smallest allowed number.
+    Raises ParameterError for numbers that are not finite or below ``low``.
     """
     numbers, unit = split_unit(name, getattr(load, name))
     object.__setattr__(load, name, read_only(check_array(name, numbers, low=low)))
@@ -125,11 +133,13 @@ def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
 
 
 def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
-    """Return an argument in its unit: numbers, a schedule or a feedback.
+    """Return an argument in its unit, without that unit: numbers, a schedule or a feedback.
 
-    name: name of the argument.
-    value: what a caller gave.
-    units: unit of each argument by name.
+    name: name of the argument, by which its unit is found.
+    value: what a caller gave: a number, an array, a value with a unit, a :class:`Schedule`, a :class:`Feedback` or a
+        function of time; what has no unit stays as it is.
+    units: object whose method ``unit`` gives the unit of each argument by name, as "N m-1".
+    Returns a value of the same kind; the fields of a schedule or a feedback are in their units too.
 
     Raises
     ------
@@ -150,11 +160,12 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
 
 
 def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
-    """Return a schedule or a feedback with its fields in given units.
+    """Return a schedule or a feedback with those fields that have a unit in the wanted units.
 
-    name: name of the argument.
-    load: the schedule or feedback.
-    wanted: name of a field -> unit.
+    name: name of the argument, for errors.
+    load: the schedule or feedback; itself is returned if none of its fields has a unit.
+    wanted: name of a field -> unit, as "m s-1".
+    Raises ParameterError for a unit of another dimension.
     """
     converted = {
         part: convert(f"{part} of {name}", getattr(load, part), unit, wanted[part]) for part, unit in load.units.items()
@@ -212,14 +223,17 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
 def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     """Return a load divided by its unit: a number, an array, a schedule, a function of time or a feedback.
 
-    name: name of the argument.
-    value: what a caller gave.
-    scale: scale of the roller; the values of a scene stay as they are.
+    name: name of the argument, as "force", "torque", "brake", "drag" or "V", by which its unit is found.
+    value: what a caller gave, in SI units for a cylinder; None stays None.
+    scale: scale of the roller; with that of a scene ``value`` is returned unchecked.
+    Returns a value of the same kind, a float for a number.  A function takes the dimensionless time then, and returns
+    dimensionless arrays; its values are checked when it is called.
 
     Raises
     ------
     ParameterError
-        A value that is not numeric or not finite, a brake < 0, a function for an array of cylinders.
+        A value that is not numeric or not finite, a brake or a drag < 0, a function for an array of cylinders or one
+        that cannot be called with a time alone.
     """
     if value is None or not scale.si:
         return value

@@ -84,7 +84,8 @@ _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
 def describe_value(value: Any) -> str:
     """Return a value for a message: its text in one line of at most 60 characters, and its type unless it is a number.
 
-    value: what a caller gave.
+    value: what a caller gave, of any type.
+    Returns a text as "'abc' (a text)".
     """
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
@@ -128,9 +129,10 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
 
 
 def check_one_given(**values: Any) -> str:
-    """Return the name of that one of two parameters which is given; raises ParameterError for none and for both.
+    """Return the name of that one of two parameters which is given.
 
     values: both parameters by name, None where one is not given.
+    Raises ParameterError if none or both are given.
     """
     given = [name for name, value in values.items() if value is not None]
     if len(given) != 1:
@@ -152,12 +154,12 @@ def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -
 
 
 def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
-    """Return one name, or several, as a tuple.
+    """Return one name, or several, as a tuple, in the order given.
 
-    values: a name or an iterable of names.
     name: name of the parameter, for the error.
+    values: what a caller gave: a name or an iterable of names.
     known: the names that are allowed.
-    kind: noun for these names, with its article, as "a field".
+    kind: noun for these names, with its article, as "a field", for the error.
     Raises ParameterError for the first value that is not known.
     """
     try:

@@ -9,16 +9,18 @@ from .errors import MissingDependencyError
 
 
 def import_extra(module: str, package: str, extra: str) -> Any:
-    """Return a module of an optional package.
+    """Return a module of an optional package, imported now.
 
     module: name of the module, as "fmpy.fmi2".
-    package: distribution that has it.
-    extra: extra of viscoroll that installs it, as in ``pip install 'viscoroll[EXTRA]'``.
+    package: distribution that has it, for the error.
+    extra: extra of viscoroll that installs it, as in ``pip install 'viscoroll[EXTRA]'``, for the error.
 
     Raises
     ------
     MissingDependencyError
         If the package is not installed.
+    ModuleNotFoundError
+        If it is installed, but one of its own dependencies is not.
     """
     try:
         return import_module(module)

@@ -31,16 +31,19 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     """Give a temporary path beside ``path``, and rename it to ``path`` when the body of the ``with`` ends.
 
-    The file and its folder are synced to disk.  After an exception ``path`` is as it was, and the temporary file is
-    deleted.  A process that is killed may leave a temporary file, named .PID-XXXXXXXX.tmp-NAME, which may be deleted.
-    The target of a symbolic link is replaced, and the link stays.  The temporary name has the suffix of ``path``, from
-    which writers infer a format.
+    The body must write a file at the temporary path.  The file and its folder are synced to disk.  After an exception
+    ``path`` is as it was, and the temporary file is deleted.  A process that is killed may leave a temporary file,
+    named .PID-XXXXXXXX.tmp-NAME, which may be deleted.  The target of a symbolic link is replaced, and the link stays.
+    The temporary name has the suffix of ``path``, from which writers infer a format.
+
+    path: path of the file to write or to replace.
+    Yields the temporary path.
 
     Raises
     ------
     FileError
         If it cannot be written there: no such folder, a full disk, a read-only folder or file, a directory, a device,
-        a loop of links.
+        a loop of links.  An OSError of the body becomes a FileError too.
     """
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
@@ -94,8 +97,13 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     ----------
     path : path of the file.
     max_bytes : a larger file is refused.
-    kind : noun for the file that is expected.
-    remedy : advice for a damaged file.
+    kind : noun for the file that is expected, without its article, for errors.
+    remedy : advice for a damaged file, for its error.
+
+    Returns
+    -------
+    bytes
+        The whole content with its seal; a file without a seal is not checked.
 
     Raises
     ------
@@ -133,15 +141,20 @@ def write_text(path: str | PathLike[str], text: str) -> None:
 def write_dataset(
     dataset: xr.Dataset, path: str | PathLike[str], encoding: dict[str, Any] | None = None, *, sealed: bool = False
 ) -> None:
-    """Write a dataset as netCDF-4/HDF5 by :func:`replace_file`.
+    """Write a dataset as netCDF-4/HDF5, whole or not at all, by :func:`replace_file`.
 
     Parameters
     ----------
-    dataset : dataset to write.
-    path : path of the file.
-    encoding : encoding of variables, as xarray takes it.  Default: no fill values (CF forbids them for coordinates),
-        arrays of numbers compressed and with Fletcher-32 checksums.
-    sealed : whether the file ends with a seal.
+    dataset : dataset to write; it is composed in memory.
+    path : path of the file, which is replaced if it exists.
+    encoding : encoding of variables by name, as xarray takes it.  Default: no fill values (CF forbids them for
+        coordinates), arrays of numbers compressed and with Fletcher-32 checksums.
+    sealed : whether the file ends with a seal, the SHA-256 of all bytes before it.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written there.
     """
     filters = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
     default = {

@@ -42,15 +42,21 @@ class Labels(NamedTuple):
         """Return axes and coordinates for a dataset in which variables have the names of some axes or coordinates.
 
         names: names of the variables.
-        prefix: word put before an axis or a coordinate of the same name.
-        Returns (names of the axes, name -> coordinate).
+        prefix: word put before an axis or a coordinate of the same name, as "given" for given_V.
+        Returns (names of the axes; dict from the name of a coordinate to (its axes, its values)), as xarray takes
+        them.
         """
         new = {name: f"{prefix}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
         coords = {new[name]: (tuple(new[dim] for dim in dims), values) for name, (dims, values) in self.coords.items()}
         return tuple(new[dim] for dim in self.dims), coords
 
     def axis_coords(self, dim: str) -> dict[str, Any]:
-        """Return the coordinates of arguments with one axis, for an axis named ``dim``; their own name is long_name."""
+        """Return the coordinates of arguments with one axis, for a dataset in which that axis is named ``dim``.
+
+        dim: new name of the axis, and of its own coordinate.
+        Returns a dict from a name to (``dim``, values, attributes), as xarray takes them; the old name is the
+        long_name.
+        """
         (own,) = self.dims[:1]
         return {
             dim if name == own else name: (dim, values, {"long_name": name})
@@ -110,8 +116,9 @@ def _loaded_type(module: str, name: str) -> Any:
 def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     """Broadcast arrays of xarray, and separate their values from their labels.
 
-    arrays: name -> array.
-    Returns (name -> values, labels).  Raises ParameterError if coordinates differ.
+    arrays: name of an argument -> array; at least one.
+    Returns (name -> values, all of the broadcast shape; labels).
+    Raises ParameterError if coordinates differ.
     """
     import xarray as xr
 
@@ -134,8 +141,10 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
 def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     """Separate the values of series of pandas from their labels.
 
-    series: name -> series.
-    Returns (name -> values, labels).  Raises ParameterError if the indices differ.
+    series: name of an argument -> series; at least one.
+    Returns (name -> values, (n,); labels, which make series of results, and data frames of results with one more
+    axis).
+    Raises ParameterError if the indices differ.
     """
     import pandas as pd
 

@@ -77,16 +77,16 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
 
     Labels of xarray and pandas stay.  All elements of a list, or of an array of objects, are converted to the unit of
     the first.
-
-    name: name of the argument.
+    name: name of the argument, for errors.
     value: what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.
-
-    Returns (numbers, unit; None without unit).
+    Returns (numbers in the same kind of container; their unit as a text, None without unit).  Durations are in "s".  A
+    value of another type is returned as it is, with None.
 
     Raises
     ------
     ParameterError
-        A list of numbers with and without units, or with truth values; a duration in months or years.
+        A list of numbers with and without units, or with truth values; a duration in months or years; units of
+        different dimensions in one list.
     """
     if has_no_unit(value):
         return value, None
@@ -114,11 +114,14 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
 def convert(name: str, value: Any, unit: str, target: str) -> Any:
     """Return numbers in one unit as numbers in another.
 
-    name: name of the argument.
-    value: number, array, or list of these.
-    unit: their unit.
-    target: wanted unit.
-    Raises ParameterError for a unit that is unknown or of another dimension.
+    name: name of the argument, for errors.
+    value: number, array, or list of these, perhaps with labels, which stay.
+    unit: their unit, as "km/h".
+    target: wanted unit, as "m s-1"; "1" of a dimensionless number, "rad" of an angle.
+    Returns float64 of the same shape; ``value`` itself if the units are equal.
+    Raises ParameterError for a unit that is unknown, of another dimension or of unclear meaning (Hz for other
+    arguments than an angular velocity, percent of an angle, differences of temperature), and for numbers that are not
+    numeric.
     """
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
@@ -140,10 +143,11 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
 
 
 def _as_floats(name: str, value: Any) -> Any:
-    """Return the numbers of a quantity as doubles, with labels; raise ParameterError if they are not numeric.
+    """Return the numbers of a quantity as doubles, with labels.
 
-    name: name of the argument.
-    value: a number or an array.
+    name: name of the argument, for the error.
+    value: a number or an array, perhaps with labels.
+    Raises ParameterError if they are not numeric, or an integer is beyond the doubles.
     """
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     try:
@@ -182,9 +186,10 @@ def _is_quantity(value: Any) -> bool:
 def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     """Split the unit from the elements of a list; elements in other units than the first are converted.
 
-    name: name of the argument.
+    name: name of the argument, for errors.
     values: the list.
-    Returns (numbers, unit of the first element; None without unit).
+    Returns (list of numbers; unit of the first element, None without unit).
+    Raises ParameterError for truth values, for numbers with and without a unit, and for units of different dimensions.
     """
     parts = [split_unit(name, value) for value in values]
     units = list(dict.fromkeys(unit for _, unit in parts))
@@ -200,10 +205,11 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     """Split the unit from an array of xarray, a series or an index of pandas.
 
     The unit is that of the elements, of the attribute ``units``, or in the title of a column, as results write it.
-
-    name: name of the argument.
-    value: the array.
-    Returns (array with its labels, unit; None without unit).
+    Elements with a unit are converted to the stated one.
+    name: name of the argument, for errors.
+    value: the array, series or index; not changed.
+    Returns (array or series with its labels, without attributes, of an index plain numbers; unit, None without unit).
+    Raises ParameterError where the unit of the elements is of another dimension than the stated one.
     """
     is_xarray = hasattr(value, "dims")
     data = value.data if is_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
@@ -236,8 +242,10 @@ def _title_unit(title: Any) -> str | None:
 def _to_seconds(name: str, value: Any) -> Any:
     """Return durations of Python, numpy and pandas in seconds; None if the value is no duration.
 
-    name: name of the argument.
+    name: name of the argument, for the error.
     value: what a caller gave.
+    Returns a float or an array of the shape of ``value``.
+    Raises ParameterError for a duration in months or years, whose length is not fixed, or without a unit.
     """
     if isinstance(value, timedelta):
         value = value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)

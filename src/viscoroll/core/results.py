@@ -49,7 +49,8 @@ class Result:
         """Return the dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
 
         A column of a quantity with a unit is called as "V [m s-1]", because pandas writes no attributes into files.
-        Variables over other axes, as the corners of a drive, are left out.
+        The index has the axes of the variable that has most axes.  Variables over other axes, as the corners of a
+        drive, are left out.
         """
         data = self.to_xarray()
         dims = max((variable.dims for variable in data.values()), key=len)
@@ -134,7 +135,9 @@ def column_name(name: str, unit: str) -> str:
 def format_value(value: Any) -> str:
     """Return a number or a short array as text; of a long array its shape and range.
 
-    value: number, text or array.
+    value: a number, a text, or an array of any shape.
+    Returns a float with 12 significant digits, an array of at most four elements with 6, of a larger array a text as
+    "(100,), 0 to 2.5, 3 not finite".
     """
     if not isinstance(value, np.ndarray):
         return f"{value:.12g}" if isinstance(value, float) else str(value)
@@ -188,15 +191,16 @@ class Values(Result):
         labels: Labels | None = None,
         about: dict[str, Any] | None = None,
     ) -> None:
-        """Keep the fields of a result, with what is needed for tables and figures of it.
+        """Keep the fields of a result, with the arguments that tables and figures need as axes.
 
         values: name -> number or array of the field.
-        given: name -> argument by which the call varied, for coordinates.
-        units: name -> unit, where it is not that of the field's name.
-        title: first line of the summary.
-        si: whether values are in SI units.
-        labels: labels of the caller's arrays, put onto the fields; None for plain arrays.
-        about: attributes of the dataset.
+        given: name -> argument by which the call varied, a number or an array that broadcasts with the fields; for
+            coordinates.  None: none.
+        units: name -> unit as "m s-1", where it is not that of the field's name.  None: none.
+        title: first line of the summary, title of dataset and figure.
+        si: whether values are in SI units, else dimensionless.
+        labels: labels of the caller's arrays, put onto the fields of their shape; None for plain arrays.
+        about: further attributes of the dataset by name; None: none.
         """
         self._about = about or {}
         self._values = values if labels is None else {name: labels.apply(name, each) for name, each in values.items()}
@@ -279,9 +283,11 @@ class Values(Result):
 def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
     """Name the axes of a result by the arguments that vary along them.
 
-    given: name -> argument.
+    given: name -> argument, which broadcasts to ``shape``.
     shape: shape of arguments and results, broadcast.
-    Returns (names of all axes, name -> values of an axis along which one argument alone varies).
+    Returns (names of all axes: of an argument that alone varies along an axis and along no other, else ``state``, of
+    several axes ``state_0``, ``state_1`` ...; dict from the name of such an argument to its values, (size of the
+    axis,)).
     """
     dims, values = [], {}
     for axis, size in enumerate(shape, -len(shape)):

@@ -63,8 +63,9 @@ DIMENSIONS = {name: dimension for dimension in _TABLE for name in dimension.name
 def dimension_powers(dimension: str) -> dict[str, int]:
     """Return the powers of the factors of a dimension or a unit.
 
-    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1".
-    Returns symbol -> power, without the symbols whose powers cancel.
+    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer behind a symbol is its power, and all
+        symbols behind a "/" are divisors.
+    Returns a dict from symbol to power, without the symbols whose powers cancel.
     """
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
@@ -104,8 +105,9 @@ class Scale(dict[str, Any]):
     def __missing__(self, name: str) -> Any:
         """Compute the unit of a quantity at its first use, and keep it.
 
-        name: name of the quantity.
-        Returns the factor by which a dimensionless value becomes one in SI units; 1 for a ratio.
+        name: name of the quantity, as "V".
+        Returns the factor by which a dimensionless value becomes one in SI units, a number or an array of many
+        cylinders; 1 for a ratio, for a name that the table of dimensions does not have, and for a scene.
         """
         numerator, denominator = 1.0, 1.0
         for factor, power in _POWERS.get(name, {}).items():

@@ -53,11 +53,11 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
 def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
     """Return a section as an instance of a class, its keys and types checked at any depth.
 
-    path: path of the file.
-    name: name of the section.
+    path: path of the file, for errors.
+    name: name of the section, for errors.
     content: content of the section, as tomllib reads it.
-    kind: the class, of msgspec or a dataclass.
-    Raises FileError with the line of the first key that is wrong.
+    kind: the class, of msgspec or a dataclass, whose fields are the keys.
+    Raises FileError with the line of the first key that is unknown, missing, of the wrong type or out of range.
     """
     _check_all_keys(path, name, content, kind)
     try:
@@ -84,10 +84,10 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
 
 
 def _list_choices(kind: Any, keys: list[str]) -> str:
-    """Return the texts that a key may have, as ``'linear', 'log'``; "" if it is not a choice of texts.
+    """Return the texts that a key may have, as ``'linear', 'log'``, for an error; "" if it is not a choice of texts.
 
-    kind: class of the section.
-    keys: path of the key in it.
+    kind: class of the section, whose annotations state the choices.
+    keys: path of the key in it, from the outermost subsection to the key.
     """
     for key in keys:
         sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
@@ -112,12 +112,13 @@ def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
 
 
 def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
-    """Raise FileError for an unknown key of a section, with the most similar allowed key.
+    """Refuse an unknown key of a section; the error states its line and the most similar allowed key.
 
     path: path of the file.
     name: name of the section, "" for the top level.
-    content: content of the section.
+    content: content of the section, as tomllib reads it.
     allowed: keys that the section may have.
+    Raises FileError for an unknown key, and for content that is no section.
     """
     if not isinstance(content, dict):
         raise section_error(path, "", name, f"{name} = {content!r:.40}: must be a section [{name}]")
@@ -131,9 +132,9 @@ def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> No
 def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
     """Return the error of a key of a section, with the number of its line if that is found.
 
-    path: path of the file.
+    path: path of the file, which is read again for the line.
     name: name of the section, "" for the top level.
-    key: "" for the section itself.
+    key: key in the section, "" for the section itself.
     problem: what is wrong, in words.
     """
     line = None
@@ -144,11 +145,12 @@ def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
 
 
 def find_line(text: str, name: str, key: str) -> int | None:
-    """Return the number of the line that sets a key, else of the header of its section, else None.
+    """Return the number of the line that sets a key, for an error.
 
-    text: content of the file.
-    name: name of the section.
-    key: key in the section.
+    text: content of the file, TOML.
+    name: name of the section, as "material.prony", "" for the top level; an inline table counts as a section.
+    key: key in the section, "" for the section itself.
+    Returns the number from 1; of the header of the section where the key is not found, None where that is missing too.
     """
     full = f"{name}.{key}" if name else key
     plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")

@@ -113,10 +113,11 @@ def attributes(name: str, si: bool = False) -> dict[str, str]:
 
 
 def describe_quantity(name: str, si: bool = False) -> str:
-    """Return the meaning of a quantity in words; "" where it is not known.
+    """Return the meaning of a quantity in words, as for long_name of a dataset; "" where it is not known.
 
     name: quantity, or a slope as "dQ_dV".
-    si: whether it is in SI units; else the words end with its divisor.
+    si: whether it is in SI units; forces and moments are then "per length of the cylinder".  Else the words end with
+        the unit by which the quantity is divided.
     """
     if name in SYMBOLS:
         text = SYMBOLS[name].long_name

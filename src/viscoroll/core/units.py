@@ -42,11 +42,11 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
 
     Parameters
     ----------
-    unit, target : units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C".
+    unit, target : units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; 1 Hz is 2 pi rad/s.
 
     Returns
     -------
-    factor, offset : the offset is 0 unless the units are temperatures.
+    factor, offset : floats; the offset is 0 unless the units are temperatures.
 
     Raises
     ------

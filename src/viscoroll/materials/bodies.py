@@ -101,8 +101,9 @@ class Bodies(OneOrMany):
     def _creep(self) -> tuple[NDArray, ...]:
         """Return the creep modes of both bodies together.
 
-        Returns (strengths, times in units of T_ref, part of each strength that is the half-space's), (..., modes) each,
-        dimensionless.
+        Returns (strengths divided by the long-time compliance of the pair; retardation times in units of T_ref; that
+        part of each strength which is the half-space's, between 0 and the strength), (..., modes) each, dimensionless,
+        slowest first, modes without strength last.
         """
         share = np.asarray(self.share)[..., np.newaxis]
         parts = share * self.cylinder.J, (1.0 - share) * self.base.J
@@ -123,7 +124,11 @@ class Bodies(OneOrMany):
 
     @cached_property
     def half_space_weights(self) -> Floats:
-        """The half-space's part of the strength of each creep mode of ``total``, slowest first, (..., modes)."""
+        """Return the half-space's part of each creep mode of ``total``, divided by the mode's strength, slowest mode
+        first.
+
+        Returns an array (..., modes) of numbers from 0 to 1.
+        """
         J = self.total.J
         if self._same:
             return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()

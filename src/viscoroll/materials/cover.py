@@ -86,15 +86,16 @@ class Cover(Bodies):
         other_nu: float = 0.5,
         other: Prony | None = None,
     ) -> None:
-        """Check the parameters and make one or many covers; raises ParameterError.
+        """Check the parameters and make one or many covers.
 
-        series: Prony series of the cover, or its alpha.
+        series: Prony series of the cover, times in units of T_ref, or its alpha.
         nu: Poisson's ratio of the cover, in [0, 0.5], a number or (n,).
         thickness: thickness divided by l0, > 0, a number or (n,).
         on: body that has the cover, "cylinder" or "base".
-        part: part of the cover in the long-time compliance, in (0, 1].
-        other_nu: Poisson's ratio of the other body.
-        other: series of the other body; None: elastic.
+        part: part of the cover in the long-time compliance of both bodies as half-spaces, in (0, 1].
+        other_nu: Poisson's ratio of the other body, in [0, 0.5].
+        other: series of the other body, times in units of T_ref; None: elastic.
+        Raises ParameterError for a value out of range, a series of many materials, and shapes that do not agree.
         """
         if isinstance(series, Real) and not isinstance(series, bool):
             series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
@@ -139,7 +140,10 @@ class Cover(Bodies):
         return float(self.share if self.on == "cylinder" else 1.0 - self.share)
 
     def refuse_unknown_split(self, call: str) -> None:
-        """Raise ParameterError if the other body relaxes; ``call``: function that needs slip and both parts of M."""
+        """Raise ParameterError if the other body relaxes, for functions that need slip and M of each body.
+
+        call: name of that function, for the error.
+        """
         if self.other.alpha > 1.0:
             allowed = (
                 f"rigid or elastic: {call} needs the parts of M and of slip in each body, which the law of a layer "

@@ -208,16 +208,17 @@ class FromPrograms:
         cls, E: float, nu: float, name: str, fractions: ArrayLike, tau: ArrayLike, bulk: ArrayLike | None,
         long_term: bool, more: dict[str, Any],
     ) -> Any:  # fmt: skip
-        """Make a material from terms that are fractions of the instantaneous moduli; raises ParameterError.
+        """Make a material from terms that are fractions of the instantaneous moduli.
 
-        E, nu: Young's modulus, Pa, and Poisson's ratio.
+        E, nu: Young's modulus, Pa, and Poisson's ratio, of long times if ``long_term``, else instantaneous.
         name: name of the parameter ``fractions``, for errors.
-        fractions: terms of G(t) divided by G(0), (terms,).
-        tau: relaxation times, s, (terms,).
-        bulk: terms of K(t) divided by K(0), (terms,); None: nu is constant in time.
+        fractions: terms of G(t) divided by G(0), (terms,), >= 0, of a sum below 1.
+        tau: relaxation times, s, > 0, (terms,).
+        bulk: terms of K(t) divided by K(0), (terms,), as ``fractions``; None: nu is constant in time.
         long_term: whether E and nu are those of long times.
-        more: keywords of the material.
-        Returns the material.
+        more: keywords of the material, as ``name`` and ``density``.
+        Returns the material, of the class ``cls``, with its long-time modulus.
+        Raises ParameterError for values out of range, lists of different lengths, and an unknown keyword.
         """
         E, nu = check_number("E0", E, unit=SI, above=0.0), check_poisson(nu)
         values, times = check_pairs(name, fractions, "tau", tau)
@@ -238,16 +239,18 @@ class FromPrograms:
         cls, G_inf: float, nu: float, G: Floats, tau: Floats, K: Floats | None, more: dict[str, Any],
         K_inf: float | None = None, E: float | None = None,
     ) -> Any:  # fmt: skip
-        """Make a material from the terms of its moduli; raises ParameterError for an unknown keyword.
+        """Make a material from the terms of its moduli.
 
-        G_inf, nu: shear modulus and Poisson's ratio of long times.
+        G_inf, nu: shear modulus, in any unit, and Poisson's ratio of long times.
         G: terms of G(t), in the unit of G_inf, (terms,).
         tau: relaxation times, s, (terms,).
         K: terms of K(t), in the unit of G_inf, (terms,); None: nu is constant in time.
-        more: keywords of the material.
-        K_inf: bulk modulus of long times; default: by nu.
-        E: Young's modulus of long times, Pa; default: 2 (1 + nu) G_inf.
-        Returns the material, of the class ``cls``.
+        more: keywords of the material, as ``name`` and ``density``.
+        K_inf: bulk modulus of long times, in the unit of G_inf; None: by nu.
+        E: Young's modulus of long times, Pa; None: 2 (1 + nu) G_inf, with G_inf in Pa then.
+        Returns the material, of the class ``cls``.  Where bulk and shear terms differ, its series is that of E/(1 -
+        nu^2).
+        Raises ParameterError for an unknown keyword.
         """
         E = 2.0 * (1.0 + nu) * G_inf if E is None else E
         prony = Prony(G / G_inf, tau)
@@ -270,11 +273,13 @@ def check_poisson(nu: Any) -> float:
 def check_pairs(
     name: str, values: ArrayLike, other: str, at: ArrayLike, *, above: float = 0.0
 ) -> tuple[Floats, Floats]:
-    """Check two lists of equal length, and return them as arrays (n,); raises ParameterError.
+    """Check two lists of equal length, and return them as arrays (n,) in SI units.
 
-    name, values: name and numbers of the first list, >= 0.
-    other, at: name and numbers of the second list, > 0.
+    name, values: name of the first list, for errors, and its numbers, >= 0; in Pa if it is called G or K, else
+    dimensionless.
+    other, at: name of the second list, for errors, and its numbers, > 0; in s if it is called tau, else in 1/s.
     above: number that those of the second list must exceed; with -inf they must be >= 0.
+    Raises ParameterError for numbers out of range and lists of different lengths.
     """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
@@ -284,12 +289,13 @@ def check_pairs(
 
 
 def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
-    """Return the long-time shear modulus of LS-DYNA, Pa, by exactly one of its three ways; raises ParameterError.
+    """Return the long-time shear modulus of LS-DYNA, Pa, by exactly one of its three ways.
 
-    strengths: all G_i, Pa.
-    G0: instantaneous shear modulus, Pa, or None.
-    G_inf: long-time shear modulus, Pa, or None.
-    resting: those G_i whose beta is 0, Pa.
+    strengths: all G_i, Pa, (terms,).
+    G0: instantaneous shear modulus, Pa, from which all G_i are subtracted; None: not given.
+    G_inf: long-time shear modulus, Pa; None: not given.
+    resting: those G_i whose beta is 0, Pa, whose sum is the third way; empty: not given.
+    Raises ParameterError for none or several of these ways, and for a modulus that is not > 0.
     """
     ways = {
         "G0": None if G0 is None else check_number("G0", G0, unit=SI) - math.fsum(strengths),
@@ -305,10 +311,11 @@ def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, 
 
 
 def _remaining_fraction(name: str, fractions: Floats) -> float:
-    """Return 1 - sum fractions, the fraction of a modulus that remains; raises ParameterError where there is none.
+    """Return 1 - sum fractions, the long-time modulus divided by the instantaneous one.
 
     name: name of the parameter, for errors.
-    fractions: fractions of the modulus that relax, (terms,).
+    fractions: fractions of the instantaneous modulus that relax, (terms,).
+    Raises ParameterError where the sum is 1 or more.
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:

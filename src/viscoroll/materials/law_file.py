@@ -179,8 +179,9 @@ def dataset_content(dataset: Any) -> Content:
 def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
     """Return the SHA-256 over names and numbers of all variables: little-endian doubles, last dimension fastest.
 
-    numbers: arrays by name.
-    kind: kind of the file, which determines the names and their order.
+    numbers: arrays by the names of the variables; other names are left out.
+    kind: kind of the file, a key of :data:`KINDS`, which determines the names and their order.
+    Returns the hexadecimal digits.
     """
     digest = hashlib.sha256()
     for name in (*KINDS[kind].functions, *KINDS[kind].others):
@@ -194,8 +195,8 @@ def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], *
     law: the law, an object with the variables of its kind as attributes, and ``coefficients`` with the functions last.
     kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
     title: bodies whose law it is, in words.
-    errors: function -> largest relative error, dimensionless.
-    attributes: further attributes of the dataset.
+    errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind.
+    attributes: further global attributes of the dataset by name.
     """
     import xarray as xr
 
@@ -234,7 +235,12 @@ def is_law(path: str | PathLike[str]) -> bool:
 
 
 def read_law(path: str | PathLike[str]) -> Content:
-    """Return the verified content of the law file ``path``; raises FileError."""
+    """Return the content of a law file, verified by its seal, schema and checksum.
+
+    path: path of the file.
+    Returns :class:`Content`.
+    Raises FileError for a file that cannot be read, is damaged, is no law, or is of another schema.
+    """
     try:
         content = read_content(path, "law file of viscoroll", REMEDY)
     except FileError:
@@ -251,8 +257,8 @@ def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Conte
     path: path of the file.
     expected: kind of file in words, for errors.
     remedy: what to do about a damaged file, for errors.
+    Returns the :class:`Content`: arrays of all variables, and global attributes as texts and numbers.
     Raises FileError for a file that cannot be read or whose seal does not match it, and any error of h5py.
-    Returns the :class:`Content`.
     """
     import h5py
 

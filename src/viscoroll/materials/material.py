@@ -256,8 +256,11 @@ class Material(FromPrograms):
         return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
-        """Return the loss modulus E'', Pa, of the shape of ``omega`` (angular frequencies, rad/s, >= 0); errors as of
-        :meth:`storage`.
+        """Return the loss modulus E'', Pa.
+
+        omega: angular frequencies, rad/s, >= 0, of any shape.
+        Returns a number or an array of that shape; 0 of an elastic and of a rigid body.
+        Raises ParameterError for a frequency that is negative, NaN or infinite.
 
         Examples
         --------
@@ -269,8 +272,11 @@ class Material(FromPrograms):
         return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
-        """Return the loss factor E''/E', of the shape of ``omega`` (angular frequencies, rad/s, >= 0); errors as of
-        :meth:`storage`.
+        """Return the loss factor E''/E', dimensionless.
+
+        omega: angular frequencies, rad/s, >= 0, of any shape.
+        Returns a number or an array of that shape; 0 of an elastic and of a rigid body.
+        Raises ParameterError for a frequency that is negative, NaN or infinite.
 
         Examples
         --------
@@ -309,7 +315,11 @@ class Material(FromPrograms):
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
     def creep(self, t: ArrayLike) -> Any:
-        """Return the creep compliance in tension times E, from E/E(0) to 1, of the shape of ``t`` (times, s, >= 0).
+        """Return the creep compliance in tension times E, which rises from E/E(0) at t = 0 to 1, dimensionless.
+
+        t: times, s, >= 0, of any shape.
+        Returns a number or an array of that shape.
+        Raises ParameterError for a time that is negative, NaN or infinite.
 
         Examples
         --------
@@ -411,9 +421,12 @@ class Material(FromPrograms):
         return load_material(path, cls)
 
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
-        """Return storage and loss modulus divided by E, of the shape of ``omega`` (angular frequency, rad/s).
+        """Return storage and loss modulus divided by E.
 
-        A product of omega and a relaxation time that overflows is taken as infinite.
+        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation time that overflows
+            is taken as infinite.
+        Returns (E'/E, E''/E), each a number or an array of that shape.
+        Raises ParameterError for a frequency that is negative, NaN or infinite.
         """
         with np.errstate(over="ignore"):
             product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
@@ -435,9 +448,10 @@ class Material(FromPrograms):
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
-    """Raise ParameterError where T_epsilon < T_sigma; for arrays it names the longest T_sigma that is too long.
+    """Raise ParameterError where T_epsilon < T_sigma, as no material has it.
 
-    T_epsilon, T_sigma: retardation and relaxation times in one unit, of shapes that broadcast.
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast.  The error
+        names the longest T_sigma that is too long.
     """
     slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
     short = fast > slow

@@ -50,9 +50,12 @@ _BAND = ("low", "high", "misfit")
 
 
 def material_as_dataset(material: Any) -> xr.Dataset:
-    """Return both forms of the series over "mode", slowest first, and the constants of a ``material`` as a dataset.
+    """Return both forms of the series, relaxation and creep, and the constants of a material as a dataset.
 
-    The attribute ``given`` names the form from which the material is read.
+    material: a :class:`viscoroll.Material`.
+    Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, and the constants in SI
+    units; those that are not given are left out.  The attribute ``given`` names the form from which the material is
+    read, "relaxation" or "creep".
     """
     import xarray as xr
 
@@ -77,11 +80,12 @@ def material_as_dataset(material: Any) -> xr.Dataset:
 
 
 def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
-    """Read a file of :meth:`viscoroll.Material.to_netcdf`; raises FileError.
+    """Read a file of :meth:`viscoroll.Material.to_netcdf`.
 
     path: path of the file.
-    make: constructor of the material, called with its parameters by name.
-    Returns the material.
+    make: constructor of the material, called with the parameters of :class:`viscoroll.Material` by name.
+    Returns what ``make`` returns.
+    Raises FileError for a file that is missing, damaged, no material, or has values out of range.
     """
     try:
         numbers, about = read_content(path, "material of this package", "write it again")

@@ -80,16 +80,17 @@ class MaterialSection(FileSection, kw_only=True):
 
 
 def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
-    """Read the materials of a TOML file by section, "material" and "base"; of a netCDF file its only one, "material".
+    """Read the materials of a file.
 
     Parameters
     ----------
-    path : a file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are
-        ignored.  Or a file that :meth:`Material.to_netcdf` wrote.
+    path : a TOML file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are
+        ignored.  Or a netCDF file (suffix .nc) that :meth:`Material.to_netcdf` wrote.
 
     Returns
     -------
     dict of str to Material
+        By the names of the sections, "material" and "base", those that exist; of a netCDF file "material" alone.
 
     Raises
     ------
@@ -116,11 +117,13 @@ def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material
 
 
 def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
-    """Return the shifts of those materials of a file that have one; raises FileError.
+    """Return the time-temperature shifts of those materials of a file that have one.
 
-    path: path of the file.
-    content: sections of the file.
-    Returns functions a_T(temperature in degrees Celsius) by section, which are 1 at the temperature of the section.
+    path: path of the file, for errors.
+    content: sections of the file by name, as tomllib reads them.
+    Returns a dict from "material" and "base" to a function a_T(temperature in degrees Celsius), which is 1 at the
+    temperature of the section, or without one where the shift itself is 1.
+    Raises FileError for a section that is wrong.
     """
     sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
     return {
@@ -133,7 +136,8 @@ def material_as_toml(material: Material, section: str = "material") -> str:
     """Return the TOML section that reads back as a material, to the bit.
 
     material: the material.
-    section: name of the section.
+    section: name of the section, "material" or "base".
+    Returns the text, with a header and a line for each property that is given.
     """
     band = material.measured
     values = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
@@ -168,10 +172,12 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
 
 
 def _parse_material(path: Any, name: str, content: Any) -> Material:
-    """Return the material of a section at its temperature; raises FileError.
+    """Return the material of a section at its temperature.
 
-    path, name: path of the file and name of the section.
-    content: keys and values of the section.
+    path, name: path of the file, against which a path in the section is taken, and name of the section.
+    content: keys and values of the section, as tomllib reads them.
+    Raises FileError, with the line of the key, for a key or value that is wrong, a temperature without a shift, and a
+    file that the section names and that is wrong.
     """
     section = _parse_section(path, name, content)
     try:
@@ -193,10 +199,11 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
 
 
 def _read_other_file(path: Any, name: str, other: Path) -> Material:
-    """Return the material of a file that a section names; raises FileError.
+    """Return the material of a file that a section names.
 
-    path, name: path of the file and name of the section that names it.
+    path, name: path of the file with that section, and name of the section, for errors.
     other: netCDF file of a material or of its law, or TOML file with a section of this name or [material].
+    Raises FileError for the key ``file`` of the section if that file is missing or wrong, or names a file again.
     """
     try:
         if other.suffix == SUFFIX:
@@ -223,10 +230,13 @@ def _material_of_law(path: Path) -> Material:
 
 
 def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
-    """Return the material of a section at its reference temperature; raises FileError and ParameterError.
+    """Return the material of a section at its reference temperature, by its standard linear solid or its series.
 
-    path, name: path of the file and name of the section.
+    path, name: path of the file and name of the section, for errors.
     section: checked content of the section.
+    Returns the material; elastic if the section has neither times nor a series.
+    Raises FileError for T_epsilon without T_sigma or beside a series, and for a series that is wrong; ParameterError
+    for another value out of range.
     """
     more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
     more["temperature"] = section.reference
@@ -242,10 +252,13 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
 
 
 def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
-    """Return the series of a section by its key prony or creep, or None without these; raises FileError.
+    """Return the series of a section by its key prony or creep.
 
-    path, name: path of the file and name of the section.
-    given: keys and values; strengths and times may be arrays with one value for each of many materials.
+    path, name: path of the file and name of the section, for errors.
+    given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps alpha, each a list
+        by mode, whose elements may be arrays (n,) of n materials; other keys are ignored.
+    Returns a :class:`Prony`, None if neither key is given.
+    Raises FileError for both keys, and for values out of range.
     """
     forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
     if len(forms) > 1:
@@ -263,9 +276,12 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
 
 
 def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | None:
-    """Return the time-temperature shift of a ``section``, or None; raises FileError for two.
+    """Return the time-temperature shift of a section by its key wlf or arrhenius.
 
     path, name: path of the file and name of the section, for errors.
+    section: checked content of the section.
+    Returns None if neither key is given.
+    Raises FileError for both keys.
     """
     if section.wlf is not None and section.arrhenius is not None:
         raise section_error(path, name, "arrhenius", "wlf and arrhenius are both given: give one of the two")

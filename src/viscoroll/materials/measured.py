@@ -46,7 +46,10 @@ class Measured:
             raise ParameterError("source", f"{self.source!r:.60}", "a text")
 
     def shifted(self, a_T: float) -> Measured:
-        """Return the measured band at a temperature where all times are ``a_T`` times longer, as :class:`Measured`.
+        """Return the measured band at another temperature.
+
+        a_T: factor of all times from the temperature of the band to the other one, dimensionless, > 0.
+        Returns a :class:`Measured` whose frequencies are divided by ``a_T``; misfit and source stay.
 
         Examples
         --------

@@ -23,13 +23,13 @@ Plane = Literal["strain", "stress"]
 
 
 class Solid(NamedTuple):
-    """The properties of a :class:`Material` that the law depends on, as arrays and as series of many bodies.
+    """The properties of a :class:`Material` that the law depends on; of many bodies as arrays and as many series.
 
-    E : long-time Young's modulus, Pa.
-    nu : Poisson's ratio.
-    prony : series, times in units of T_ref.
-    T_ref : s.
-    thickness : m, or None for a half-space.
+    E : long-time Young's modulus, Pa, a number or (n,); infinite for a rigid body.
+    nu : Poisson's ratio, a number or (n,).
+    prony : one series or n of them, times in units of T_ref.
+    T_ref : unit of these times, s.
+    thickness : thickness of a layer, m, a number or (n,); None: a half-space.
     """
 
     E: Any
@@ -60,7 +60,10 @@ class Pair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
-        """Check the bodies, and what a layer of finite thickness allows; raises ParameterError."""
+        """Check the bodies, and what a layer of finite thickness allows.
+
+        Raises ParameterError as the class states.
+        """
         for name in ("cylinder", "base"):
             body = getattr(self, name)
             if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
@@ -72,7 +75,10 @@ class Pair:
             self._refuse_covers()
 
     def _refuse_covers(self) -> None:
-        """Raise ParameterError for bodies to which the law of a cover does not apply; see the class."""
+        """Refuse pairs with a layer to which the law of a cover does not apply.
+
+        Raises ParameterError for a thickness of both bodies, and for a layer in plane stress.
+        """
         if self.cylinder.thickness is not None and self.half_space.thickness is not None:
             allowed = "given for one body only: the law of two layers is not available; give base=, rigid or elastic"
             raise described_error("thickness", "is given for both bodies", allowed)
@@ -107,8 +113,9 @@ class Pair:
 
     @property
     def E_prime(self) -> Any:
-        """Return the contact modulus E' of the pair at long times, Pa, of Sect. 3.1; on a rigid base twice that of the
-        other body alone.
+        """Return the contact modulus E' of the pair at long times, 2/E' = 1/E'_1 + 1/E'_2 (Sect. 3.1), Pa.
+
+        A number, or an array of many pairs; on a rigid base twice that of the other body alone.
         """
         one, other = self._moduli
         if self.like:
@@ -133,7 +140,7 @@ class Pair:
     def law(self) -> Prony | Bodies:
         """Return the material of the law: a :class:`Prony` series for like bodies, else :class:`Bodies`.
 
-        Its times are in units of ``T_ref``, its moduli in units of the long-time ones.
+        Its times are in units of ``T_ref``; strengths are divided by the long-time modulus or compliance.
 
         Raises
         ------
@@ -149,17 +156,23 @@ class Pair:
         return Bodies(one, other, self.share)
 
     def cover(self, l0: Any) -> Cover:
-        """Return the layer of finite thickness and its counterpart as a dimensionless :class:`Cover`.
+        """Return the layer of finite thickness and the other body as a dimensionless :class:`Cover`.
 
         Parameters
         ----------
-        l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array for many
+        l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array (n,) for n
             covers.
+
+        Returns
+        -------
+        Cover
+            Its thickness is divided by ``l0``, its times are in units of ``T_ref``.
 
         Raises
         ------
         ParameterError
-            Many series, or many parts of the compliance beside an elastic body.
+            Many series, or many parts of the compliance beside an elastic body; a cover that is too thin or out of
+            range.
         """
         on = self.covered
         assert on is not None
@@ -182,30 +195,35 @@ class Pair:
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:
-        """Dundurs' constant beta_D of the long-time and of the instantaneous moduli; body 1 is the cylinder."""
+        """Dundurs' constant beta_D, (of the long-time moduli, of the instantaneous moduli), dimensionless, any sign;
+        body 1 is the cylinder.
+        """
         one, other = self.cylinder, self.half_space
         instant = one.G * one.prony.alpha, other.G * other.prony.alpha
         return tuple(dundurs(G, one.nu, G_2, other.nu, self.plane) for G, G_2 in ((one.G, other.G), instant))  # type: ignore[return-value]
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
-    """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper, in the unit of E; in plane stress pi
-    E.
+    """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper; in plane stress pi E.
 
-    E: Young's modulus.
-    nu: Poisson's ratio.
+    E: Young's modulus, a number or an array.
+    nu: Poisson's ratio, likewise; they broadcast.
     plane: "strain" or "stress".
+    Returns E' in the unit of E.
     """
     return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
 
 
 def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:
-    """Return beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), with k = 3 - 4 nu in plane
+    """Return Dundurs' constant beta_D of two bodies; where it is 0, shear does not change the pressure.
+
+    beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), with k = 3 - 4 nu in plane
     strain and k = (3 - nu)/(1 + nu) in plane stress.
 
-    G_1, G_2: shear moduli in one unit; one of them may be infinite.
+    G_1, G_2: shear moduli in one unit, > 0; one of them may be infinite.
     nu_1, nu_2: Poisson's ratios.
     plane: "strain" or "stress".
+    Returns a number, dimensionless; its sign changes where the bodies are exchanged.
     """
     k_1, k_2 = (3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2))
     largest = max(G_1, G_2)

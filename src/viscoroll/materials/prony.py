@@ -30,9 +30,10 @@ _AGREEMENT = 1e-14
 class Block(NamedTuple):
     """Materials of equal numbers of modes, along the last axis.
 
-    rows : their indices, (materials,).
-    modes : both forms of their series, arrays (materials, modes).
-    weights : for pairs the part of each creep strength that is the half-space's, (materials, modes).
+    rows : their places in the list of indices that was asked for, (materials,).
+    modes : strengths and rates of relaxation and creep, arrays (materials, modes).
+    weights : for pairs the part of each creep mode that is the half-space's, 0 to 1, (materials, modes); None of
+        series.
     """
 
     rows: Integers
@@ -111,8 +112,9 @@ class Prony(OneOrMany):
         """Make one or many materials from their relaxation modulus, divided by its long-time value.
 
         E: strengths, >= 0, dimensionless, (modes,) or (n, modes).
-        tau: relaxation times in units of T_ref, > 0, in the shape of E.
-        Raises ParameterError.
+        tau: relaxation times in units of T_ref, > 0, in the shape of E; one of the two may be (modes,) where the other
+            is (n, modes).
+        Raises ParameterError as the class states.
         """
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
@@ -122,15 +124,16 @@ class Prony(OneOrMany):
 
     @classmethod
     def creep(cls, J: ArrayLike, T: ArrayLike, *, alpha: Any = None) -> Prony:
-        """Make the material from its creep compliance.
+        """Make one material, or n of them, from the creep compliance.
 
         Parameters
         ----------
-        J : strengths divided by the long-time compliance, >= 0, of a sum below 1, dimensionless.
-        T : retardation times in units of T_ref, > 0.
-        alpha : instantaneous divided by long-time modulus, 1/(1 - sum J); a number or, for arrays (n, N), (n,).  That
-            difference loses digits where the sum is near 1: a value given here replaces it, and must agree with it to
-            rounding of J.
+        J : strengths divided by the long-time compliance, >= 0, of a sum below 1, dimensionless, (modes,) or (n,
+            modes).
+        T : retardation times in units of T_ref, > 0, in the shape of J.
+        alpha : instantaneous divided by long-time modulus, 1/(1 - sum J); a number or, for arrays (n, modes), (n,).
+            That difference loses digits where the sum is near 1: a value given here replaces it, and must agree with
+            it to rounding of J.  None: it is computed.
 
         Returns
         -------
@@ -188,10 +191,11 @@ class Prony(OneOrMany):
         return series
 
     def _set(self, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> None:
-        """Set all attributes.
+        """Set all attributes to checked values, and make the arrays read-only.
 
-        by_creep: whether the modes are those of creep.
-        strengths, times: modes, longest time first, (modes,) or (n, modes); dimensionless, in units of T_ref.
+        by_creep: whether the modes are those of creep, else of relaxation.
+        strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength last;
+            dimensionless, times in units of T_ref.
         alpha: instantaneous divided by long-time modulus, a number or (n,).
         """
         self.by_creep, self.shape = by_creep, strengths.shape[:-1]
@@ -221,9 +225,10 @@ class Prony(OneOrMany):
         return self._convert(self._strengths, self._times, self.alpha)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """Yield materials in blocks of equal numbers of modes, as :class:`Block`.
+        """Yield materials in blocks of equal numbers of modes, for computations on whole arrays.
 
         which: indices of the materials, (m,).
+        Yields a :class:`Block` for each number of modes that occurs, ascending; its ``rows`` are places in ``which``.
         """
         counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
@@ -236,7 +241,8 @@ class Prony(OneOrMany):
     def _other_form(self) -> tuple[NDArray, NDArray]:
         """Return the modes of the form that was not given: creep if relaxation was given, and the reverse.
 
-        Returns (strengths, times), (modes,) each; for many materials (n, modes), 0 and 1 behind the last mode.
+        Returns (strengths, times), (modes,) each; for many materials (n, modes), with strength 0 and time 1 behind the
+        last mode.
         """
         names = ("E", "a") if self.by_creep else ("J", "b")
         if not self.shape:
@@ -285,9 +291,10 @@ class Prony(OneOrMany):
         return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2)) / self.T_mean
 
     def slower(self, factor: ArrayLike) -> Prony:
-        """Return the material with all times multiplied by ``factor``, a number or one for each, as of a colder rubber.
+        """Return the material with all times multiplied by a factor, as of a colder rubber.
 
-        Raises ParameterError for a factor that is not positive.
+        factor: dimensionless, > 0, a number or, of n materials, (n,).
+        Raises ParameterError for a factor that is not positive or not finite.
 
         Examples
         --------
@@ -301,7 +308,11 @@ class Prony(OneOrMany):
         return Prony(self._strengths, times)
 
     def in_own_time(self) -> tuple[Prony, float]:
-        """Return a single series with its slow time near 1, and its unit of time in T_ref, a power of two: exact."""
+        """Return a single series with its slow time near 1, and the unit of time that this takes.
+
+        Returns (the series with times divided by the unit; the unit in T_ref, a power of two, so that no time is
+        rounded).
+        """
         return self._in_own_time
 
     @cached_property
@@ -326,11 +337,14 @@ class Prony(OneOrMany):
 
 
 def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
-    """Check modes and sort them; raises ParameterError.
+    """Check modes, sort them, and add those of equal times.
 
     names: names of both parameters, for errors.
     strengths, times: strengths and times of the modes, (modes,) or (n, modes); dimensionless, in units of T_ref.
-    Returns strengths and times by descending time, modes without strength dropped or, for many, set behind the others.
+    Returns (strengths, times) by descending time, (modes,) or (n, modes); modes without strength are dropped or, of
+    many materials, put behind the others.
+    Raises ParameterError for numbers out of range, shapes that do not fit, more than :data:`MOST_MODES` modes, and
+    times that span more than :data:`LARGEST_TIME_RATIO`.
     """
     values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, above=0.0)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
@@ -353,9 +367,10 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
 
 
 def series_of_alpha(alpha: float) -> Prony:
-    """Return the standard linear solid of the paper with times in units of T_epsilon, both forms without rounding.
+    """Return the standard linear solid of the paper, with both forms of its series without rounding.
 
     alpha: instantaneous divided by long-time modulus, >= 1; for 1 the series is elastic.
+    Returns a series with times in units of T_epsilon: T = 1, tau = 1/alpha.
     """
     c, one = np.array([(alpha - 1.0) / alpha]), np.ones(1)
     if alpha == 1.0:
@@ -368,9 +383,9 @@ def series_of_alpha(alpha: float) -> Prony:
 def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floats]:
     """Sort modes by descending time, add those of equal times, and put those without strength behind the others.
 
-    strengths, times: strengths and times of the modes, (..., modes), any unit.
-    parts: parts of the strengths, (..., modes) each, which are treated like them.
-    Returns [strengths, times, *parts], each (..., modes).
+    strengths, times: strengths and times of the modes, (..., modes), any unit; not changed.
+    parts: parts of the strengths, (..., modes) each, which are sorted and added like them.
+    Returns a list of new arrays [strengths, times, *parts], each (..., modes).
     """
     order = np.argsort(-times, axis=-1, kind="stable")
     values, each, *rest = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts))
@@ -390,7 +405,11 @@ def _exact_sums(values: NDArray) -> Any:
 
 
 def lock_array(values: Any) -> Any:
-    """Return the array ``values`` itself, or a contiguous copy, after making it read only."""
+    """Make an array read-only.
+
+    values: a contiguous array, which is locked itself, or another one, of which a contiguous copy is made.
+    Returns the array that was locked.
+    """
     values = np.ascontiguousarray(values)
     values.flags.writeable = False
     return values

@@ -31,14 +31,14 @@ _CLOSEST = 1e-300
 
 @dataclass(frozen=True)
 class Modes:
-    """Both forms of one material, or of many along leading axes, and the gaps between their rates.
+    """Relaxation and creep form of one material, or of many along leading axes, and the gaps between their rates.
 
-    alpha : instantaneous divided by long-time modulus.
-    a : rates of relaxation, 1/tau_i, ascending, (..., modes).
-    b : rates of creep, 1/T_j, ascending, (..., modes).
-    E : strengths of relaxation, (..., modes).
-    J : strengths of creep, (..., modes).
-    gap : a_i - b_j, [..., j, i].
+    alpha : instantaneous divided by long-time modulus, a number or (...).
+    a : rates of relaxation, 1/tau_i, in units of 1/T_ref, ascending, (..., modes).
+    b : rates of creep, 1/T_j, in units of 1/T_ref, ascending, (..., modes).
+    E : strengths of relaxation divided by the long-time modulus, (..., modes).
+    J : strengths of creep divided by the long-time compliance, (..., modes).
+    gap : a_i - b_j, (..., modes, modes), [..., j, i].
     """
 
     alpha: Any
@@ -50,12 +50,12 @@ class Modes:
 
 
 def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
-    """Compute the :class:`Modes`, both forms of a series, from its relaxation form.
+    """Compute the creep form of a series from its relaxation form.
 
-    E: strengths, (..., modes).
-    tau: times, descending, (..., modes).
+    E: strengths divided by the long-time modulus, > 0, (..., modes).
+    tau: relaxation times, descending, (..., modes).
     alpha: 1 + sum E, a number or (...).
-    Returns the :class:`Modes`, whose arrays have the shape of ``E``.
+    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``tau``.
     """
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
@@ -67,12 +67,12 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
 
 
 def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
-    """Compute the :class:`Modes`, both forms of a series, from its creep form.
+    """Compute the relaxation form of a series from its creep form.
 
-    J: strengths, (..., modes).
-    T: times, descending, (..., modes).
+    J: strengths divided by the long-time compliance, > 0, (..., modes).
+    T: retardation times, descending, (..., modes).
     alpha: 1/(1 - sum J), a number or (...).
-    Returns the :class:`Modes`, whose arrays have the shape of ``J``.
+    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``T``.
     """
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
@@ -97,12 +97,12 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
     accuracy.
 
     The sum increases from pole to pole: one zero lies between two neighbours, and one right of the last if
-    ``constant`` > 0.
+    ``constant`` > 0.  Zeros are found by halving ln(distance from the nearer pole), then by Newton's method.
 
-    spread: pole_j - pole_l, [..., j, l]; poles are ascending.
+    spread: pole_j - pole_l, (..., poles, poles), [..., j, l]; poles are ascending.
     weight: weights of the poles, positive, (..., poles).
-    constant: the constant, >= 0, (...).
-    Returns gap[..., j, i] = s_i - pole_j.
+    constant: the constant, (...): > 0 for all, or 0 for all.
+    Returns gap[..., j, i] = s_i - pole_j, (..., poles, zeros), zeros ascending.
     """
     poles, constant = weight.shape[-1], constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
@@ -149,12 +149,13 @@ def _improve_distance(
 ) -> Floats:
     """Improve the distances of zeros from their poles by one step of Newton's method.
 
-    The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.
+    The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.  A step
+    that would halve or double a distance is left out.
 
-    distance: distance of each zero from its origin, (..., zeros).
-    origin: index of the pole that each zero is measured from, (..., zeros).
+    distance: distance of each zero from its origin, the pole that it is measured from, > 0, (..., zeros).
+    origin: index of that pole, (..., zeros).
     side: 1 for a zero right of its origin, -1 left of it, (..., zeros).
-    seen: poles relative to the origin of each zero, [..., i, j].
+    seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
     weight: weights of the poles, (..., poles).
     constant: the constant of the sum, (..., 1).
     Returns the distances, (..., zeros), in the unit of the poles.

@@ -113,12 +113,12 @@ class Arrhenius:
 
 
 def check_celsius(name: str, temperature: Any) -> float:
-    """Return a temperature as a number of degrees Celsius.
+    """Return a temperature as a number of degrees Celsius, and warn of one that looks like kelvin.
 
     Parameters
     ----------
     name : name of the parameter, for the error and the warning.
-    temperature : degrees Celsius, above absolute zero.
+    temperature : number of degrees Celsius, or a value with a unit of temperature; above absolute zero.
 
     Raises
     ------
@@ -147,35 +147,43 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
 
     Parameters
     ----------
-    shift : function that returns a_T at a temperature in degrees Celsius.
+    shift : function that returns a_T, > 0, at a temperature in degrees Celsius.
     temperature : degrees Celsius.
     reference : degrees Celsius; None: the temperature at which the shift is 1.
+
+    Returns
+    -------
+    float
+        The ratio, dimensionless, > 0.
 
     Raises
     ------
     ParameterError
-        A temperature that the shift does not allow; a shift that returns no positive number.
+        A temperature that the shift does not allow; a shift that returns no finite positive number.
     """
     factor, unit = (1.0 if at is None else check_number("a_T", shift(at), above=0.0) for at in (temperature, reference))
     return check_number("a_T", factor / unit, above=0.0)
 
 
 def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
-    """Check that fields of a frozen dataclass are numbers above lower bounds, and convert them; raises ParameterError.
+    """Check that fields of a frozen dataclass are numbers above lower bounds, and replace them by floats in their
+    unit.
 
-    instance: the dataclass.
-    unit: unit of all these fields, or an object that has units by name.
+    instance: the dataclass, which is changed.
+    unit: unit of all these fields, as "rad s-1", or an object that has units by name.
     lows: lower bound of each field by name; the number must be larger.
+    Raises ParameterError for the first field that is no such number.
     """
     for name, low in lows.items():
         object.__setattr__(instance, name, check_number(name, getattr(instance, name), unit=unit, above=low))
 
 
 def _shift(temperature: float, exponent: float) -> float:
-    """Return a_T = exp(exponent); raises ParameterError where no double holds it.
+    """Return a_T = exp(exponent).
 
     temperature: degrees Celsius, for the error.
     exponent: ln a_T.
+    Raises ParameterError where a_T is beyond the range of doubles.
     """
     if not abs(exponent) < 700.0:
         raise ParameterError(

@@ -67,12 +67,15 @@ def loads_of(
 ) -> Loads:
     """Check and broadcast the loads of a call of :func:`.steady.steady`.
 
-    scene : parameters, on the slope.
-    force, torque : numbers, arrays or :class:`Feedback`.
-    slope : angle, rad.
-    V : given speeds, or None.
-    Raises ParameterError as ``steady`` does.
-    Returns the :class:`Loads`, vectors of one length.
+    scene : dimensionless parameters of the roller, on the slope; one alpha or one material, the others numbers or
+        arrays.
+    force, torque : numbers, arrays or :class:`Feedback`, divided by P and P R; None: 0.
+    slope : angle, rad, a number or an array; tan(slope) is added to the force.  None: level.
+    V : given speeds, dimensionless, any sign; None where the speed is to be found.
+    Returns the :class:`Loads`: the broadcast loads, flattened to vectors (n,).
+    Raises ParameterError: several alphas; NaN or infinite input; shapes that do not broadcast; kappa |V| above
+    :data:`FASTEST`; a feedback that changes with time or has arrays of gains; with V both or neither of force and
+    torque (a slope alone counts as the force), or a feedback.
     """
     if type(scene.alpha) is not float:
         refuse_arrays(scene, ("alpha",))
@@ -95,9 +98,10 @@ def loads_of(
 def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
     """Split a load into its value without feedback and the gains of its feedback.
 
-    name: name of the load, for errors.
+    name: name of the load, "force" or "torque", for errors.
     value: a number, an array or a :class:`Feedback`; None: no load.
-    Returns (value at V = omega = 0, gain on V, gain on omega), in the units of the roller.
+    Returns (value at V = omega = 0, a number or an array; gain on V; gain on omega), in the unit of ``value``.
+    Raises ParameterError for NaN or infinite values, a feedback that changes with time, or arrays of gains.
     """
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
@@ -109,11 +113,11 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
 
 
 def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -> str:
-    """Return the name of the load that is given beside V: "force" or "torque".
+    """Return the name of the load that is given beside V, "force" or "torque"; the other one is to be found.
 
-    slope: angle, rad, or None; without another load the force counts as the one that is given.
-    loads: force and torque by name, None where they are not given.
-    Raises ParameterError where both are given or none.
+    slope: angle, rad, or None; without force and torque a slope counts as the force given.
+    loads: ``force`` and ``torque``, each a number or an array, None where it is not given.
+    Raises ParameterError where both are given, where neither of the two and no slope is given, and for a feedback.
     """
     names = [name for name, value in loads.items() if value is not None]
     for name in names:

@@ -51,7 +51,9 @@ Function = Callable[[Floats], Floats]
 class ResistanceExtrema(NamedTuple):
     """Every local maximum and minimum of M(V) for V > 0, by rising V; the first and the last are maxima.
 
-    V : speeds.  M : moments there.  is_maximum : whether it is a maximum.
+    V : speeds, (n,), of a cylinder in m/s, of a scene divided by R/T_ref.
+    M : rolling resistance moments there, (n,), of a cylinder in N m/m, of a scene divided by P R.
+    is_maximum : whether it is a maximum, else a minimum, (n,).
     """
 
     V: Floats
@@ -67,10 +69,15 @@ class ResistanceExtrema(NamedTuple):
 
 @dataclass(frozen=True)
 class Branches:
-    """Nodes of kappa (M - G V) over kappa V, and the branches on which it is monotone.
+    """The curve kappa (M - G V) over u = kappa V at nodes, and its branches, on each of which it rises or falls
+    throughout.
 
-    u : nodes of kappa V, ascending.  resistance : values there.  extremum : whether a node is an extremum.
-    gain : G, dimensionless.  first, last : indices of the ends of each branch.
+    G is a gain on the speed, as of a feedback.  All is dimensionless.
+    u : nodes of kappa V, ascending, (n,).
+    resistance : kappa (M - G V) at the nodes, (n,).
+    extremum : whether a node is a local extremum of the curve, (n,).
+    gain : G.
+    first, last : indices of the nodes at the ends of each branch, (branches,).
     """
 
     u: Floats
@@ -94,12 +101,12 @@ class Branches:
         return float(self.resistance[n]), float(self.u[n])
 
     def locate_loads(self, load: Floats) -> tuple[Integers, Integers]:
-        """Locate the branches on which the curve takes given values.
+        """Locate the branches on which the curve takes given values, as brackets for a root solve.
 
-        load : values of kappa (M - G V), (n,).
-
-        Returns (index of the load, node below the crossing), one entry for each crossing.  An extremum, and loads
-        within rounding of it, belong to the branch that ends there.
+        load : values of kappa (M - G V), dimensionless, any sign, (n,).
+        Returns (index of the load; index of the node below the crossing, which lies between that node and the next
+        one), one entry for each crossing, (crossings,) each; a load has none to many.  An extremum, and loads within
+        rounding of it, belong to the branch that ends there.
         """
         from ...kernels.rows.load_crossings import EXTREMUM_RTOL
 
@@ -167,12 +174,13 @@ def branches(law: LawTable, gain: float) -> Branches:
     """Return the curve kappa (M - G V) over speed, divided into branches on which it is monotone.
 
     law : rows of the material.
-    gain : G, slope of the load in V, dimensionless.
+    gain : G, slope of the load in V, dimensionless, any sign; 0 for a load that does not depend on V.
+    Returns the :class:`Branches`, which are kept for the next call.
 
     Raises
     ------
     ParameterError
-        A gain outside the range of the nodes.
+        A gain other than 0 whose size, divided by the longest retardation time, is outside :data:`_GAIN_RANGE`.
     """
     longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
     if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
@@ -194,7 +202,8 @@ def speed_nodes(law: LawTable) -> Floats:
     """Return nodes of log2(u), u = kappa V, closely spaced where the material relaxes.
 
     law : rows of the material.
-    Returns the nodes, ascending, (n,).
+    Returns the nodes, ascending, (n,): 16 in an octave from 15 octaves below to 15 octaves above the rates of the
+    modes, 2 in an octave for 446 octaves beyond on either side.
     """
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
@@ -216,12 +225,13 @@ def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
 def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
     """Find the zeros of a function between nodes, including pairs of zeros between neighbouring nodes.
 
-    function : vectorised function of one variable.
-    nodes : ascending, (n,).
-    noise : rounding error of the function at the nodes, a number or (n,); nodes with smaller values have no sign.
-
-    Returns the zeros, ascending, bisected to the rounding of the nodes.  A pair of zeros is found where |function|
-    has a minimum at a node.
+    function : takes points (m,) and returns its values there, (m,).
+    nodes : points, ascending, (n,).
+    noise : rounding error of the function at the nodes, absolute, a number or (n,); nodes with values no larger than
+        it have no sign and are left out.
+    Returns the zeros, ascending, (zeros,), to the rounding of the nodes; empty if there are none.  They are bisected
+    from the changes of sign.  A pair of zeros without a change of sign is found where |function| has a minimum at a
+    node.
     """
     values = function(nodes)
     signed = np.abs(values) > noise
@@ -248,12 +258,13 @@ def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
 
 
 def _refine_near_double_roots(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
-    """Find points that separate two zeros between the neighbours of a node.
+    """Find points that separate two zeros between the neighbours of a node, where the nodes show no change of sign.
 
-    function : vectorised function of one variable.
+    Candidates are the nodes with a local minimum of |function| near which a parabola through three nodes passes 0; the
+    interval around each is divided again, :data:`_REFINEMENTS` times at most.
+    function : takes points (m,) and returns its values there, (m,).
     x, y : nodes, ascending, and values of the function there, (n,).
-
-    Returns a list of (points, values), one for each pair of zeros.
+    Returns a list of (points, values), (33,) each, one for each pair of zeros that was separated; empty if none was.
     """
     size, sign = np.abs(y), np.sign(y)
     minimum = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])

@@ -28,17 +28,19 @@ _LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "effic
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """Power balance, divided by P R/T_ref (W per m of length for a Cylinder).
+    """Power balance of steady rolling, in the shape of the equilibria.
+
+    Powers are divided by P R/T_ref, of a Cylinder in W per m of length.
 
     Attributes
     ----------
-    slip : power lost in slip, (omega - V) Q.
-    half_space, cylinder : power lost in rolling, V M_half_space and omega M_cylinder; their sum with ``slip`` is the
-        power of force and torque.
-    coefficient : coefficient of rolling resistance, all losses divided by P |V|: M and the slip loss; at V = 0 the
-        limit V -> 0.
-    efficiency : output power divided by input power, -force V/(torque omega) of a driving roller, the inverse of a
-        towed one that drives; 0 without output, NaN at rest.
+    slip : power lost in slip, (omega - V) Q of a scene, (omega R - V) Q of a Cylinder.
+    half_space, cylinder : power lost in rolling in either body, V M_half_space and omega M_cylinder (of a Cylinder the
+        first divided by R); their sum with ``slip`` is the power of force and torque.
+    coefficient : coefficient of rolling resistance, dimensionless: all losses divided by P |V|; at V = 0 the limit V
+        -> 0.
+    efficiency : output power divided by input power.  Force V and torque omega are input where they are positive,
+        output where they are negative.  0 without output; NaN without input, as at rest.
     """
 
     slip: Floats
@@ -51,9 +53,13 @@ class Loss:
 class Diagnosis(NamedTuple):
     """Data for the explanation why a load has no equilibrium.
 
-    loads : the loads.  states : load, V and Q of all states, whether or not the friction suffices.  number :
-    equilibria of each load.  maximum : largest kappa M and its kappa V; NaN with feedback.  elastic : whether the
-    bodies are elastic, without a gain.
+    loads : the loads, n of them.
+    states : (index of the load, V, Q) of all states, whether or not the friction suffices, (states,) each,
+        dimensionless.
+    number : equilibria of each load, (n,).
+    maximum : (largest kappa M, kappa V there), dimensionless; (NaN, NaN) with feedback, and for elastic bodies.
+    elastic : whether the bodies are elastic and no gain and no given V determines the speed, so that M = 0 at every
+        speed.
     """
 
     loads: Loads
@@ -72,7 +78,11 @@ class Diagnosis(NamedTuple):
         return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
     def _reason(self, n: int, scale: Scale) -> str:
-        """Return why the load ``n`` has no equilibrium, in the units of ``scale``."""
+        """Return why a load has no equilibrium, in one sentence.
+
+        n : index of the load in the flattened loads.
+        scale : units of the roller, in which the sentence states its numbers; of a scene they are dimensionless.
+        """
         name, moment, of_load, of_speed = "force + torque", "rolling moment", "", ""
         if scale.si:
             name, moment, of_load, of_speed = "force + torque/R", "rolling moment over R", " N/m", " m/s"
@@ -104,7 +114,7 @@ class Steady(Values):
     """Equilibria of rolling under load, the result of :func:`viscoroll.steady`.
 
     The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); shorter lists are padded
-    with NaN (``stable``: False).
+    with NaN (``stable``: False).  The axes before it are those of the loads; of one load there are none.
 
     Attributes
     ----------
@@ -112,10 +122,12 @@ class Steady(Values):
     Q, M : creep force and rolling resistance moment, divided by P and P R; M_half_space, M_cylinder : the parts of M.
     beta : stick zone divided by contact length.  grip : friction reserve 1 - |Q|/mu, 0 in full slip.
     stable : whether (V, omega) returns after any small disturbance; False if an eigenvalue is 0.
-    eigenvalues : last axis of two, complex, fast and slow: growth rates of small disturbances, in units of gamma.
+    eigenvalues : last axis of two, complex, fast and slow: growth rates of small disturbances, in units of
+        gamma/T_ref.
     force, torque : loads, with slope and feedback; the one to be found where V was given.
     loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
-    count : number of equilibria of each load.
+    count : number of equilibria of each load, an int for one load.
+    Of a Cylinder all in SI units, per m of its length: m/s, rad/s, N/m, N m/m, 1/s, W/m.
 
     Examples
     --------
@@ -134,8 +146,10 @@ class Steady(Values):
 
     @cached_property
     def loss(self) -> Loss:
-        """Return the powers of each equilibrium, its coefficient of rolling resistance and its efficiency, as
-        :class:`Loss`.
+        """Return the powers of each equilibrium, its coefficient of rolling resistance and its efficiency.
+
+        Returns a :class:`Loss` whose fields have the shape of ``V``, (loads..., equilibria), with the labels of the
+        arguments where these had some; powers divided by P R/T_ref, of a Cylinder in W per m of its length.
         """
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
@@ -174,7 +188,10 @@ class Steady(Values):
     message = reason
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report: of one load its equilibria, of several loads their number."""
+        """Return the title and the rows of the printed report: of one load its equilibria one after another, or the
+        reason why there is none; of several loads the number of all equilibria and of the stable ones, and their
+        speeds.
+        """
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
             speeds = SummaryRow("V", format_value(np.asarray(self.V)), unit_of(self._attributes("V")))
@@ -189,7 +206,13 @@ class Steady(Values):
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:
-        """Return a dataset over the loads and ``equilibrium``, with names and units; ``loss_...`` are the powers.
+        """Return the equilibria as a dataset of xarray, with names and units as attributes.
+
+        Returns a dataset over the axes of the loads (named as in labelled arguments, else ``state``, of several axes
+        ``state_0``, ``state_1`` ...) and ``equilibrium``.  Beside the fields of this result it has ``rate_fast`` and
+        ``rate_slow``, the real parts of the eigenvalues; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
+        ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; ``stable`` is 0 or 1; ``count`` has the axes
+        of the loads alone.
 
         Examples
         --------
@@ -219,14 +242,15 @@ def append_axis(unit: Any) -> Any:
 
 
 def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None) -> Steady:
-    """Pack sorted states into arrays over loads and equilibria.
+    """Pack steady states, one after another, into arrays over loads and equilibria, in the units of the roller.
 
-    loads : the loads.
-    states : existing states, sorted by load and |V|.
-    reasons : data of the loads without equilibrium.
+    loads : the loads, n of them, dimensionless.
+    states : existing states, sorted by load and |V|, dimensionless.
+    reasons : data of the loads without equilibrium; its ``number`` is the number of states of each load.
     scale : units of the roller, which the result has.
-    labels : labels of the arguments, or None.
-    Returns the :class:`Steady`, padded with NaN where loads have fewer equilibria than others.
+    labels : labels of the arguments of the call, or None; used where they label the loads.
+    Returns the :class:`Steady`, whose fields have the axes of the loads and one of equilibria, padded with NaN where
+    loads have fewer equilibria than others.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

@@ -55,9 +55,10 @@ class _FreeRolling(NamedTuple):
 
 
 class _ScanProblem(NamedTuple):
-    """One load in the frame of the motion.
+    """One load in the frame of the motion, in which V > 0; all is dimensionless.
 
-    law : rows of the material.  load_rows : force and torque as rows of (value at rest, gain on V, gain on omega).
+    law : rows of the material.
+    load_rows : (2, 3): the row of the force and the row of the torque, each (value at rest, gain on V, gain on omega).
     kappa, mu : slenderness R/l0 and coefficient of friction.
     """
 
@@ -67,7 +68,9 @@ class _ScanProblem(NamedTuple):
     mu: float
 
     def free_rolling(self, x: NDArray) -> _FreeRolling:
-        """Return the contact at x = log2(kappa V), (n,)."""
+        """Return the contact at x = log2(kappa V), (n,): moments, creepage of free rolling and limit of stick at that
+        speed.
+        """
         V = np.exp2(x) / self.kappa
         M, M_half_space, star = contact_fields_at(
             self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star"
@@ -91,9 +94,9 @@ class _ScanProblem(NamedTuple):
     def rows(self, V: NDArray, slip: NDArray) -> tuple[NDArray, NDArray]:
         """Evaluate the law and the residuals of the equations of equilibrium, full slip included.
 
-        V, slip : speed and omega - V, (n,), dimensionless.
-        Returns (rows of :class:`Field` with slopes; residuals of the sum of the equations and of the equation of V, (2,
-        n)).
+        V, slip : speed and omega - V, (n,), dimensionless, in the frame where V > 0.
+        Returns (rows of :class:`Field` with the slopes of the law from row 6 on, (10, n); residuals, (2, n): M less
+        force and torque, and Q - M_half_space + force), dimensionless.
         """
         rows = state_rows(self.law, self.kappa, self.mu, V, slip / V)
         force, torque = self.loads_at(V, V + slip)
@@ -103,11 +106,12 @@ class _ScanProblem(NamedTuple):
 
 
 def scan_states(law: LawTable, loads: Loads) -> States:
-    """Find all states of rolling under loads with a gain on omega, by a scan over the speed; rest is not among them.
+    """Find all states of rolling under loads with a gain on omega, by a scan over the speed.
 
     law : rows of the material.
     loads : the loads, with gains on omega.
-    Returns the :class:`States`, unsorted.
+    Returns the :class:`States` of both directions of motion, and those that spin at V = 0 and omega other than 0;
+    unsorted. Rest, V = omega = 0, is not among them.
     """
     gains = loads.gains
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
@@ -131,9 +135,9 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
     the bit.
 
     law: rows of the material.
-    loads: the loads with their gains.
+    loads: the loads with their gains, dimensionless.
     n: index of the load.
-    Returns a list of one :class:`States`, or an empty list.
+    Returns a list of one :class:`States` with one state, whose creepage is infinite, or an empty list.
     """
     gains, total = loads.gains, loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
@@ -157,10 +161,12 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
 
 
 def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
-    """Find the states of a load by a scan over V, where the equations give omega at each V.
+    """Find the states of a load by a scan over V, where the sum of the equations gives omega at each V.
 
-    problem : the load and its rows.
-    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless.
+    Used where the gains on omega of force and torque have a sum other than 0.
+    problem : the load and the rows of its material.
+    Returns (x = log2(kappa V), ascending; slip = omega - V), (states,) each, dimensionless, in the frame where V > 0.
+    The states are approximate; :func:`_polish` refines them and drops those that are none.
     """
 
     def beyond(x: NDArray, part: float) -> NDArray:
@@ -187,10 +193,12 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 
 
 def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
-    """Find the states of a load by a scan over the slip, where the sum of the equations gives V at each slip.
+    """Find the states of a load by a scan over the slip, where the sum of the equations gives V alone.
 
-    problem : the load and its rows.
-    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless.
+    Used where the gains on omega of force and torque have the sum 0.
+    problem : the load and the rows of its material.
+    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where V > 0, unsorted.
+    States of partial slip are zeros over the slip, those of full slip follow from Q = mu or -mu.
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
@@ -211,14 +219,14 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 
 
 def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
-    """Refine approximate states by Newton steps in V and slip.
+    """Refine approximate states by Newton steps in V and slip, and drop those that are no states or occur twice.
 
-    problem : the load and its rows.
-    V, slip : speed and omega - V of the approximate states, (n,), dimensionless.
-    Returns rows of :class:`Field` with slopes at the refined states.
-
-    A step that does not reduce the residuals is rejected.  Where the contact passes from full slip to full slip
-    within the rounding of V, two zeros are one state, or none.
+    problem : the load and the rows of its material.
+    V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0.
+    Returns rows of :class:`Field` with the slopes of the law at the refined states, (10, states), sorted by V and
+    creepage. A step that does not reduce the residuals is rejected.  A state whose residual stays above
+    :data:`_RESIDUAL` of its terms is dropped.  Where the contact passes from full slip to full slip within the
+    rounding of V, two zeros are one state, or none.
     """
     rows, residuals = problem.rows(V, slip)
     gains = problem.load_rows[:, 1:]

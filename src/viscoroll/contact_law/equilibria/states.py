@@ -53,10 +53,12 @@ class Field(IntEnum):
 
 
 class States(NamedTuple):
-    """Steady states one after another; speeds in R/T_ref.
+    """Steady states one after another, dimensionless; speeds in R/T_ref.
 
-    load : index of the load of each state, (n,).  rows : quantities of :class:`Field`, (10, n).  delta and omega are
-    NaN where the friction does not suffice.
+    load : index of the load of each state, (n,).
+    rows : quantities of the states, (10, n), in the order of :class:`Field`, with omega and the eigenvalues from row 6
+        on; V, Q, M and omega have the signs of the motion.  delta and omega are NaN where the friction does not
+        suffice.
     """
 
     load: Integers
@@ -64,12 +66,13 @@ class States(NamedTuple):
 
     @classmethod
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
-        """Make the states from the law at them.
+        """Make the states from the law at them: give V, Q and M their signs, and add omega and the eigenvalues.
 
-        loads : the loads.
-        load : index of the load of each state.
-        sign : sign of V.
-        answers : rows of :class:`Field` with slopes, in a frame where V > 0.
+        loads : the loads, of which the gains and j are used.
+        load : index of the load of each state, (n,).
+        sign : sign of V, 1.0 or -1.0, (n,).
+        answers : rows of :class:`Field` with the slopes of the law from row 6 on, (10, n), in a frame where V > 0; not
+            changed.
         Returns the :class:`States`.
         """
         rows = answers.copy()
@@ -84,9 +87,11 @@ class States(NamedTuple):
 
         The contact is that of Carter; a disturbance decays as V' = -rate V, with omega in proportion to V.
 
-        loads : the loads.
-        load : index of the load of each state.
+        loads : the loads, dimensionless.
+        load : index of the load of each state, (n,).
         law : rows of the material.
+        Returns the :class:`States`, (n,): the eigenvalue of slip is -inf, the slow one is that of the less stable
+        direction; delta and omega are NaN where the friction does not suffice.
         """
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
@@ -124,13 +129,12 @@ class States(NamedTuple):
 def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
-    slopes : dQ/dV, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n).
-    gains : feedback.
-    j : moments of inertia, (n,).
-
-    Returns rows: real part of the faster and of the slower eigenvalue, imaginary part of the slower.  The
-    determinant is b (M'(V) - gain)/j without a gain on omega; it is computed without the cancellation of the large
-    slopes of Q.
+    slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n), dimensionless.
+    gains : gains of force and torque on V and omega.
+    j : moments of inertia divided by m R^2, (n,).
+    Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower one, imaginary part
+    of the slower (>= 0; the faster has its negative).  The determinant is b (M'(V) - gain)/j without a gain on omega,
+    where b = dQ/domega; it is computed without the cancellation of the large slopes of Q.
     """
     a, b, d_half_space, d_cylinder = slopes
     with np.errstate(invalid="ignore"):
@@ -150,12 +154,14 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
 
 
 def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
-    """Return fields of the contact at V > 0 and delta, one row for each of ``names``, dimensionless.
+    """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
 
     law : rows of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction.
-    V : speeds, (n,).
-    delta : creepage.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V : speeds, (n,), dimensionless.
+    delta : creepage, a number or (n,).
+    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; slopes in V are at fixed delta.
+    Returns the fields, (names, n), dimensionless.
     """
     return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
@@ -172,7 +178,13 @@ def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
 
 
 def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
-    """Rows of :class:`Field` with slopes at V > 0 and a creepage."""
+    """Return the law at V > 0 and a creepage, as the rows from which :meth:`States.of` makes states.
+
+    law : rows of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V, delta : speeds and creepages, (n,), dimensionless.
+    Returns rows of :class:`Field` with slopes, (10, n); row 6 is dQ/dV at fixed omega.
+    """
     rows = np.empty((2 + len(_ROWS), V.size))
     rows[Field.V], rows[Field.DELTA], rows[2:] = V, delta, contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
     rows[Field.DQ_DV] -= rows[Field.DQ_DOMEGA] * (1.0 + delta)
@@ -180,13 +192,13 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
 
 
 def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
-    """Find the speeds at which kappa (M - gain V) equals a given total.
+    """Find the speeds at which kappa (M - gain V) equals a given total, in both directions of motion.
 
     law : rows of the material.
     gain : slope of the load in V, dimensionless.
-    total : kappa (force + torque), (n,).
-
-    Returns (index of the load, sign of V, kappa |V|), one entry for each crossing.
+    total : kappa (force + torque), dimensionless, any sign, (n,).
+    Returns (index of the load; sign of V, 1.0 or -1.0; kappa |V|), one entry for each crossing, (crossings,) each; a
+    load has none to many.
     """
     from ...kernels.rows.load_crossings import crossing_loop
 
@@ -206,10 +218,12 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
     law : rows of the material.
-    loads : the loads.
+    loads : the loads, dimensionless; where one of force and torque is to be found, the other one determines Q.
     load : index of the load of each state, (n,).
-    sign : sign of the motion, in whose frame V > 0.
-    V : speeds, (n,).
+    sign : sign of the motion, in whose frame V > 0, 1.0 or -1.0, (n,).
+    V : speeds, > 0, dimensionless, (n,).
+    Returns the :class:`States`, (n,), with NaN for delta and omega where |Q| >= mu, so that the friction does not
+    suffice.
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V

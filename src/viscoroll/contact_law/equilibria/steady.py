@@ -120,10 +120,11 @@ def steady(
 
 
 def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
-    """Return the indices of the loads under which the cylinder can be at rest, (n,).
+    """Return the indices of the loads under which the cylinder can be at rest, V = omega = 0, (m,).
 
-    loads : the loads.
-    neutral : whether every speed is steady without a load, as of elastic bodies.
+    loads : the loads, dimensionless: those with V = 0 given, or else with force + torque = 0.
+    neutral : whether every speed is steady without a load, as of elastic bodies; rest then counts only where |torque|
+        exceeds mu, so that the friction does not suffice, which the result has to say.
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
@@ -135,9 +136,10 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     """Find all states of rolling under loads without a gain on omega; rest is not among them.
 
     law : rows of the material.
-    loads : the loads.
-    Raises ParameterError for loads outside the range of the nodes.
-    Returns the :class:`States`, unsorted.
+    loads : the loads, dimensionless.
+    Returns the :class:`States`, unsorted; none for elastic bodies without a gain on V.
+    Raises ParameterError for kappa |force + torque| other than 0 that is below :data:`LEAST_LOAD` or above
+    :data:`MOST_LOAD`, and for a gain out of range.
     """
     with np.errstate(over="ignore"):  # what is infinite is refused
         gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)

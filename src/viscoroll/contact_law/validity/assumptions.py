@@ -163,10 +163,10 @@ def transit_frequency(V: Any, length: Any) -> Any:
 
 
 def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
-    """Return kappa V at which the transit frequency has two given values (Eq. (6)).
+    """Return kappa V at which the transit frequency has two given values (Eq. (6)), for half-spaces.
 
-    series: Prony series of the material.
-    low, high: the two transit frequencies, divided by 1/T_ref of the series, dimensionless.
+    series: Prony series of the material, of both bodies together.
+    low, high: the two transit frequencies, multiplied by T_ref of the series, dimensionless, > 0.
     Returns (kappa V at ``low``, kappa V at ``high``), dimensionless.
     """
     rates = np.array([low, high])
@@ -211,9 +211,9 @@ def assess_position(epsilon: Any) -> Assumption:
 def assess_creep(delta: Any, full_slip: Any) -> Assumption:
     """Compare the creepage in full slip with :data:`CREEP_LIMIT`.
 
-    delta: creepage, dimensionless, any shape.
+    delta: creepage, dimensionless, any sign and shape.
     full_slip: whether the contact slips fully; broadcasts with delta.
-    Returns the assumption ``creep``.
+    Returns the assumption ``creep``, whose value is |delta|; it holds in partial slip at any creepage.
     """
     size, full_slip = np.broadcast_arrays(np.abs(delta), full_slip)
     most = float(np.max(size, initial=0.0, where=full_slip))
@@ -229,9 +229,9 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
 def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
     """Compare the speed with the shear wave speed.
 
-    wave_ratio: speed divided by the shear wave speed, any shape; None where no density is known.
-    unknown: names of the bodies without a density.
-    Returns the assumption ``quasistatic``.
+    wave_ratio: speed divided by the shear wave speed, >= 0, any shape; None where no density is known.
+    unknown: names of the bodies without a density, for the sentence.
+    Returns the assumption ``quasistatic``, whose value is the ratio; undecided for None.
     """
     if wave_ratio is None:
         return UNKNOWN.quasistatic
@@ -246,9 +246,9 @@ def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
 def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
     """Compare Dundurs' constant of two bodies with :data:`DUNDURS_LIMIT`.
 
-    long, instant: the constant by the long-time and by the instantaneous moduli, dimensionless.
+    long, instant: the constant by the long-time and by the instantaneous moduli, dimensionless, any sign.
     like: whether the bodies are alike, so that the constant is 0 at all times.
-    Returns the assumption ``bodies``.
+    Returns the assumption ``bodies``; its value is that of the two constants which is larger in size.
     """
     worst = max(long, instant, key=abs)
     if like:
@@ -267,9 +267,11 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
     """Compare the transit frequency with the frequencies at which each body was measured.
 
     frequency: transit frequency, 1/s, any shape.
-    records: name of a body -> what was measured of it, for the bodies that have data.
-    Returns the assumption ``measured``; it holds where the frequency lies in the band of every body, and every fit
-    meets its data to :data:`MISFIT_LIMIT`.
+    records: name of a body -> the band of angular frequencies, rad/s, at which it was measured, and the misfit of the
+        fit; for the bodies that have data.
+    Returns the assumption ``measured``, whose value is the frequency.  It holds, in that shape, where the frequency
+    lies in the band of every body, and every fit meets its data to :data:`MISFIT_LIMIT`; without records it is
+    undecided.
     """
     if not records:
         return UNKNOWN.measured

@@ -40,9 +40,9 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
     """Return the lengths of the contact on a cover, and the assumption ``thick``.
 
     scene: dimensionless parameters of a roller with a cover.
-    V: speeds, dimensionless, any shape.
+    V: speeds, dimensionless, any sign and shape; broadcasts with the scene.
     Returns (contact lengths; the assumption, whose value is half the contact length divided by the thickness; it holds
-    where one stick zone in front with slip behind is right at every creepage).
+    where one stick zone in front with slip behind is right at every creepage).  Both have the broadcast shape.
     """
     cover = scene.cover
     assert cover is not None

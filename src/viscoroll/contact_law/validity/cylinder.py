@@ -73,8 +73,10 @@ class BodyData:
 
     @cached_property
     def records(self) -> dict[str, Measured]:
-        """Return what was measured of each different body whose share of the compliance counts, by the name of the
-        body.
+        """Return what was measured of each different body whose share of the compliance counts.
+
+        Returns a dict from "the material" (of like bodies), or "the cylinder" and "the base", to the record; without
+        bodies that have no record or a share below :data:`_LEAST_SHARE`, and empty without a pair.
         """
         pair = self.pair
         bodies: dict[str, tuple[Material, float]] = {}
@@ -90,9 +92,9 @@ class BodyData:
 
     @cached_property
     def measured_rates(self) -> tuple[float, float] | None:
-        """Return the lowest and the highest |V|/l0, 1/s, at which the transit frequency is in the data of all bodies.
+        """Return (lowest, highest) |V|/l0, 1/s, at which the transit frequency is in the measured bands of all bodies.
 
-        None where nothing was measured.
+        None where nothing was measured.  Bands that do not overlap give a lowest rate above the highest.
         """
         records, series = self.records.values(), self.scene.series
         if not records or series is None:
@@ -149,8 +151,10 @@ class BodyData:
     def wave_ratio(self, speed: Any, density: float | None) -> WaveRatio:
         """Return the ratio of a speed to the slowest shear wave of both bodies, by their long-time shear moduli.
 
-        speed: the speed, m/s, any shape.
+        speed: the speed, m/s, >= 0, any shape that broadcasts with G.
         density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
+        Returns a :class:`WaveRatio`: the largest ratio of the bodies whose density is known, None if there is none,
+        and the names of the other bodies, without rigid ones.
         """
         bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, density)]
         if self.pair is not None:
@@ -168,11 +172,12 @@ class BodyData:
     def extend_validity(self, report: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
         """Add the assumptions that need quantities in SI units to the report of a state.
 
-        report: report of the dimensionless scene.
-        lam: contact length divided by l0, dimensionless.
-        V, omega: speeds, m/s and rad/s; omega may be None.
+        report: report of the dimensionless scene; it is not changed.
+        lam: contact length divided by l0, dimensionless, in the shape of the state.
+        V, omega: speeds, m/s and rad/s, any sign, arrays that broadcast with lam; omega may be None.
         density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
-        Returns the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
+        Returns a copy of the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
+        Raises ParameterError for a density that is not one number > 0.
         """
         if density is not None:
             density = check_number("density", density, unit=SI, above=0.0)

@@ -52,14 +52,16 @@ class ContactLengths(NamedTuple):
 
 
 class Reach(NamedTuple):
-    """The part of free rolling in which the error of V is below a level.
+    """The part of free rolling in which the unsteadiness, and so the error of V, is below a level.
+
+    Numbers or arrays in the shape of the states, in the units of the caller.
 
     Attributes
     ----------
-    speed : the part ends at this speed; 0: at rest.  Where the error is above the level already at V, the next higher
-        speed from which on it is below.
-    time, distance : time and distance from V to there; an infinite time: to rest.  0 where the error is above the level
-        at V.
+    speed : speed at which the part ends; 0: it lasts to rest.  Where the unsteadiness is above the level already at V,
+        the next higher speed from which on it is below; infinite if there is none.
+    time, distance : time and distance from V to there; an infinite time: to rest.  0 where the unsteadiness is above
+        the level at V.
     left : distance from there to rest.
     """
 
@@ -99,12 +101,13 @@ class FreeRolling:
 
     Attributes
     ----------
-    materials : alphas or series in their own times.
+    materials : alphas or series, each in its own unit of time, in which its slow time is near 1.
     index : index of the material of each state, in the shape of u.
     u : kappa |V| in the material's own time, dimensionless, any shape.
-    g : gamma/(1 + j) in the material's own time.
-    speed, time, length : 1 of u, of the own time and of l0, in the units of the caller.
-    units : names of these units; empty for dimensionless ones.
+    g : gamma/(1 + j) in the material's own time, dimensionless, broadcasts with u; NaN without gamma.
+    speed, time, length : factors, which broadcast with u: u times ``speed``, a time in the own unit times ``time`` and
+        a distance in l0 times ``length`` are in the units of the caller.
+    units : names of these units of speed, time and length; empty for dimensionless ones.
     """
 
     materials: Sequence[float | Prony]
@@ -118,7 +121,14 @@ class FreeRolling:
 
     @classmethod
     def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
-        """Return the states of a scene at speeds V, dimensionless, any shape; raises ParameterError for a cover."""
+        """Return the states of a scene at given speeds.
+
+        scene: dimensionless parameters, numbers or arrays, with one or several materials.
+        V: speeds, dimensionless, any sign and shape; broadcasts with the scene.
+        Returns the states in the broadcast shape, with results divided by R/T_ref, T_ref and R.  Without gamma only
+        their contact lengths are known.
+        Raises ParameterError for a cover, whose N is not known.
+        """
         refuse_cover(scene, "free rolling is not examined, since N is not available")
         materials: Any
         unit: Any
@@ -152,9 +162,10 @@ class FreeRolling:
         return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays})
 
     def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
-        """Yield each material that occurs, and its states.
+        """Yield each material that occurs, and which states it has.
 
-        Yields (alpha or series in its own time, index of numpy that selects its states in the flat arrays).
+        Yields (alpha or series in its own time; index of numpy that selects its states in the flattened arrays: a
+        slice of all for a single material, else integers).
         """
         if len(self.materials) == 1:
             yield self.materials[0], slice(None)
@@ -178,10 +189,10 @@ class FreeRolling:
     ) -> list[Floats]:
         """Evaluate a function of the curve of each material at its states.
 
-        function: takes a curve, u, g and ``more`` of some states, (n,), and returns several arrays (n,).
-        elastic: values of the function for an elastic material, which has no curve.
+        function: takes (curve, u, g, *more) of the states of one material, (n,) each, and returns several arrays (n,).
+        elastic: values of the function for an elastic material, which has no curve; as many as the function returns.
         more: further arguments, broadcast to u.
-        Returns the arrays in the shape of u.
+        Returns a list of the arrays in the shape of u; numbers if u has no axes.
         """
         out = np.empty((len(elastic), self.u.size))
         arrays = [np.broadcast_to(array, self.u.shape).ravel() for array in (self.u, self.g, *more)]
@@ -205,17 +216,18 @@ class FreeRolling:
     def reach(self, level: float) -> Reach:
         """Return the part of free rolling in which the unsteadiness is below a level.
 
-        level: of the unsteadiness, the relative error of the quasi-steady assumption, dimensionless.
+        level: of the unsteadiness, which is about the relative error of V by the law of steady rolling; dimensionless,
+        > 0.
+        Returns a :class:`Reach` in the shape of u and the units of the caller.
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
-            """Return the fields of :class:`Reach` for states of one material.
-
-            Both in the material's own time.
+            """Return the fields of :class:`Reach` for states of one material, in its own time and in l0.
 
             curve: free rolling of the material.
-            u: kappa V at the start, (n,).
+            u: kappa |V| at the start, (n,).
             g: gamma/(1 + j), (n,).
+            Returns [u at the end, time, distance, distance left to rest], (n,) each.
             """
             end, below = np.empty(u.size), np.empty(u.size, bool)
             levels, group = np.unique(g, return_inverse=True)
@@ -231,9 +243,12 @@ class FreeRolling:
         return Reach(end * self.speed, time * self.time, distance * self.length, left * self.length)
 
     def start(self, rested: float = math.inf) -> Start:
-        """Return the losses of a start after a standstill, as :class:`Start`.
+        """Return the losses of a start after a standstill, compared with a start from steady contact.
 
-        rested: time of the standstill, in the unit of the caller; infinite for a long one.
+        rested: time of the standstill, in the unit of the caller, a number or an array that broadcasts to u; infinite
+            for a long one.
+        Returns a :class:`Start` in the shape of u and the units of the caller; the lost speed is all of V where the
+        cylinder does not leave its indentation.
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:

@@ -27,12 +27,16 @@ _CLIMB = 20.0
 
 
 class Curve:
-    """Free rolling of one material as splines over ln u, for g = 1: N, M, time and distance."""
+    """Free rolling of one material as splines over ln u, u = kappa V, for gamma/(1 + j) = 1: N, M, time and distance.
+
+    Dimensionless, in the material's own unit of time, lengths divided by l0.  For another g = gamma/(1 + j) times and
+    distances are divided by g.  Below and above the splines the limits of slow and of fast rolling apply.
+    """
 
     def __init__(self, material: float | Prony) -> None:
-        """Compute the splines.
+        """Compute the splines, from 20 octaves below to 20 octaves above the rates of the material.
 
-        material: alpha, or a series in its own time; not elastic.
+        material: alpha > 1, or a series in its own time; not elastic.
         """
         from scipy.interpolate import CubicSpline
 
@@ -82,10 +86,11 @@ class Curve:
     def limit_speed(self, u: Floats, level: float) -> tuple[Floats, Booleans]:
         """Return the speed at which |N| reaches a level in free rolling.
 
-        u: kappa V at the start, any shape.
+        u: kappa |V| at the start, dimensionless, any shape.
         level: level of |N|, > 0.
-        Returns (u at which |N| first reaches the level, 0 if never; where |N| is above it at the start already, the
-        next higher u from which on it is below; whether |N| is below the level at the start).
+        Returns (speed; whether |N| is below the level at the start), both in the shape of u.  The speed is the u at
+        which |N| first reaches the level, 0 if never; where |N| is above the level at the start already, the next
+        higher u from which on it is below.
         """
         roots = np.sort(np.concatenate([self._N.solve(value, extrapolate=False) for value in (level, -level)]))
         falls = roots[self._N(roots) * self._N(roots, 1) < 0.0]

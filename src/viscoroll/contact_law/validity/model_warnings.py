@@ -79,10 +79,9 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
     """Warn of contacts longer than the radius, and of those outside the measured band of a material.
 
     Only the extreme speeds are examined; rest is passed over, since M = 0 there.
-
-    roller: scene or cylinder; a scene has no data to compare with.
-    V: speeds, m/s, any shape; None for prescribed ones that are not known.
-    extent: (smallest, largest) of the speeds, m/s, where the caller knows them.
+    roller: scene or cylinder; a scene has no data to compare with, and never warns.
+    V: speeds, m/s, any sign and shape, NaN where they are not known; None for prescribed ones that are not known.
+    extent: (smallest, largest) of the speeds, m/s, signed, where the caller knows them; None: they are found.
     motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined.
     """
     data = roller.body_data
@@ -98,10 +97,11 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 
 
 def _warn_of_band(data: BodyData, V: Any) -> None:
-    """Warn of transit frequencies outside the measured band, once for each material in a process.
+    """Warn of transit frequencies outside the measured band, once for each material in a process; workers do not warn.
 
     data: data of the bodies of a cylinder, of which at least one was measured.
-    V: speeds, m/s, any shape.
+    V: speeds, m/s, any sign; a number, or (n, ...) where ``data`` has n cylinders.
+    The materials are then entered into :data:`_warned_records`.
     """
     records = data.records.values()
     if is_worker() or _warned_records.issuperset(records):
@@ -122,7 +122,8 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
 
 
 def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
-    """Warn of motions of a run that start outside the measured band of a material.
+    """Warn of motions of a run that start outside the measured band of a material, once for each material in a
+    process.
 
     share: fraction of all motions that start outside, 0 to 1; 0 gives no warning.
     records: what was measured of the bodies; contacts do not warn of them again.
@@ -142,9 +143,10 @@ def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool
 def warn_of_speeds(roller: Roller, V0: Any, V: Any) -> None:
     """Warn where the fastest speed of a motion, or of each of several, is outside the measured band of a material.
 
-    roller: scene or cylinder.
-    V0: start speeds, m/s; None for prescribed ones.
-    V: speeds at the output times, m/s, (times) or (n, times); None where they were not computed.
+    roller: scene or cylinder; a scene has no data, and never warns.
+    V0: start speeds, m/s, a number or (n,); None for prescribed ones.
+    V: speeds at the output times, m/s, (times) or (n, times), NaN where a motion ended before; None where they were
+        not computed.
     """
     data = roller.body_data
     if data is None or data.covered_speeds is None:
@@ -161,12 +163,13 @@ def warn_of_start(
     """Warn of motions for which the model fails grossly, judged by their start.
 
     One motion from two floats costs one or two microseconds; of many some, evenly spaced, are examined.
-
     roller: scene or cylinder, on its slope.
-    scene: dimensionless parameters of the roller.
-    start: the start speeds as the caller gave them, m/s and rad/s for a cylinder; None for prescribed ones.
+    scene: dimensionless parameters of the roller, with gamma.
+    start: (V, omega) at the start as the caller gave them, m/s and rad/s for a cylinder, numbers or (n,); None for a
+        prescribed one.
     V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
-    driven: whether something drives the motions, or they are rolled with the added mass N.
+    driven: whether something drives the motions, or they are rolled with the added mass N; slowness is not a fault
+    then.
     """
     wave_speed = None if roller.body_data is None else roller.body_data.wave_speed
     if wave_speed is not None:
@@ -187,11 +190,11 @@ def _start_faults(
 ) -> list[str]:
     """Return sentences on what the model does not describe in one motion, judged by its start.
 
-    material: alpha, Prony series or bodies of the roller.
+    material: alpha (a float), Prony series or bodies of the roller.
     kappa, mu, gamma, j: parameters of the scene, dimensionless.
-    V0, omega0: start speeds, dimensionless.
-    driven: whether something drives the motion, or it is rolled with the added mass N.
-    Returns the sentences, without numbers; none where the model describes the motion.
+    V0, omega0: start speeds, dimensionless, any sign.
+    driven: whether something drives the motion, or it is rolled with the added mass N; it may be slow then.
+    Returns the sentences, without numbers; an empty list where the model describes the motion.
     """
     faults: list[str] = []
     one_time = type(material) is float
@@ -218,11 +221,10 @@ def _start_faults(
 def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
     """Return whether a free motion from a speed is too slow for the law of steady rolling.
 
-    Bounds of N decide most motions: the table of :func:`_slow_starts` takes a second where its kernels are not compiled
-    yet.
-
-    material: alpha, Prony series or bodies.
-    u: kappa V at the start, > 0.
+    It is where the error of V exceeds 10 % on more than a tenth of its distance.  Bounds of N decide most motions: the
+    table of :func:`_slow_starts` takes a second where its kernels are not compiled yet.
+    material: alpha (a float), Prony series or bodies.
+    u: kappa |V| at the start, dimensionless, > 0.
     gamma, j: parameters of the scene, dimensionless.
     """
     one_time = type(material) is float
@@ -237,13 +239,14 @@ def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
 
 
 def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
-    """Return the faults of the model in those motions of an ensemble, three at most, in which they are largest by
-    simple bounds.
+    """Return the faults of the model in those motions of an ensemble, three at most, that are worst by simple bounds:
+    of the smallest kappa, of the largest loss in full slip, and of the largest unsteadiness.
 
     scene: dimensionless parameters of the roller, numbers or arrays (n,).
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
     driven: whether something drives the motions, or they are rolled with the added mass N.
-    Returns different sentences without numbers.
+    Returns different sentences without numbers; an empty list where the model describes these motions.  Of more than
+    :data:`_EXAMINED` motions that many are examined, evenly spaced.
     """
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
     count = math.prod(np.broadcast_shapes(*(array.shape for array in arrays)))
@@ -272,7 +275,8 @@ def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tu
 
     material: alpha, Prony series or bodies, not elastic.
     gamma, j: parameters of the scene, dimensionless.
-    Returns (kappa V, ascending; whether more than :data:`_SLOW_PART` of the distance has an error of V above 10 %).
+    Returns (kappa V, ascending, dimensionless; whether more than :data:`_SLOW_PART` of the distance from there has an
+    error of V above 10 %), two lists of one length.
     """
     given = {"alpha": material} if isinstance(material, float) else {"material": material}
     free = FreeRolling.of_scene(Parameters(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given), 0.0)

@@ -59,10 +59,14 @@ class Steadiness(Assumption):
     def along(cls, free: FreeRolling, rolls: Any, x: Any, *, ends: bool) -> Steadiness:
         """Return the assumption ``steady`` of motions.
 
-        free: states at the output times, (times, ...).
+        free: states at the output times, (times, ...), with the distances and speeds of free rolling from each of
+        them.
         rolls: mask of the times at which motions are not in full slip, which friction rules; in the shape of u.
         x: distances travelled in the unit of the caller, in the shape of u; NaN where they are not known.
-        ends: whether ``value`` is that of each motion as a whole, else at each time.
+        ends: whether ``value`` is that of each motion as a whole, (...), else the largest so far at each time, (times,
+        ...).
+        Returns the assumption; its ``share``, (...), is the part of each motion's distance with an error of V above 10
+        %.
         """
         free = replace(free, u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0))
         value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
@@ -80,9 +84,9 @@ class Steadiness(Assumption):
     def _create(cls, value: Any, free: FreeRolling, motion_share: Any = None) -> Steadiness:
         """Return the assumption with its sentence, which describes the state of the largest unsteadiness.
 
-        value: unsteadiness, dimensionless.
-        free: the states, of motions the fastest one of each.
-        motion_share: the share of motions, else None.
+        value: unsteadiness, dimensionless, any shape; of motions (motions,), or (times, motions).
+        free: the states in the shape of ``value``, of motions the fastest one of each.
+        motion_share: the share of motions, one for each; None for single states.
         """
         sentence = "there is no motion"
         if np.size(value):
@@ -118,7 +122,10 @@ class Steadiness(Assumption):
 
     @cached_property
     def share(self) -> Any:
-        """Part of the distance at which the error of V exceeds 10 %."""
+        """Part of the distance at which the error of V exceeds 10 %, 0 to 1, in the shape of the states: of the
+        distance to rest in free rolling, or of the distance of a motion, then one for each motion and NaN where x
+        is not known.
+        """
         if self.motion_share is not None:
             return self.motion_share
         left, whole = np.asarray(self.ten_percent.left), np.asarray(self.whole)
@@ -128,7 +135,7 @@ class Steadiness(Assumption):
 def _describe_free(free: FreeRolling) -> str:
     """Return sentences on free rolling from one state: distance, speeds at which errors are reached, loss of a start.
 
-    free: the state.
+    free: a single state (u without axes), whose units the sentences use.
     """
     speed, time, length = (f" {unit}".rstrip() for unit in free.units)
     value, most, whole = float(free.unsteadiness), free.reach(STEADY_LIMIT), free.distance()
@@ -157,9 +164,9 @@ def _describe_free(free: FreeRolling) -> str:
 def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     """Return sentences on the error of a motion, or of the worst of several.
 
-    free: fastest state of the motion.
+    free: fastest state of the motion, u without axes.
     most: largest unsteadiness of the motion, dimensionless.
-    share: fraction of its distance with an error above 10 %, NaN where it is not known.
+    share: fraction of its distance with an error above 10 %, of several motions the mean; NaN where it is not known.
     """
     text = f"unsteadiness up to {most:.2g} (up to {STEADY_LIMIT} is allowed): "
     text += "the error of V is below 10 % "

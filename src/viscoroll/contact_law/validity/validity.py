@@ -31,24 +31,25 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     Parameters
     ----------
     roller : a :class:`Scene`, or a :class:`Cylinder` with V in m/s and omega in rad/s.
-    V : speed of the axis, any sign.
-    omega : angular velocity; without it the creepage is not known.
+    V : speed of the axis, any sign, a number or an array; of a Scene divided by R/T_ref.
+    omega : angular velocity, broadcasts with V; None: the creepage is not known, and ``creep`` is not decided.
     density : density of a Cylinder, and of the base where they are alike, kg/m^3; default: as the materials have it;
         without it the speed of shear waves is not known.
 
     Returns
     -------
     Validity
-        For each assumption a number, whether it holds, and a sentence; ``print`` shows them.  For a Cylinder
-        ``quasistatic`` compares the speed of the axis, and that of the circumference where omega is given, with the
-        slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times, of the bodies whose density is known;
-        ``bodies`` has Dundurs' constant, ``measured`` the transit frequency in 1/s, and ``thick`` half the contact
-        length divided by the thickness of the layer.
+        For each assumption a number, whether it holds (both in the broadcast shape, None where nothing decides), and a
+        sentence; ``print`` shows them.  For a Cylinder ``quasistatic`` compares the speed of the axis, and that of the
+        circumference where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long
+        times, of the bodies whose density is known; ``bodies`` has Dundurs' constant, ``measured`` the transit
+        frequency in 1/s.  Of a layer, ``thick`` has half the contact length divided by its thickness.
 
     Raises
     ------
     ParameterError
-        NaN or infinite speeds, a density that is not one positive number, shapes that do not broadcast.
+        NaN or infinite speeds, a density that is not one positive number, a density for a Scene, shapes that do not
+        broadcast.
 
     Examples
     --------

@@ -12,12 +12,18 @@ if TYPE_CHECKING:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw a result: a motion, an ensemble or its summary, a run or its Sobol indices, equilibria, stresses, contact
-    states, a table.
+    """Draw a result, by the figure that its axes and variables call for.
 
     Parameters
     ----------
-    data : dataset of the result, as of its ``to_xarray()``.
+    data : dataset of the result, as of its ``to_xarray()``: an ensemble, its summary or that of a run (axes
+        "quantile", or "motion" and "t"), Sobol indices ("input"), a motion ("t" and a variable "regime"), equilibria
+        ("equilibrium"), stresses ("p", "tau" and "x"), else contact states or a table over at least one axis of
+        several values.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
 
     Raises
     ------

@@ -55,8 +55,9 @@ _INITIAL_SYMBOLS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
 def distributions(data: xr.Dataset) -> Figure:
     """Draw a row for each quantity: its quantiles over time, and its histogram at the last time.
 
-    data: an ensemble, its summary, which has no histograms, or the summaries of a run.
-    Returns the figure.
+    data: an ensemble, with each motion along the axis ``motion``; its summary, which has no histograms; or the
+        summaries of a run, with NAME_quantiles and NAME_histogram.
+    Returns the figure.  A quantity without times, or with a single one, has the fraction of motions below each value.
     """
     ensemble, about = "motion" in data.dims, data.attrs
     if ensemble:
@@ -105,8 +106,8 @@ def _finite_quantiles(values: NDArray) -> NDArray:
 def _ensemble_histogram(axes: Any, values: NDArray) -> None:
     """Draw the histogram of the motions of an ensemble; of few or equal values a point for each.
 
-    axes: axes of matplotlib.
-    values: values of a quantity, (motions,).
+    axes: axes of matplotlib, drawn into; the axis of counts is logarithmic where one bar has nearly all motions.
+    values: values of a quantity, (motions,); those that are not finite are left out.
     """
     finite = values[np.isfinite(values)]
     axes.set_ylabel(f"motions, of {values.size:,}")
@@ -121,9 +122,9 @@ def _ensemble_histogram(axes: Any, values: NDArray) -> None:
 def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """Draw the histogram of a run at the last time.
 
-    axes: axes of matplotlib.
-    data: summaries of the run.
-    name: name of the quantity.
+    axes: axes of matplotlib, drawn into; the title states how many motions lie beyond the ends, or that there is none.
+    data: summaries of the run, with NAME_histogram (bins,) or (bins, times), NAME_bin_low and NAME_bin_high (bins,).
+    name: name of the quantity, NAME.
     """
     counts = data[f"{name}_histogram"].values
     counts = counts[:, -1] if counts.ndim == 2 else counts
@@ -140,9 +141,9 @@ def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
 def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
     """Combine the bins of a run to bars of equal width, without the tails; one bar if all values are nearly equal.
 
-    low, high: ends of the bins of a run.
-    counts: motions in each bin, of which a bar gets the fraction that it overlaps.
-    Returns (edges of the bars, counts of motions).
+    low, high: ends of the bins of a run, ascending, (bins,).
+    counts: motions in each bin, (bins,), of which a bar gets the fraction that it overlaps.
+    Returns (edges of the bars, (bars + 1,); numbers of motions, (bars,), which need not be whole).
     """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
@@ -189,9 +190,10 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
     """Return the Sobol indices of a quantity at the last time that has any.
 
-    indices: Sobol indices of a run, a dataset.
-    name: name of the quantity.
-    Returns (title of the panel, name of the index -> values over the inputs).
+    indices: Sobol indices of a run, a dataset with NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or
+        (input,).
+    name: name of the quantity, NAME.
+    Returns (title of the panel; dict from "S1", "S1_conf", "ST" and "ST_conf" to values over the inputs, (inputs,)).
     """
     values = {key: indices[f"{name}_{key}"].values for index in _SOBOL for key in (index, f"{index}_conf")}
     text = _RESULT_NAMES.get(name) or axis_label(name)

@@ -19,10 +19,10 @@ _POINTS = 400
 
 
 def master_curve(material: Any) -> Figure:
-    """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right.
+    """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right, in Pa, rad/s and s.
 
-    material: a :class:`Material`.
-    Returns the figure.
+    material: a :class:`Material`; its curves are dashed outside the band in which it was measured.
+    Returns the figure; of an elastic material without E'' and tan delta.
     Raises ParameterError for a rigid body, which has no curves.
     """
     if material.is_rigid:
@@ -49,9 +49,9 @@ def master_curve(material: Any) -> Figure:
 
 
 def series_fit(fit: Any) -> Figure:
-    """Draw measured moduli and the curves of the series that was fitted to them.
+    """Draw measured moduli as points and the series that was fitted to them as curves, on logarithmic axes.
 
-    fit: a :class:`viscoroll.Fit` or a :class:`viscoroll.RelaxationFit`.
+    fit: a :class:`viscoroll.Fit` (over angular frequency, rad/s) or a :class:`viscoroll.RelaxationFit` (over time, s).
     Returns the figure.
     """
     x, *columns = fit.data
@@ -67,9 +67,10 @@ def series_fit(fit: Any) -> Figure:
 
 
 def identification(fit: Any) -> Figure:
-    """Draw a column for each quantity of a record: data and prediction band on top, normalized residuals below.
+    """Draw a column for each quantity of a record: data and prediction band on top, residuals below.
 
-    fit: a :class:`viscoroll.app.identification.fit.Identification`.
+    fit: a :class:`viscoroll.app.identification.fit.Identification`.  Residuals are (fit - data)/sigma; of a planned
+        identification, which has no data, there are none.
     Returns the figure.
     """
     shown = fit._problem.columns

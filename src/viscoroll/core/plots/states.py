@@ -47,11 +47,11 @@ def varied_axes(data: xr.Dataset) -> list[str]:
 
 
 def field_curves(data: xr.Dataset) -> Figure:
-    """Draw each field of ``data`` over the first axis, with a curve for some values of the second.
+    """Draw each field of a dataset over its first varied axis, with a curve for some values of the second.
 
-    Other axes are at their middle, which the title states.
-
-    Returns the figure.
+    data: fields of the contact over axes such as V and delta, of which at least one has several values.  Further axes
+        are at their middle, which the title states.
+    Returns the figure, with at most :data:`_MAX_PANELS` fields.
     """
     first, *others = varied_axes(data)
     title, band = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
@@ -84,8 +84,9 @@ def field_curves(data: xr.Dataset) -> Figure:
 
 
 def stresses(data: xr.Dataset) -> Figure:
-    """Draw pressure and shear stress of the first state of ``data`` along the contact.
+    """Draw pressure and shear stress along the contact.
 
+    data: dataset with ``x``, ``p`` and ``tau``; along other axes than that of x the first state is drawn.
     Returns the figure.
     """
     figure, axes = new_figure("Pressure and shear stress along the contact")
@@ -100,9 +101,11 @@ def stresses(data: xr.Dataset) -> Figure:
 
 
 def equilibria(data: xr.Dataset) -> Figure:
-    """Draw the speeds of all equilibria of ``data`` over the first load that varies, stable (filled) or not (open).
+    """Draw the speeds of all equilibria over the load, stable (filled) or not (open).
 
-    Returns the figure.
+    data: dataset of steady rolling, as of ``Steady.to_xarray``.  The load is the first of slope, force and torque that
+        varies, else the force.
+    Returns the figure; the axis of speeds is logarithmic beyond the least speed where they differ by more than 100.
     """
     loads = (name for name in ("slope", "force", "torque") if name in data and np.ptp(_finite(data[name])) > 0.0)
     load = next(loads, "force")
@@ -122,8 +125,9 @@ def equilibria(data: xr.Dataset) -> Figure:
 
 
 def motion(data: xr.Dataset) -> Figure:
-    """Draw V and omega, the path, and the loads of the motion ``data`` over time; full slip is shaded.
+    """Draw V and omega, the distance x, and force and torque of a motion over time; full slip is shaded.
 
+    data: dataset of one motion, with ``t``, ``V``, ``omega``, ``x`` and ``regime``; loads that are 0 are left out.
     Returns the figure.
     """
     loads = [name for name in ("force", "torque") if name in data and data[name].values.any()]
@@ -149,13 +153,12 @@ def motion(data: xr.Dataset) -> Figure:
 
 def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
     """Return a quantity of a motion over time, to which the corners and both sides of the jumps of its schedule are
-    added.
+    added, so that a curve shows them between output times.
 
     Loads beside the schedule, as a feedback and that of the slope, have no jumps.
-
-    data: the motion.
-    name: name of the quantity.
-    Returns (times, values), (k,) each.
+    data: the motion; a schedule of NAME is in ``drive_NAME_time`` and ``drive_NAME``.
+    name: name of the quantity, NAME; without a schedule it stays as it is.
+    Returns (times, values), (k,) each, times ascending, in the units of ``data``.
     """
     t, values = data["t"].values, data[name].values
     if f"drive_{name}_time" not in data:

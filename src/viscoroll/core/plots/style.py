@@ -39,7 +39,8 @@ def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2,
     rows, columns: numbers of rows and columns of axes.
     height: of the figure, inches; its width is ``WIDTH``.
     options: keyword arguments of ``Figure.subplots``.
-    Returns (figure, its axes as of ``Figure.subplots``: one, a vector, or (rows, columns)).
+    Returns (figure; its axes as of ``Figure.subplots``: one for a single row and column, a vector for one row or one
+    column, else an array (rows, columns); with ``squeeze=False`` always such an array).
     """
     from matplotlib.figure import Figure
 
@@ -52,11 +53,11 @@ def new_panels(title: str, count: int, per_row: int, height: float, **options: b
     """Make a figure with several axes of one size, row after row.
 
     title: line on top.
-    count: number of axes.
+    count: number of axes, >= 1.
     per_row: largest number in a row.
     height: of each row, inches.
-    options: keyword arguments of ``Figure.subplots``.
-    Returns (figure, list of its axes).
+    options: keyword arguments of ``Figure.subplots``, as ``sharex``.
+    Returns (figure, list of its ``count`` axes).
     """
     columns = min(per_row, count)
     rows = -(-count // columns)
@@ -69,11 +70,11 @@ def new_panels(title: str, count: int, per_row: int, height: float, **options: b
 def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, float] | None, **line: Any) -> list[Any]:
     """Plot a curve, solid where |x| lies in a measured band and dashed outside.
 
-    axes: axes of matplotlib.
-    x, y: points of the curve.
-    band: lowest and highest measured |x|; None: the curve is solid everywhere.
+    axes: axes of matplotlib, drawn into.
+    x, y: points of the curve, (n,).
+    band: lowest and highest measured |x|; None: the curve has the style ``line`` everywhere.
     line: keyword arguments of ``Axes.plot``, the style of the line.
-    Returns the lines of matplotlib.
+    Returns the lines of matplotlib, one without a band, else the solid and the dashed one.
     """
     if band is None:
         return list(axes.plot(x, y, **line))
@@ -86,7 +87,10 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
 
 
 def spaced_by_factors(x: NDArray[Any]) -> bool:
-    """Whether the numbers ``x`` are spaced more evenly on a logarithmic axis than on a linear one."""
+    """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a linear one.
+
+    False for fewer than three different numbers, and where one is not > 0.
+    """
     points = np.unique(x)
     if points.size < 3 or points[0] <= 0.0:
         return False
@@ -116,11 +120,11 @@ def small_legend(axes: Any, **options: Any) -> None:
 
 
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
-    """Plot quantiles over time: pairs of levels as bands, the middle one as a line.
+    """Plot quantiles over time: pairs of levels as bands, the middle one of an odd number as a line, with a legend.
 
-    axes: axes of matplotlib.
+    axes: axes of matplotlib, drawn into.
     t: times, (n,).
-    levels: probabilities, ascending, (k,).
+    levels: probabilities, 0 to 1, ascending, (k,).
     values: quantiles, (k, n).
     """
     for n in range(levels.size // 2):
@@ -138,9 +142,9 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
 def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
     """Return the label of an axis: symbol or name of a quantity, and its unit.
 
-    name: name of the quantity.
-    units: "1" of a dimensionless one.
-    symbol: LaTeX, where the table of symbols has none.
+    name: name of the quantity, as "V".
+    units: unit as "m s-1"; "1" of a dimensionless one, which is left out.
+    symbol: LaTeX without $, where the table of symbols has none; "": the name is written.
     """
     symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
     # A symbol such as p/E' stands for a ratio; in SI units the quantity is p.

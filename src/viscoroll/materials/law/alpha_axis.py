@@ -50,6 +50,9 @@ class LawAxis:
     def at(self, alpha: float) -> LawTable:
         """Return the law of one ``alpha``, with T_epsilon for the unit of time.
 
+        alpha: instantaneous divided by long-time modulus, dimensionless, in the range of the axis.
+        Returns the :class:`LawTable`, whose rows are interpolated in ln alpha to rounding.
+
         Raises
         ------
         ParameterError
@@ -66,20 +69,15 @@ class LawAxis:
 
 
 def law_axis(low: float, high: float) -> LawAxis:
-    """Return the law of the octaves of alpha in which two values lie.
+    """Compute the law of one relaxation time for all alpha of the octaves in which two values lie.
 
-    Parameters
-    ----------
-    low, high : alpha, 1 <= low < high <= 1e12.
-
-    Returns
-    -------
-    LawAxis
+    low, high: alpha, dimensionless, 1 <= low < high <= 1e12.
+    Returns the :class:`LawAxis`, from the octave [2^n, 2^(n+1)) of ``low`` to that which ends at or above ``high``.
 
     Raises
     ------
     ParameterError
-        Values outside this range.
+        Values outside this range, or low >= high.
     """
     low, high = (check_number("alpha", value, low=1.0, high=HIGHEST_ALPHA) for value in (low, high))
     if not low < high:

@@ -19,10 +19,10 @@ def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
     """Return the pressure along the contact, divided by 2 P/(pi a), the largest pressure of Hertz on half length a.
 
     modes: of the cover.
-    z: a divided by V T_ref; infinite for V = 0.
+    z: a divided by V T_ref, > 0; infinite for V = 0.
     theta: a divided by the thickness.
-    x: positions divided by a, from the middle of the contact, positive along V, any shape; outside [-1, 1] the pressure
-        is 0.
+    x: positions divided by a, from the middle of the contact, positive along V, any shape.
+    Returns the pressure, dimensionless, in the shape of x; 0 outside [-1, 1].
     """
     from numpy.polynomial.chebyshev import chebder, chebval
 
@@ -41,10 +41,11 @@ def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
 def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) -> Floats:
     """Return the first coefficients of the pressure, q_m for m = 1, 2, ..., (count,).
 
+    The pressure is sqrt(1 - x^2) sum q_m U_(m-1)(x), x in [-1, 1].
     modes: of the cover.
     z: half contact length divided by V T_ref.
-    state: contact of that length.
-    count: number of coefficients.
+    state: contact of that length; its own coefficients are taken, further ones follow from its relaxation modes.
+    count: number of coefficients, not below that of ``state``.
     """
     from scipy.special import ive
 
@@ -57,11 +58,12 @@ def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) 
 def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:
     """Return the mean strain by the coupling of half-spaces, -C J p at each point, less that of the other body.
 
-    It is 0 for nu = 1/2, and accurate to 1e-5 of itself: the pressure is taken as linear between points.
-
+    The mean over the contact has the pressure as weight.  It is 0 for nu = 1/2 of both bodies, and accurate to 1e-5 of
+    itself: the pressure is taken as linear between points.
     modes: of the cover.
     z: half contact length divided by V T_ref.
     state: contact of that length.
+    Returns the strain in units of V T_ref/R, positive where the surface is stretched.
     """
     local = modes.nodes.local
     if local == 0.0 and modes.other_local == 0.0:
@@ -75,10 +77,11 @@ def _pressure_products(modes: CoverModes, z: float, state: CoverState) -> tuple[
     """Return int p^2 dx, and int p f_j dx with f_j = int_0^inf beta_j exp(-beta_j s) p(x + s) ds of each creep mode.
 
     p is linear between points that are equidistant in arccos x; the memory runs from the front edge x = 1 to the rear.
-
     modes: of the cover.
     z: half contact length divided by V T_ref.
     state: contact of that length.
+    Returns (the first integral; the second ones, (creep modes of the layer,)), with p in the unit of the coefficients
+    q.
     """
     from scipy.fft import dst
 

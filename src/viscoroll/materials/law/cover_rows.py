@@ -69,12 +69,12 @@ _EXTRAPOLATION = np.array([(-1.0) ** (k + 1) * math.comb(8, k) for k in range(8,
 
 
 def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
-    """Compute the law of a cover; takes 0.1 to 0.3 s.
+    """Compute the law of a cover over all speeds; takes 0.1 to 0.3 s.
 
     cover: one cover.
-    thickest: thickness divided by l0 that determines the number of rows, for several covers to have as many; default:
+    thickest: thickness divided by l0 that determines the number of rows, for several covers to have as many; None:
         that of the cover.
-    Returns the rows and limits, as :class:`CoverRows`.
+    Returns the polynomials and their limits of fast rolling, as :class:`CoverRows`; of elastic bodies a single row.
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
     """
     # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder
@@ -120,8 +120,10 @@ def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floa
 
     cover: one cover.
     u: kappa |V|, dimensionless, > 0.
-    orders: terms of the pressure; default: as many as rows are made with.
-    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V.
+    orders: terms of the pressure; None: as many as rows are made with.
+    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, dimensionless,
+    (5,).
+    Raises ParameterError where no contact length carries the load.
     """
     return _solve_node(CoverModes(cover), u, orders=orders)[0]
 
@@ -136,13 +138,15 @@ def _solve_node(
 ) -> tuple[Floats, float, float]:
     """Solve for the half contact length that carries the load, ln H = -ln(4 stiffness u^2), by the secant method.
 
+    The unknown is ln z, z the half contact length divided by V T_ref.
     modes: of the cover.
-    u: kappa |V|.
-    start: first approximation of ln z; None: by a half-space of the stiffness between slow and fast, which is softer.
+    u: kappa |V|, dimensionless, > 0.
+    start: first approximation of ln z; None: that of a half-space of a stiffness between slow and fast.
     slope: first approximation of d ln H/d ln z.
     orders: terms of the pressure; None: the default of the solve.
     stiffness: stiffness of the bodies divided by their long-time stiffness.
-    Returns (lam, L, 2 kappa delta_0, epsilon and M/V as an array; ln z; d ln H/d ln z).
+    Returns (lam, L, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,); ln z; d ln H/d ln z).
+    Raises ParameterError where the secant method reaches its limit of steps.
     """
     goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
     if start is None:
@@ -170,11 +174,11 @@ def _solve_node(
 
 
 def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
-    """Solve the states of a cover at increasing speeds.
+    """Solve the states of a cover at increasing speeds, each from a start that is extrapolated from those before.
 
     modes: of the cover.
-    u: kappa |V|, shape (n,).
-    Returns the five quantities at each node, (5, n).
+    u: kappa |V|, evenly spaced in ln u, ascending, (n,).
+    Returns lam, L, 2 kappa delta_0 of a cover on the base, epsilon and M/V at each node, (5, n).
     """
     values, logs, slope = np.empty((5, u.size)), np.empty(u.size), 2.0
     for n, speed in enumerate(u.tolist()):
@@ -184,12 +188,13 @@ def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
 
 
 def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
-    """Solve the cover as an elastic layer; slopes and creep depend on the shape of the contact alone.
+    """Solve the cover as an elastic layer, the limit of slow or of fast rolling.
 
+    Slopes and creep depend on the shape of the contact alone.
     modes: of the cover.
-    share: the layer's part of the compliance.
-    stiffness: stiffness of the bodies divided by their long-time stiffness.
-    Returns the five quantities, with epsilon and M/V 0.
+    share: the layer's part of the compliance, in (0, 1].
+    stiffness: stiffness of the bodies divided by their long-time stiffness: 1 for slow, alpha for fast rolling.
+    Returns lam, L, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,), the last two 0.
     """
     values = _solve_node(modes.elastic(share), 0.5, stiffness=stiffness)[0]
     values[[_EPSILON, _MOMENT]] = 0.0
@@ -201,12 +206,12 @@ def _fit_fast_rows(
 ) -> tuple[Floats, Floats]:
     """Fit the rows beyond the last octave, where limits, epsilon u and M u^2/V are polynomials of 1/u.
 
-    u, values: last nodes, (n,), and the quantities there, (5, n).
-    limits: for u -> infinity, (5,); NaN: not known.
-    x: nodes of these rows, (rows, nodes).
-    begin: where they begin.
-    log_terms: as of :func:`_fit_end`.
-    Returns (values and slopes over ln u at x, (2, 5, rows, nodes); :attr:`.pack.CoverRows.limits`).
+    u, values: last nodes, (n,), and lam, L, 2 kappa delta_0, epsilon and M/V there, (5, n).
+    limits: of these for u -> infinity, (5,); NaN: not known.
+    x: nodes of these rows in u, (rows, nodes).
+    begin: u where they begin.
+    log_terms: terms in ln u, as of :func:`_fit_end`.
+    Returns (values and slopes over ln u at x, (2, 5, rows, nodes); :attr:`.pack.CoverRows.limits`, (8,)).
     """
     y, x_inverse = begin / u, (begin / x).ravel()
     values = values.copy()
@@ -226,12 +231,12 @@ def _fit_end(
     """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares.
 
     y: nodes in [0.05, 1], (n,).
-    values: at the nodes, (5, n).
+    values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes, (5, n).
     limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
     wanted: points in (0, 1], (m,).
-    log_terms: terms of R.
-    Returns (limits, (5,); P + R ln y at the last point, (5,); values and derivatives with respect to ln y at the
-    points, (2, 5, m)).
+    log_terms: terms of R; 0: none.
+    Returns (limits, (5,); P + R ln y at the last of the points, (5,); values and derivatives with respect to ln y at
+    the points, (2, 5, m)).
     """
     from numpy.polynomial.chebyshev import chebvander
 
@@ -253,8 +258,8 @@ def _fit_end(
 def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
     """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes, barycentric.
 
-    values: at the nodes of the solve, (5, n).
-    begin: index of the node where the first octave begins.
+    values: at the nodes of the solve, which are evenly spaced in log2 u, 12 an octave, (5, n).
+    begin: index of the node where the first octave begins; 18 nodes before it and behind the last octave are used.
     count: number of octaves.
     Returns values and slopes over ln u at the nodes of the octaves, (2, 5, octaves, nodes).
     """
@@ -273,12 +278,12 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     """Return eta/F and H/F^2 at the nodes of v = 2 u/L(u), and their derivatives with respect to ln v.
 
     Where the stick zone has the creep limit F' = w/(2 u), its law is that of the whole contact at the speed u' with
-    L(u')/(2 u') = F': H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').
+    L(u')/(2 u') = F': H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').  That u' is found by Newton's method.
 
     rows: octaves of u and of v.
-    powers: coefficients of the five quantities, (5, rows, 24).
-    limits: :attr:`.pack.CoverRows.limits`.
-    Returns two arrays (2, rows, nodes).
+    powers: coefficients of lam, L, 2 kappa delta_0, epsilon and M/V, (5, rows, 24).
+    limits: :attr:`.pack.CoverRows.limits`, used beyond the last row.
+    Returns two arrays (2, rows, nodes): (eta/F, H/F^2), and their derivatives.
     """
     v = rows.x.ravel()
     u, end = v.copy(), math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)

@@ -111,7 +111,10 @@ class CoverModes:
         self.other_local = (1.0 - self.share) * _half_space_coupling(cover.other_nu)
 
     def elastic(self, share: float) -> CoverModes:
-        """Return the same bodies without relaxation; ``share``: the layer's part of the compliance."""
+        """Return the same bodies without relaxation.
+
+        share: the layer's part of the compliance, in (0, 1].
+        """
         cover = self.cover
         return CoverModes(Cover(1.0, nu=cover.nu, thickness=cover.thickness, part=share, other_nu=cover.other_nu))
 
@@ -132,13 +135,14 @@ def _half_space_coupling(nu: float) -> float:
 
 
 def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Return nodes and weights of an integral over [0, inf): the trapezoidal rule in s, scale ln(1 + e^s) the variable.
+    """Return nodes and weights of an integral over [0, inf): the trapezoidal rule in s, scale ln(1 + e^s) the
+    variable.
 
     Nodes are dense towards 0; for the integrands here the rule converges exponentially.
-
-    step: in s.
-    scale: of the variable.
-    ends: first and last s.
+    step: distance of the nodes in s.
+    scale: factor of ln(1 + e^s).
+    ends: first and last s; the last one is left out.
+    Returns (nodes in the variable, ascending; weights), (n,) each.
     """
     s = np.arange(*ends, step)
     return scale * np.logaddexp(0.0, s), step * scale / (1.0 + np.exp(-s))
@@ -146,9 +150,11 @@ def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tup
 
 @lru_cache(maxsize=64)
 def layer_nodes(nu: float) -> LayerNodes:
-    """Return the kernels of a layer at the nodes; ``nu``: its Poisson's ratio.
+    """Return the kernels of a layer at the nodes of the integrals over the wave number.
 
     Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
+    nu: Poisson's ratio of the layer, in [0, 0.5].
+    Returns :class:`LayerNodes`, kept for the next call.
     """
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
@@ -163,11 +169,11 @@ def layer_nodes(nu: float) -> LayerNodes:
 def bessel(v: Floats, order: int) -> Floats:
     """Return J_0 ... J_order at v, each with the sign (-1)^(n//2), accurate to 1e-15 absolute.
 
-    They are the Chebyshev coefficients of cos(v x) and sin(v x), by a discrete sum long enough for aliases to vanish.
-
+    They are the Chebyshev coefficients of cos(v x) and sin(v x), without the factor 2, by a discrete sum long enough
+    for aliases to vanish.
     v: arguments >= 0, (n,).
     order: highest order.
-    Returns [order, argument].
+    Returns (order + 1, n).
     """
     count = (int(v.max() + 0.5 * order) + 24) & ~1
     phi = (np.arange(count // 2) + 0.5) * (math.pi / count)
@@ -187,9 +193,9 @@ def _decay_nodes() -> tuple[Floats, Floats]:
 
 
 def _decays(beta: Floats, order: int) -> Floats:
-    """Return D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx, [order, mode].
+    """Return D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx for n from 0, (order + 1, modes).
 
-    beta: b_j z, (modes,).
+    beta: b_j z, rates of creep times the half contact length over V, dimensionless, (modes,).
     order: highest n.
     """
     beta = np.minimum(beta, _LARGE_BETA)
@@ -224,9 +230,9 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
     """Evaluate the modes on a contact.
 
     modes: of the cover.
-    z: half contact length divided by V T_ref.
+    z: half contact length divided by V T_ref, > 0.
     N: highest order of the terms of the pressure.
-    Returns their integrals over the contact, as :class:`_Exponentials`.
+    Returns ratios of Bessel functions and the matching at the front edge, as :class:`_Exponentials`.
     """
     from scipy.special import ive, k0e, k1e
 
@@ -241,14 +247,14 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
 
 
 def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[Floats, Floats]:
-    """Return the contributions of the layer to the slope and to the memory.
+    """Return the contributions of the layer to the slope and to the memory, beyond those of a half-space.
 
-    v: u theta at the nodes, (n,).
-    A: signed Bessel functions there, (N + 1, n).
+    v: u theta at the nodes, wave number times half contact length, (n,).
+    A: signed Bessel functions there, as of :func:`bessel`, (N + 1, n).
     beta: b_j z, (modes,).
     weights: (L - 1)/u times the weights of the rule and the layer's complex part of the compliance, (n,).
-    Returns (S, c): the slope is sum (S q)_n T_n, S (N + 1, N); c q, c (modes, N), is the excess memory of that slope in
-    each creep mode.
+    Returns (S, c): the slope is sum (S q)_n T_n, S (N + 1, N); c q, c (modes, N), is the excess memory of that slope
+    in each creep mode.
     """
     N = len(A) - 1
     n, m = np.arange(N + 1), np.arange(1, N + 1)
@@ -268,12 +274,11 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     """Solve the contact of a given half length, by one linear system.
 
     Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 it is that of a half-space.
-
     modes: of the cover.
     z: half contact length divided by V T_ref, > 0.
     theta: half contact length divided by the thickness, in (0, 6].
-    orders: terms of the pressure; default: 14 + 6 theta.
-    Returns half contact lengths, moments and creepage, as :class:`CoverState`.
+    orders: terms of the pressure; None: 14 + 6 theta.
+    Returns load, shift, moment, creep limit, strain and the terms of the pressure, as :class:`CoverState`.
     """
     nodes, N = modes.nodes, orders or _term_count(theta)
     v = nodes.u * theta

@@ -30,8 +30,9 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
 def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
     """Return the record of a series that kernels read (:class:`...kernels.rows.series.Series`).
 
-    modes: both forms of one series, or of many along leading axes.
-    weights: part of each creep mode that is the half-space's, for two bodies that differ; None: they are alike.
+    modes: strengths and rates of relaxation and of creep of one series, or of many along leading axes.
+    weights: part of each creep mode that is the half-space's, 0 to 1, (..., modes), for two bodies that differ; None:
+        they are alike.
     """
     from ...kernels.rows.series import Series
 
@@ -44,8 +45,8 @@ def series_record(material: Any) -> tuple[Any, Floats]:
     """Return the arguments of the kernel that evaluates a law by its modes, for use by one thread.
 
     material: a series, two bodies, or alphas, one or one for each element.
-    Returns (record of the series, alphas): for a series or bodies no alphas; for alphas the record of one mode, which
-    the kernel overwrites with each alpha in turn.
+    Returns (record of the series; alphas, (n,)): for a series or bodies an empty array of alphas; for alphas the
+    record of one mode, which the kernel overwrites with each alpha in turn.
     """
     from ...kernels.rows.series import Series
 
@@ -59,11 +60,11 @@ def series_record(material: Any) -> tuple[Any, Floats]:
 
 
 class ModesValues(NamedTuple):
-    """Functions of z from which rows are made: g/z, h/z, and m of half-space and cylinder.
+    """Functions of z = zeta from which rows are made, dimensionless, T_ref being the unit of time.
 
-    values : shape (4, n).
-    slopes : their derivatives with respect to ln(1/z), shape (4, n).
-    N : factor of dV/dt in M = M(V) + N dV/dt, shape (n,).
+    values : g/z, h/z, and M/V of half-space and cylinder, (4, n).
+    slopes : their derivatives with respect to ln(1/z), (4, n).
+    N : factor of dV/dt in M = M(V) + N dV/dt, (n,).
     """
 
     values: Floats
@@ -75,8 +76,8 @@ def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
     """Evaluate the law by the formulas of its modes.
 
     material: a series, two bodies, or alphas, one or one for each z.
-    z: half contact length divided by V T_ref, zeta of the paper, > 0, shape (n,).
-    Returns :class:`ModesValues`, arrays of the functions of the law over z.
+    z: half contact length divided by V T_ref, zeta of the paper, > 0 (infinite at rest), (n,).
+    Returns :class:`ModesValues`; of elastic bodies all 0.
     """
     from ...kernels.rows.modes import modes_loop
     from ...kernels.rows.series import FUNCTIONS, new_workspace

@@ -26,11 +26,11 @@ _NEWTON_STEPS = 2
 
 @dataclass(frozen=True)
 class _FunctionsOfW:
-    """Polynomials of w = 1/z for g/z, h/z, and m of half-space and cylinder.
+    """Polynomials of w = 1/z for g/z, h/z, and M/V of half-space and cylinder.
 
     rows : octaves of w.
-    powers : coefficients, [function, row, power].
-    values : values at the nodes, [function, node].
+    powers : coefficients, (4, rows, 24 powers).
+    values : values at the nodes, (4, nodes), the nodes of all rows one after another.
     """
 
     rows: Rows
@@ -61,10 +61,11 @@ class _FunctionsOfW:
     def _solve(self, x: Floats, which: int, factor: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
         """Return the functions where w = x factor(1 + g/z) or w = x factor(1 + 2 h/z), by Newton's method.
 
-        x: u or v, shape (n,).
+        x: u = kappa |V| or v = 1/F(eta), (n,).
         which: 0 for g/z, 1 for 2 h/z.
-        factor: the function that multiplies x, of arrays.
-        Returns values and derivatives with respect to ln x, (4, n) each.
+        factor: function of the sum in brackets, an array of any shape, that returns an array of that shape.
+        Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with respect to ln x), (4,
+        n) each.
         """
         nodes = self.rows.x.ravel()
         x_of_nodes = nodes * (1.0 / factor(1.0 + (1 + which) * self.values[which]))
@@ -80,13 +81,13 @@ class _FunctionsOfW:
 
 
 def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
-    """Fit the rows of the law of steady rolling.
+    """Fit the rows of the law of steady rolling, one polynomial for each function and octave.
 
-    material: an alpha, a series, or two bodies.
-    rows: octaves of u and of v.
+    material: an alpha, a series, or two bodies, not elastic.
+    rows: octaves of u = kappa |V| and of v = 1/F(eta).
     alpha: instantaneous divided by long-time stiffness.
-    T_mean: sums J_j T_j of half-space and cylinder, in units of T_ref; shape (2,).
-    Returns the table (rows, 24 powers, 7 functions) with NaN for N.
+    T_mean: sums J_j T_j of half-space and cylinder, in units of T_ref, (2,): the limits of M/V at rest.
+    Returns the table (rows, 24 powers, 7 functions) with NaN for N; functions as :data:`.pack.FUNCTIONS`.
     """
     e0, mean = rows.e0, float(T_mean.sum())
     w = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(alpha)))
@@ -104,9 +105,9 @@ def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
     """Return a table with the coefficients of N, which the rows of steady rolling do not have.
 
     material: an alpha, a series, or two bodies.
-    table: rows of its steady rolling, (rows, 24 powers, 7 functions).
-    e0: exponent of the end of the first row.
-    Returns the table (rows, 24 powers, 7 functions).
+    table: rows of its steady rolling, (rows, 24 powers, 7 functions); not changed.
+    e0: exponent of the end of the first row, which is [0, 2^e0).
+    Returns a copy of the table with the column of N.
     """
     rows, whole = Rows(e0, len(table)), table.copy()
     (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())

@@ -31,14 +31,15 @@ _MOST_BYTES = 1 << 31
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LawGrid:
-    """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes a function of V and
-    omega of it.
+    """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes it a function of V and
+    omega.
 
     Attributes
     ----------
-    splines : Q, M_half_space and M_cylinder, as :func:`viscoroll.materials.law.splines.pack_spline` writes them; Q
-        divided by the load and M divided by load times radius, or in N/m and N.
-    V : slowest and fastest speed; dimensionless, or m/s.
+    splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline, as
+        :func:`viscoroll.materials.law.splines.pack_spline` writes it; Q divided by the load and M divided by load
+        times radius, or Q in N/m and M/R in N/m.
+    V : slowest and fastest speed, > 0; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
     slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond
         them.
@@ -57,10 +58,11 @@ class LawGrid:
         return f"LawGrid(for vr.law alone: {self.title})"
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
-        """Raise OutOfTableError for a state outside the axes.
+        """Raise OutOfTableError for a state outside the axes, for a call that has found it to be outside.
 
-        V: speeds in the unit of the grid, any shape.
-        omega: angular velocities in the unit of the grid; broadcasts with V.
+        V: speed in the unit of the grid, a number or an array of one.
+        omega: angular velocity in the unit of the grid, likewise.
+        The error names V if |V| is beyond the fastest speed, else delta.
         """
         if np.abs(V) > self.V[1]:
             raise OutOfTableError("V", float(V), -self.V[1], self.V[1])
@@ -68,17 +70,10 @@ class LawGrid:
 
 
 def friction_limit(attributes: Any) -> float:
-    """Return the largest |Q| that the law allows, Eq. (15): mu, or in SI units mu times the load; infinite without a
-    mu.
+    """Return the largest |Q| that the law allows, Eq. (15): mu, or in SI units mu times the load.
 
-    Parameters
-    ----------
-    attributes : attributes of a grid.
-
-    Returns
-    -------
-    float
-        In the unit of Q: dimensionless, or N/m.
+    attributes: attributes of a grid, of which "mu" and "load" (N/m; without it 1) are used.
+    Returns a number in the unit of Q: dimensionless, or N/m; infinite without a mu.
     """
     return float(attributes.get("mu", np.inf)) * float(attributes.get("load", 1.0))
 
@@ -89,9 +84,10 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     Parameters
     ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
-        M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Global
-        attributes: mu, and where V has a unit R in m and the load in N/m.
-    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.
+        M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Its
+        global attributes are mu, and where V has a unit R in m and the load in N/m.
+    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.  None: not
+        given.
 
     Returns
     -------
@@ -123,11 +119,13 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 
 
 def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
-    """Return a grid at one alpha; raises ParameterError.
+    """Return a grid at one alpha.
 
-    table: grid, with or without an axis alpha.
+    table: dataset of a grid, with or without an axis alpha; without it the grid is returned as it is.
     path: path of the file, for errors.
-    alpha: wanted value, or None.
+    alpha: wanted value; None: not given.
+    Returns the dataset without that axis; between nodes interpolated in ln alpha, cubic from four nodes on.
+    Raises ParameterError for an alpha outside the axis, or none for a grid that has one.
     """
     if "alpha" not in table.dims:
         return table
@@ -141,9 +139,11 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
 
 
 def _in_si(table: xr.Dataset) -> xr.Dataset:
-    """Return a grid in SI units if its V has a unit, else without dimension; raises ParameterError.
+    """Return a grid in SI units if its V has a unit, else without dimension.
 
-    table: grid whose variables have an attribute ``units``.
+    table: dataset of a grid whose variables have an attribute ``units``; "1" is no unit.
+    Returns the dataset with numbers in the units of :data:`UNITS`; a dimensionless one with the attribute R = 1.
+    Raises ParameterError for a unit that is missing or of another dimension.
     """
     names = [name for name in UNITS if name in table.variables]
     given = {name: str(table[name].attrs.get("units", "missing")) for name in names}
@@ -159,9 +159,13 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
 
 
 def _law_of(table: xr.Dataset) -> LawGrid:
-    """Return the law of a grid in SI units; raises KeyError, and ValueError, of which ParameterError is one.
+    """Return the law of a grid, as splines.
 
-    table: grid at one alpha.
+    table: dataset of a grid at one alpha, in SI units or dimensionless; without M_half_space or M_cylinder each body
+        has half of M.
+    Returns the :class:`LawGrid`.
+    Raises KeyError for a missing variable, and ValueError, of which ParameterError is one, for values that are not
+    finite, axes that do not increase, other dimensions, or no R.
     """
     V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
     axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}

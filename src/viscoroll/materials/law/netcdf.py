@@ -40,10 +40,13 @@ _COVER_NUMBERS = ("e0", "alpha", "T_ref")
 
 
 def law_table_of(material: Any, base: Any = None) -> LawTable:
-    """Return the :class:`LawTable` of any kind of material that a user may give; raises ParameterError.
+    """Return the :class:`LawTable` of any kind of material that a user may give.
 
     material: Prony, Bodies, alpha, Material, Pair, or a LawTable, which is returned.
-    base: Material of the half-space, only beside a Material; default: that of the cylinder.
+    base: Material of the half-space, only beside a Material; None: that of the cylinder.
+    Returns the table; of a Material or a Pair with its T_ref in s and the bodies.
+    Raises ParameterError for another type, an alpha out of range, a base beside anything but a Material, many
+    materials.
     """
     if base is not None and not isinstance(material, Material):
         raise described_error("base", "is given", "left out unless material is a Material")
@@ -63,7 +66,10 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
     """Return the content of the file of a law.
 
     law: the law of one material, or of all alpha.
-    errors: function -> largest relative error, dimensionless.
+    errors: name of a function, as "lam" -> its largest relative error, dimensionless.
+    Returns the dataset, with the coefficients of each function, and with what :func:`load_law` needs to make the law
+    again.
+    Raises ParameterError for a layer beside a body that relaxes too.
     """
     if isinstance(law, LawAxis):
         return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
@@ -140,10 +146,12 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
 
 
 def parse_law(content: Content, path: Any) -> LawTable:
-    """Return the law of one material; raises FileError for a file that does not state its material.
+    """Return the law of one material.
 
     content: content of the file, verified.
     path: path of the file, for errors.
+    Returns the :class:`LawTable`, with the coefficients of the file.
+    Raises FileError for the law of every alpha, and for a file that does not state its material or is incomplete.
     """
     numbers, attributes = content
     kind = attributes[KIND]
@@ -164,10 +172,12 @@ def parse_law(content: Content, path: Any) -> LawTable:
 
 
 def parse_axis(content: Content, path: Any) -> LawAxis:
-    """Return the law of all alpha; raises FileError for an incomplete file.
+    """Return the law of all alpha.
 
     content: content of the file, verified.
     path: path of the file, for errors.
+    Returns the :class:`LawAxis`, with the coefficients of the file.
+    Raises FileError for an incomplete file.
     """
     with _refuse_incomplete(path):
         coefficients, numbers = _coefficients(content), content.numbers
@@ -194,9 +204,10 @@ def _refuse_incomplete(path: Any) -> Iterator[None]:
 
 
 def bodies_as_toml(given: Any) -> str:
-    """Return TOML that reads back to the bit: of a pair as in scene files, of others dimensionless.
+    """Return TOML that :func:`_parse_bodies` reads back to the bit.
 
-    given: Pair, Cover, Bodies, Prony or alpha.
+    given: Pair (in SI units, as in scene files), or Cover, Bodies, Prony or alpha (dimensionless).
+    Returns a text with the sections [material] and [base] and the key plane, or [cover], [bodies] or [scene].
     """
     if isinstance(given, Pair):
         text = material_as_toml(given.cylinder)
@@ -216,7 +227,8 @@ def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
 
     text: TOML.
     path: path of the file, for errors.
-    Returns (Cover, Bodies, Prony or alpha; the bodies in SI units, or None).
+    Returns (Cover, Bodies, Prony or alpha, dimensionless; the :class:`Pair` in SI units, None if the text has none).
+    Raises FileError for a section that is wrong, KeyError for one that is missing.
     """
     content = tomllib.loads(text)
     pair = None

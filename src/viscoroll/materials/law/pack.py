@@ -84,9 +84,10 @@ def constant_rows(*values: float) -> Floats:
 def to_axis(table: Floats, c: Floats) -> Floats:
     """Convert tables of a standard linear solid to functions that have finite limits for alpha -> 1.
 
-    table: coefficients of the functions, (..., rows, 24 powers, 7 functions).
-    c: (alpha - 1)/alpha, in a shape that broadcasts.
-    Returns (..., rows, 24 powers, 6 functions), as :data:`AXIS_FUNCTIONS`.
+    table: coefficients of the functions, (..., rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`; not
+    changed.
+    c: (alpha - 1)/alpha of each table, > 0, in a shape that broadcasts with (..., rows, 24 powers, functions).
+    Returns (..., rows, 24 powers, 6 functions), as :data:`AXIS_FUNCTIONS`: epsilon, M/V and N divided by c.
     """
     columns = table[..., _AXIS_COLUMNS]
     columns[..., _AXIS_M] *= 2.0
@@ -110,7 +111,7 @@ def interleave_pairs(a: Floats, b: Floats) -> Floats:
     """Return rows in which two powers of one function are followed by the same two of the other: a0 a1 b0 b1 a2 ...
 
     a, b: coefficients, (rows, powers) each, with an even number of powers.
-    Returns (rows, 2 powers).
+    Returns an array with twice as many columns.
     """
     both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
     return both.reshape(len(a), -1)
@@ -139,12 +140,12 @@ def allocate_rows(count: int) -> tuple[Floats, Integers]:
 def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:
     """Return the record of a law that kernels read, with all rows in place.
 
-    table: coefficients of the functions, (rows, 24 powers, 7 functions).
-    e0: exponent of the end of the first row.
+    table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`.
+    e0: exponent of the end of the first row, which is [0, 2^e0).
     alpha: instantaneous divided by long-time stiffness.
-    fast_limit: W and C of the fast limit, of both bodies, half-space and cylinder, shape (3, 2).
+    fast_limit: W and C of the fast limit (:class:`.table.LawTable`), of both bodies, half-space and cylinder, (3, 2).
     cover: rows of a cover of finite thickness; None for half-spaces.
-    Returns :class:`...kernels.rows.record.Law`.
+    Returns :class:`...kernels.rows.record.Law`, read-only, without the rows of N.
     """
     from ...kernels.rows.record import E0, ROW_COUNT, ROW_SIZE, Law
 
@@ -159,16 +160,16 @@ def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover:
 
 
 def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floats | None) -> Floats:
-    """Return the rows of a record (:mod:`...kernels.rows.evaluate`).
+    """Return the rows of a record in the order in which kernels read them (:mod:`...kernels.rows.evaluate`).
 
     L^2 press(2 u/L) = 1 is made to hold to rounding, as Q would lose digits by an error in it.
-
-    table: coefficients of the functions, (rows, 24 powers, 7 functions).
+    table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`.
     e0: exponent of the end of the first row.
     alpha: value of press for v -> infinity.
-    fast: W and C of the fast limit of both bodies together.
-    cover_L: rows of L = 2 kappa delta_star/mu of a cover; None: L = lam (1 + epsilon).
-    Returns (rows, numbers of a row).
+    fast: W and C of the fast limit of both bodies together, (2,).
+    cover_L: rows of L = 2 kappa delta_star/mu of a cover, (rows, 24 powers); None: L = lam (1 + epsilon).
+    Returns (rows, numbers of a row): pairs of powers of L and M/V, lam and epsilon, M/V of half-space and cylinder,
+    then H/F^2 and eta/F.
     """
     rows = Rows(e0, len(table))
     lam, epsilon, half_space, cylinder, _, share, press = np.moveaxis(table, -1, 0)
@@ -189,10 +190,11 @@ def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floa
 def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats) -> tuple[Floats, Floats]:
     """Return H/F^2 and its derivative with respect to ln v, by the rows or, beyond these, by the fast limit.
 
-    rows, press: octaves of v, and coefficients of H/F^2, (rows, 24 powers).
-    v: 1/F(eta), shape (n,).
+    rows: octaves of v.
+    press: coefficients of H/F^2, (rows, 24 powers).
+    v: 1/F(eta), (n,).
     alpha: value for v -> infinity.
-    fast: W and C of the fast limit.
+    fast: W and C of the fast limit, (2,).
     Returns (values, derivatives), (n,) each, dimensionless.
     """
     last = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
@@ -209,8 +211,9 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).
     e0: exponent of the end of the first row.
     alpha: instantaneous divided by long-time modulus.
-    Returns one array: rows of N and of its integral from the point t = 0 of each row; then the integral from infinity
-    down to that point, for each row and the end of the last; then likewise the integral from u = 0 up to it.
+    Returns one vector: rows of N and of its integral from the point t = 0 of each row, two powers of one and two of
+    the other in turn; then the integral from infinity down to that point, for each row, and to the end of the last
+    row; then likewise the integral from u = 0 up to it.
     """
     N = table[..., FUNCTIONS.index("N")]
     du_dt, integral = np.ldexp(0.25, e0 + np.arange(len(N))), np.zeros_like(N)
@@ -262,9 +265,11 @@ class AxisRows(NamedTuple):
 def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     """Return the rows of several alphas as the alpha axis of the kernels has them (:mod:`...kernels.rows.alpha_axis`).
 
-    records: records of the laws of standard linear solids at the nodes of an octave, with equal numbers of rows.
-    c: (alpha - 1)/alpha of each, by which M/V and epsilon are divided.
-    Returns :class:`AxisRows`.
+    records: records of the laws of standard linear solids at the 16 nodes of an octave of alpha, with equal numbers of
+    rows.
+    c: (alpha - 1)/alpha of each, (16,), by which M/V and epsilon are divided.
+    Returns :class:`AxisRows`: terms of Chebyshev polynomials in s, the place of alpha in its octave, in groups of
+    four; groups of zeros at high degrees are left out.
     """
     from ...kernels.rows.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
     from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
@@ -299,8 +304,8 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
 def _grouped_terms(terms: Floats, size: int) -> Floats:
     """Return sums of T_j(s) as sums of T_4g(s) times cubic polynomials in s.
 
-    terms: coefficients of T_0 to T_15, along the first axis.
-    size: terms of a group, 4.
+    terms: coefficients of T_0 to T_15, (16, ...); not changed.
+    size: terms of a group; it must be 4.
     Returns coefficients of the same shape: those of T_4g s^i at index 4 g + i.
     """
     terms = terms.copy()
@@ -319,7 +324,8 @@ def _grouped_terms(terms: Floats, size: int) -> Floats:
 def _significant_terms(values: Floats) -> Floats:
     """Return the terms in Chebyshev polynomials of s of functions of s and t, without terms below their rounding.
 
-    values: powers of t at the nodes of s, (nodes, rows, functions, powers).
+    values: powers of t at the nodes of s, (nodes, rows, functions, powers), the functions L, M/V, lam, epsilon, H/F^2
+        and eta/F.
     Returns (terms of s, rows, functions, powers of t).  A coefficient of the Chebyshev polynomials of both that is
     negligible is zero, except in the first row, which holds the limits at rest.
     """
@@ -350,9 +356,10 @@ def _significant_terms(values: Floats) -> Floats:
 def pack_materials(block: Block) -> Floats:
     """Return the numbers of materials from which kernels make rows by a grid of z (:mod:`...kernels.rows.z_grid`).
 
-    block: materials of equal numbers of modes.
-    Returns (materials, numbers): alpha, 1/sqrt(alpha), W and C of the fast limit of both bodies, half-space and
-    cylinder, sums J_j T_j of half-space and cylinder, e0, number of rows, number of modes; then the modes.
+    block: materials of equal numbers of modes; without weights each body has half of each mode.
+    Returns (materials, numbers), of each: alpha, 1/sqrt(alpha); W and C of the fast limit of both bodies, of the
+    half-space, of the cylinder; sums J_j T_j of half-space and cylinder; e0, number of rows, number of modes; then the
+    vectors and the matrix of the modes, as of :func:`.evaluate.modes_record`.
     """
     modes, count = block.modes, block.rows.size
     weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights

@@ -50,7 +50,8 @@ def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
 
     alpha: one value for each element, (n,), or one for all, (1,), dimensionless, >= 1.
     count: number of records, each of which holds the law of one element at a time.
-    Returns a tuple of :class:`...kernels.rows.record.Law`.
+    Returns a tuple of :class:`...kernels.rows.record.Law`.  Octaves of alpha that this process has not used before are
+    computed and kept.
     """
     from ...kernels.rows import alpha_axis
     from ...kernels.rows.record import E0
@@ -80,9 +81,8 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
     """Return an order of states in which those of one octave of alpha and one of kappa |V| follow each other.
 
     They then read rows that are close in memory: states in random order take half as long again.
-
-    alpha, kappa, V: parameters and speed of the states, dimensionless, shape (n,), or one for all.
-    Returns indices (n,); none for a single state.
+    alpha, kappa, V: parameters and speed of the states, dimensionless, (n,), or (1,) for all.
+    Returns indices (n,); an empty array, the order given, for a single state.
     """
     octaves = (256 * _exponents(alpha) + np.clip(_exponents(kappa * V), -5, 100)).astype(np.int16)
     return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
@@ -100,10 +100,10 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     """Return the record of the laws of states or motions that have a material each, for use by one thread.
 
     The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
-
     materials: many series, pairs or covers.
-    which: index of the material of each element, shape (n,).
+    which: index of the material of each element, (n,) or (1,) for all.
     Returns :class:`...kernels.rows.record.Law`.
+    Raises ParameterError for times beyond 1e-100 to 1e100 times T_ref.
     """
     used, index = np.unique(which, return_inverse=True)
     index = np.ascontiguousarray(index, dtype=np.int64)
@@ -185,8 +185,9 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
 
     covers: many covers, which may differ in Poisson's ratio too.
-    index: index of the cover of each element, shape (n,).
-    Returns :class:`...kernels.rows.record.Law`.
+    index: index of the cover of each element, (n,).
+    Returns :class:`...kernels.rows.record.Law`, which holds the law of one element at a time.
+    Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
     """
     from ...kernels.rows import thickness_axis
     from ...kernels.rows.record import E0, ROW_COUNT
@@ -226,9 +227,9 @@ def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
     """Return the laws at the nodes of an octave of thickness; made once a process.
 
     thinnest: cover at the lower end of the octave.
-    many_nu: whether at the nodes of Poisson's ratio too, in place of that of the cover.
-    Returns the numbers of their records, (nodes, numbers in front and rows, then those of the cover), and one of these
-    records.
+    many_nu: whether laws are made at the nodes of Poisson's ratio in [0, 1/2] too; else that of the cover is taken.
+    Returns (numbers of their records, (laws, numbers in front and rows, then those of the cover), the nodes of
+    thickness running fastest; one of these records).
     """
     from ...kernels.numerics.interpolation import chebyshev, to_doubles
 

@@ -70,11 +70,11 @@ class Rows:
         return derivative
 
     def read(self, powers: Floats, x: Floats) -> tuple[Floats, Floats]:
-        """Evaluate polynomials.
+        """Evaluate polynomials and their slopes, by Horner's scheme.
 
-        powers: coefficients, [function, row, power].
-        x: points, shape (n,), below the end of the last row.
-        Returns values and derivatives with respect to ln x, [function, point] each.
+        powers: coefficients, (functions, rows, 24 powers).
+        x: points, >= 0, (n,), below the end of the last row.
+        Returns (values; derivatives with respect to ln x), (functions, n) each.
         """
         mantissa, exponent = np.frexp(x)
         row = np.maximum(exponent - self.e0, 0)
@@ -92,10 +92,11 @@ class Rows:
     def fit(self, values: Floats, terms: int = TERMS, rounding: float = _ROUNDING) -> Floats:
         """Fit polynomials to values at the nodes.
 
-        values: values of the functions at the nodes, [..., row, node].
-        terms: number of Chebyshev coefficients to keep.
-        rounding: fraction of the largest coefficient of the first row below which the following ones are dropped.
-        Returns coefficients, [..., row, power].
+        values: values of the functions at the nodes, (..., rows, nodes).
+        terms: number of Chebyshev coefficients to keep, at most 24.
+        rounding: fraction of the largest coefficient of a function in the first row; the first coefficient there that
+            is smaller, and all behind it, are set to 0.
+        Returns coefficients of powers of t, (..., rows, 24 powers).
         """
         chebyshev_terms = _multiply(values, _TO_CHEBYSHEV)
         chebyshev_terms[..., terms:] = 0.0
@@ -107,11 +108,11 @@ class Rows:
         return powers
 
     def fit_slopes(self, values: Floats, slopes: Floats) -> Floats:
-        """Fit polynomials to slopes at the nodes, and to the values in the mean.
+        """Fit polynomials to slopes at the nodes, integrate them, and fit the constant to the values in the mean.
 
-        values: values of the functions at the nodes, [..., row, node].
-        slopes: derivatives of the values with respect to ln x, [..., row, node].
-        Returns coefficients, [..., row, power].
+        values: values of the functions at the nodes, (..., rows, nodes).
+        slopes: derivatives of the values with respect to ln x, (..., rows, nodes).
+        Returns coefficients, (..., rows, 24 powers).
         """
         derivative = self.fit(slopes * self.dlnx_dt, TERMS - 1)
         powers = np.zeros_like(derivative)
@@ -130,8 +131,8 @@ def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
     """Return the rows that a law needs; beyond the last one its fast limit is accurate to rounding.
 
     slowest: slowest rate of creep, in units of 1/T_ref; a number or an array.
-    fastest: fastest rate of relaxation, in units of 1/T_ref.
-    Returns (e0, number of rows), of the shape of the arguments.
+    fastest: fastest rate of relaxation, in units of 1/T_ref, in the same shape.
+    Returns (e0, number of rows), integers in that shape; the first row is the interval [0, 2^e0).
     """
     from ...kernels.rows.z_grid import FAST_LIMIT_OCTAVES
 

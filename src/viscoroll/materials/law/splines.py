@@ -17,11 +17,16 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
     ----------
     values : values at the nodes, (nodes of the first axis, nodes of the second, ...).
     axes : coordinates of the nodes, increasing, one array for each axis; none for a single value.
-    degree : 1 or 3.
+    degree : 1 or 3; along an axis of fewer than degree + 1 nodes it is the number of nodes less 1.
 
     Returns
     -------
     scipy.interpolate.NdBSpline, or ``values`` without axes.
+
+    Raises
+    ------
+    ValueError
+        Of scipy, for values that are not finite and coordinates that do not increase.
     """
     from scipy.interpolate import NdBSpline, make_interp_spline
 
@@ -36,11 +41,11 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     """Return an axis of a spline in the form that ``kernels.splines.spline`` reads.
 
-    knots: knots of a not-a-knot spline.
+    knots: knots of a not-a-knot spline, ascending, with degree + 1 of them before the second node.
     degree: 0 to 3.
     log: whether the spline runs in the logarithm of the coordinate.
     stride: number of coefficients that one step along the axis is.
-    Returns the vector: number of intervals, degree + 1, log and stride; the ends of the intervals; the Taylor
+    Returns the vector: number of intervals, degree + 1, log (0 or 1) and stride; the ends of the intervals; the Taylor
     coefficients of the basis splines in each interval.
     """
     from scipy.interpolate import BSpline
@@ -62,9 +67,15 @@ def pack_spline(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds
     Parameters
     ----------
     found : a spline of :func:`fit_spline`, or the value of a field over no axis.
-    axes : names of its axes, in their order.
+    axes : names of its axes, in their order, of "V", "delta" and "alpha".
     logs : names of the axes in whose logarithm it runs.
-    bounds : lowest and highest value, to which results are clipped.
+    bounds : lowest and highest value, to which results are clipped; infinite for none.
+
+    Returns
+    -------
+    vector
+        The bounds; where the axes V, delta and alpha and the coefficients begin; these axes, one interval for an axis
+        that the field is not over; the coefficients.
     """
     # an axis that the field is not over: no interval, one basis spline, which is 1
     vectors = dict.fromkeys(("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15))

@@ -91,18 +91,23 @@ class LawTable:
 
 
 def law_table(material: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
-    """Return the table of a material; it is made once a process and shared by all its threads.
+    """Return the table of the law of a material; it is made once a process and shared by all its threads.
 
     Parameters
     ----------
-    material : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, which are one material if they are
-        alike or both elastic; or a table, which is returned.
-    coefficients : rows of the law, as read from a file; default: they are computed.
+    material : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, which are one material if they
+        are alike or both elastic; or a table, which is returned.
+    coefficients : rows of the law, as read from a file, (rows, 24 powers, 7 functions), from which a new table is
+        made; None: they are computed.
+
+    Returns
+    -------
+    LawTable
 
     Raises
     ------
     ParameterError
-        Many materials; times beyond 1e-100 to 1e100 of their unit.
+        Many materials; times beyond 1e-100 to 1e100 of their unit; a cover that is too thin.
     """
     if isinstance(material, LawTable):
         return material
@@ -131,9 +136,11 @@ def make_table(
     """Make the table of the law of a material; rows that are not given are computed.
 
     material: alpha, a series, two bodies or a cover.
-    coefficients: rows of the law (rows, 24 powers, 7 functions); None: they are computed.
+    coefficients: rows of the law, (rows, 24 powers, 7 functions); None: they are computed.  Not used for a cover and
+        for elastic bodies.
     cover: rows of the law of a cover; None: they are computed if ``material`` is one.
-    Returns the :class:`LawTable`, whose arrays are read-only.
+    Returns the :class:`LawTable`, whose arrays are read-only; N is computed at first use.
+    Raises ParameterError for times beyond 1e-100 to 1e100 of their unit, and for a cover that is too thin.
     """
     total, unlike = total_series(material), isinstance(material, Bodies)
     modes, alpha = total.modes, total.alpha
