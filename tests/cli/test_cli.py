@@ -279,7 +279,10 @@ def test_output_for_machines_and_for_eyes(run, here):
 
 
 def test_result_files_and_scenes_are_drawn(run, here):
-    for name, text in (("a.toml", ROLLER + RUBBER), ("m.toml", RUBBER), ("run.toml", UNCERTAIN)):
+    for name, text in (
+        ("a.toml", ROLLER + RUBBER), ("m.toml", RUBBER), ("base.toml", "[base]\nE = 2e11\nnu = 0.3\n"),
+        ("run.toml", UNCERTAIN),
+    ):  # fmt: skip
         (here / name).write_text(text)
     vr.presets.RUBBER_CYLINDER.material.to_netcdf("rubber.nc")
     for command in (
@@ -287,7 +290,7 @@ def test_result_files_and_scenes_are_drawn(run, here):
         "contact PAPER --V 0.1:1:5 --delta -0.01:0.01:3 -o c.nc",
     ):  # fmt: skip
         run(*command.replace("PAPER", *PRESET).split())
-    for name in ("m.nc", "c.nc", "s.nc", "rubber.nc", "a.toml", "m.toml"):
+    for name in ("m.nc", "c.nc", "s.nc", "rubber.nc", "a.toml", "m.toml", "base.toml"):
         run("plot", name, "-o", f"{name}.png")
         assert (here / f"{name}.png").read_bytes()[1:4] == b"PNG"
 

@@ -64,7 +64,7 @@ def _figure_of_toml(path: str) -> Any:
     """Return the matplotlib figure of what a TOML file describes.
 
     Of a scene or cylinder it is the contact in free rolling over speed, from a thirtieth of the speed of the first
-    extremum of M to thirty times that of the last; of a file without them it is the material.
+    extremum of M to thirty times that of the last; of a file without them it is the material, else the base.
 
     path: path of a TOML file with [scene], [cylinder], preset or [material].
     Raises FileError for a file that cannot be read, ParameterError for an unknown preset.
@@ -76,7 +76,7 @@ def _figure_of_toml(path: str) -> Any:
     from ...materials.material_toml import read_materials
 
     if not read_toml(path).keys() & set(SCENES):
-        return read_materials(path)["material"].plot()
+        return next(iter(read_materials(path).values())).plot()
     roller = read_roller(path)
     extrema = roller.resistance_extrema().V
     low, high = (extrema[0], extrema[-1]) if extrema.size else (roller.scale["V"],) * 2

@@ -21,9 +21,10 @@ _V_HELP = "velocity of the axis, any sign"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
-    """Return the options that commands on a contact have in common: scene, --V, --delta and --omega.
+    """Return the options that commands on a contact have in common.
 
     kind: function that converts the text of a speed or creepage, as ``float`` or :func:`.arguments.numbers`.
+    Returns four options for :func:`.arguments.command`: (scene, --V, --delta, --omega).
     """
     return (
         SCENE,

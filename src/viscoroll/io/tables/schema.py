@@ -46,9 +46,10 @@ COMMENT = (
 
 
 def axes_of(table: xr.Dataset) -> tuple[str, ...]:
-    """Return the names of the axes of a grid, the first of which varies slowest: V, delta and perhaps alpha.
+    """Return the names of the axes of a grid, the first of which varies slowest.
 
-    table: dataset of a grid; one of kind "atlas" has alpha, kappa_V, s.
+    table: dataset of a grid or of an atlas.
+    Returns ("V", "delta") or ("V", "delta", "alpha") of a grid, ("alpha", "kappa_V", "s") of an atlas.
     """
     if table.attrs[KIND] == "atlas":
         return ("alpha", "kappa_V", "s")
