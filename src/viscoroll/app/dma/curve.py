@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ...core.array_types import Floats
 from ...core.checks import check_array
-from ...core.errors import ParameterError, described_error, shape_error
+from ...core.errors import ParameterError, shape_error
 
 #: least number of points of a curve: a series of one mode has three constants
 FEWEST_POINTS = 3
@@ -59,13 +59,8 @@ class Curve(NamedTuple):
         return 0.0
 
     @property
-    def values(self) -> Floats:
-        """The measured moduli, in the unit of the data, shape (2, n): row 0 is the storage, row 1 the loss modulus."""
-        return np.array(self[1:])
-
-    @property
     def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1 in each row of ``values``: 1 in the storage, 0 in the loss modulus."""
+        """Response of a long-time modulus of 1 in each modulus: 1 in the storage, 0 in the loss modulus."""
         return 1.0, 0.0
 
     def responses(self, tau: Floats) -> Floats:
@@ -88,12 +83,6 @@ class Curve(NamedTuple):
         """
         storage, loss = responses
         return np.array([2.0 * loss * loss, loss * (1.0 - 2.0 * storage)])
-
-    @property
-    def fluid(self) -> ParameterError:
-        """The ParameterError, not raised here, for data of which no fit has a long-time modulus."""
-        found = f"has no plateau at low frequencies ({self.storage[0]:g} at omega = {self.omega[0]:g})"
-        return described_error("storage", found, "that of a solid, whose long-time modulus is positive")
 
 
 class Relaxation(NamedTuple):
@@ -124,13 +113,8 @@ class Relaxation(NamedTuple):
         return 0.5 * float(self.t[0])
 
     @property
-    def values(self) -> Floats:
-        """The relaxation modulus, in the unit of the data, shape (1, n)."""
-        return np.array(self[1:])
-
-    @property
     def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1 in the row of ``values``: 1."""
+        """Response of a long-time modulus of 1: 1."""
         return (1.0,)
 
     def responses(self, tau: Floats) -> Floats:
@@ -149,12 +133,6 @@ class Relaxation(NamedTuple):
         Returns the derivatives, dimensionless, shape (1, n, modes).
         """
         return (self.t[:, None] / tau) * responses
-
-    @property
-    def fluid(self) -> ParameterError:
-        """The ParameterError, not raised here, for data of which no fit has a long-time modulus."""
-        found = f"has no plateau at long times ({self.relaxation[-1]:g} at t = {self.t[-1]:g})"
-        return described_error("relaxation", found, "that of a solid, whose long-time modulus is positive")
 
 
 _Data = TypeVar("_Data", Curve, Relaxation)
