@@ -109,7 +109,7 @@ def master_curve(
         factor, base = listed_factors(shift, sets, base)
     else:
         base = default_reference(temperatures, []) if base is None else base
-        nearest(base, temperatures, "reference")
+        nearest(base, temperatures)
         parts = (Curve(*(column[sets.of_point == n] for column in whole)) for n in range(temperatures.size))
         curves = (thinned(data_of(Curve, *part, fewest=2)) for part in parts)
         logs, mismatch, freedom = _shifts_by_overlap([_LogCurve(curve, on) for curve in curves], temperatures)

@@ -297,9 +297,8 @@ class Identification(Result):
         check_names("values", values, self.values, "an unknown")
         found = []
         for unknown in self._problem.unknowns:
-            name = unknown.name
-            value = check_number(name, values.get(name, unknown.start), **unknown.bounds(name))
-            found.append(unknown.to_u(value))
+            value = values.get(unknown.name, unknown.start)
+            found.append(unknown.to_u(check_number(unknown.name, value, **unknown.bounds(unknown.name))))
         return np.array(found)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
