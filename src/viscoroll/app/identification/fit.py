@@ -97,7 +97,7 @@ class Identification(Result):
         self.values = problem.values(u)
         self.minima = [(minimum.chi2, problem.values(minimum.u)) for minimum in found]
         self.dof, self.records = problem.points - u.size, problem.records
-        self.planned = not any(record.measured for record in self.records.values())
+        self.planned = problem.planned
         self.sigma = {str(column): problem.sigma[column.at].copy() for column in problem.columns}
         self.noise = problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
