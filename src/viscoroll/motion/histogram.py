@@ -61,12 +61,13 @@ class Histogram(msgspec.Struct):
         return cls(bins, counts, kept.size, *moments, kept if exact else None)
 
     def merge(self, other: Histogram) -> Histogram:
-        """Return the histogram of the values of two histograms; it does not keep the values.
+        """Return the histogram of the values of two histograms.
 
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
 
         other: the second histogram.
-        Returns a new histogram; if one of the two has no values, the other one itself.
+        Returns a new histogram, which does not keep the values, so that its quantiles are not exact.  If one of the two
+        has no values it is the other one itself, with the values that that keeps.
         """
         if not self.count or not other.count:
             return self if self.count else other
@@ -89,8 +90,8 @@ class Histogram(msgspec.Struct):
     def quantiles(self, levels: tuple[float, ...]) -> Floats:
         """Return the quantiles, (levels,), in the unit of the quantity; NaN without values.
 
-        Where the values were not kept, each quantile lies between the two values beside it, which are known to their
-        bins, 2^-8 of a value wide; else it is exact (linear between neighbouring values).
+        If the values were kept, a quantile is exact, linear between neighbouring values.  If not, it is linear between
+        the two values beside it, each of which is known to its bin, 2^-8 of a value wide.
 
         levels: levels of the quantiles, in [0, 1].
         """
@@ -106,10 +107,10 @@ class Histogram(msgspec.Struct):
     def _at_rank(self, ranks: Integers) -> Floats:
         """Return the values of ranks from 0, as if those of each bin were evenly spread.
 
-        The bin of zero is no interval of values: it holds 0 and values below 1e-310, and all of them count as 0.
+        The bin of zero is no interval: it holds 0 and positive values below 1e-310, and all of them count as 0.
 
-        ranks: ranks among the values in ascending order, from 0, (k,).
-        Returns the values, (k,), in the unit of the quantity.
+        ranks: ranks among the values in ascending order, 0 ... count - 1, (k,), int.
+        Returns the values, (k,), in the unit of the quantity, between the least and the largest value.
         """
         below, above = edges_of(self.bins)
         above = np.where(self.bins == 0, below, above)
