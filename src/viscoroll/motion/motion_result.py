@@ -175,8 +175,8 @@ class Motion(RollResult):
     def validity(self) -> Validity:
         """Report which assumptions of the model the motion violates, at each output time that it reached.
 
-        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far, or is
-        not decided for a cover.
+        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far; of
+        a cover it is not decided.
 
         Returns
         -------
