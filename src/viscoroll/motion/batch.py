@@ -169,7 +169,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
-        """Integrate those motions of a block that have no result, and write their results.
+        """Integrate those motions of a block that have no result, and write their results into ``found`` and ``steps``.
 
         start, stop: index of the first motion of the block, and of the one behind the last.
         """

@@ -55,7 +55,8 @@ def refuse_end(end: float, T: float) -> None:
 def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number.
 
-    arguments: name of an argument of ``roll`` -> its value, a number or an array.
+    arguments: name of an argument of ``roll`` -> its value.  Numbers and None pass, and so does what is no array, which
+    is checked elsewhere.
     """
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
@@ -64,9 +65,9 @@ def require_single(**arguments: Any) -> None:
 
 
 def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument; () of what is no array.
+    """Return the shape of an argument; () of what is no array, as None.
 
-    value: what a caller gave; a ragged list counts as an array of objects.
+    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.
     """
     try:
         return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))

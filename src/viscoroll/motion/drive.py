@@ -92,7 +92,8 @@ def _is_zero(name: str, value: Any) -> bool:
     """Return whether a load is 0 at all times; a callable never counts as 0.
 
     name: name of the argument, for refusals.
-    value: what the caller gave: a number, an array, a Schedule, a callable or a Feedback, whose gains must be 0 too.
+    value: what the caller gave: a number, an array, of which all must be 0, a Schedule, of which all values must be, a
+    callable or a Feedback, whose gains must be 0 too.
     Raises ParameterError for what is no number and no function of time.
     """
     if isinstance(value, Feedback):

@@ -104,11 +104,11 @@ class _Sampled:
         """Take the samples of a callable.
 
         name: name of the argument, for refusals.
-        function: takes t in T_ref, returns a number.
+        function: takes t in T_ref, returns a number, dimensionless.
         end: last time, in T_ref.
-        rtol: relative tolerance of the motion.
+        rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the largest magnitude so far.
         low: smallest value allowed.
-        samples: number of samples.
+        samples: number of samples, which are taken at the middle of as many equal parts of the time from 0 to ``end``.
         Raises ParameterError for values that are no finite numbers or below ``low``.
         """
         self.name, self.function, self.low, self.taken = name, function, low, 0

@@ -250,7 +250,9 @@ def prepare_drive(
 def _refuse_both(drive: Drive) -> None:
     """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given beside it.
 
-    drive: drive; None where nothing is given.
+    Beside omega these loads are the torque, the brake and the drag, beside V the force.
+
+    drive: :class:`Drive`; a field is None where nothing is given.
     """
     if drive.V is not None and drive.omega is not None:
         raise exactly_one_error("V", "omega", both=True)

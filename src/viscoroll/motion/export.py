@@ -170,11 +170,13 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
     """Return the strengths and times of the modes of one body, over (motion, mode), as variables.
 
-    series: the series of each motion, or one for all.
+    series: :class:`Prony`, the series of each motion, or one for all.
     count: number of motions.
-    prefix, title: first letters of the names ("", "cylinder_", "base_") and of the long_names.
-    Returns name -> (dimensions, values, attributes), dimensionless: strengths divided by the long-time modulus or
-    compliance, times divided by T_ref.
+    prefix, title: first letters of the names ("", "cylinder_", "base_") and of the long_names ("", "cylinder: ", "base:
+    ").
+    Returns name -> (dimensions, values (count, modes), attributes), dimensionless: PREFIXrelaxation_strengths, divided
+    by the long-time modulus, and PREFIXrelaxation_times, divided by T_ref; of a series in creep form
+    PREFIXcreep_strengths, divided by the long-time compliance, and PREFIXcreep_times.
     """
     form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
     parts = {

@@ -234,6 +234,7 @@ class FlowResult(NamedTuple):
         rows : number of quantities.
         count : number of motions.
         times : number of output times.
+        Returns a :class:`FlowResult` of new arrays.
         """
         return cls(
             np.empty((rows, count, times)), np.full(count, -1, np.int8), np.empty(count), np.empty(count),

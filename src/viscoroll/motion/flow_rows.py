@@ -69,8 +69,8 @@ def _multiply(matrix: Floats, values: Floats) -> Floats:
     BLAS is not used, as its last bits differ between machines.
 
     matrix : (m, n).
-    values : (..., n).
-    Returns (..., m).
+    values : vectors, (..., n).
+    Returns the products, (..., m).
     """
     return np.einsum("...n,mn->...m", values, matrix)
 
@@ -98,7 +98,8 @@ class Rows:
         """Evaluate a piecewise polynomial.
 
         powers : coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers).
-        x : arguments, of any shape; beyond the ends the polynomial of the first or last row is continued.
+        x : arguments, an array of any shape; beyond the ends the polynomial of the first or last row is continued, and
+        an inner edge belongs to the row on its right.
         Returns the values, of the shape of x.
         """
         row = np.searchsorted(self.edges[1:-1], x, side="right")

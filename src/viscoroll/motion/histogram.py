@@ -45,9 +45,10 @@ class Histogram(msgspec.Struct):
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
         """Make the histogram of those values that are finite.
 
-        values: numbers, (n,), in the unit of the quantity; those that are not finite are left out.
-        exact: whether to keep the values, (count,), for exact quantiles.
-        Returns the :class:`Histogram`; without finite values its moments are NaN.
+        values: numbers, (n,), in the unit of the quantity; those that are not finite are left out, and -0 counts as 0.
+        exact: whether to keep the values that are finite, (count,), for exact quantiles.
+        Returns the :class:`Histogram`; without finite values it has no bins, its moments are NaN, and its ``values``
+        None.
         """
         kept = values[np.isfinite(values)]
         bits = (kept + 0.0).view(np.int64)  # -0 becomes 0
@@ -79,9 +80,9 @@ class Histogram(msgspec.Struct):
         return Histogram(bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes)
 
     def counts_in(self, bins: NDArray[np.int32]) -> Integers:
-        """Return the counts in other bins, (bins,), 0 in those without values.
+        """Return the counts in other bins, (bins,), int64; 0 in those without values.
 
-        bins: numbers of bins, ascending, which contain all of its own.
+        bins: numbers of bins, ascending, which must contain all bins of this histogram; it is not checked.
         """
         counts = np.zeros(bins.size, np.int64)
         counts[np.searchsorted(bins, self.bins)] = self.counts
@@ -121,9 +122,11 @@ class Histogram(msgspec.Struct):
 
 
 def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
-    """Return (smallest values of bins, smallest values of the bins that follow them), in the shape of ``bins`` each.
+    """Return the edges of bins.
 
-    bins: numbers of bins, as of :class:`Histogram`.
+    bins: numbers of bins, (bins,), as of :class:`Histogram`.
+    Returns (smallest value of each bin; smallest value of the bin behind it, infinite for the last bin of finite
+    values), floats, in the shape of ``bins`` each.
     """
     bits = np.stack([bins, bins + 1]).astype(np.int64) << _DROPPED
     below, above = (bits ^ ((bits >> 63) & _MAGNITUDE)).view(np.float64)

@@ -90,7 +90,11 @@ class Motion(RollResult):
 
     @property
     def message(self) -> str:
-        """How the motion ended, in words; for one that was given up also the state that it had reached."""
+        """How the motion ended, in words.
+
+        For one that was given up, but not one that stays in the indentation of a standstill, also the state that it had
+        reached, for which it is integrated anew.
+        """
         text = self.status.message
         if self.success or self.status == MotionStatus.CAUGHT:
             return text

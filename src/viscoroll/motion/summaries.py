@@ -52,10 +52,10 @@ class Quantity(NamedTuple):
 
 
 def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
-    """Return a field at an output time, made dimensionless, (n,).
+    """Return a field at an output time, made dimensionless, (n,); NaN for motions that did not reach it.
 
-    motions: an ensemble.
-    name: name of the field.
+    motions: an :class:`Ensemble`.
+    name: name of a field that it has.
     k: index of the output time.
     """
     return getattr(motions, name)[:, k] / motions.scale[name]
@@ -64,7 +64,9 @@ def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
 def _start_energy(motions: Any) -> NDArray:
     """Return twice the kinetic energy at the start, divided by m (R/T_ref)^2, (n,); NaN for motions from rest.
 
-    motions: an ensemble.
+    T_ref is the unit of time of dimensionless motions.
+
+    motions: an :class:`Ensemble`; its start speeds are those after the cost of a standstill.
     """
     V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
     energy = V**2 + motions.scene.j * omega**2

@@ -157,6 +157,8 @@ def chebyshev(n: int) -> list[Decimal]:
 def to_chebyshev(n: int) -> _Floats:
     """Return the matrix from values at the zeros of T_n, ascending, to the coefficients of T_0 ... T_(n-1).
 
+    It gives the series of the polynomial of degree n - 1 through the values.
+
     n : number of nodes and terms, > 1.
     Returns doubles, (n, n), [term, node].
     """
