@@ -108,8 +108,8 @@ def roll(
     ParameterError
         NaN, infinite or oversized input, unsorted times, an array where one number belongs; both speeds prescribed,
         a prescribed speed that jumps or does not match its start, a callable that
-        polynomials do not follow; ``rest`` where something drives to the end; ``unsteady`` with bodies that differ or a
-        cover; ``rested`` below 0, with a prescribed speed, a cover, or at a start in full slip.
+        polynomials do not follow; ``rest`` where something drives to the end; ``unsteady`` with bodies that differ or
+        with a cover; ``rested`` below 0, with a prescribed speed, with a cover, or at a start in full slip.
 
     Notes
     -----
@@ -131,6 +131,8 @@ def roll(
     -----
     RuntimeWarning
         Where the motion could not be integrated to the end; ``status`` and ``message`` say why.
+    ModelWarning
+        Where the start or the speeds violate assumptions of the model grossly.
     """
     units = scale_of(roller)
     times, drive = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)
