@@ -77,9 +77,10 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     """Solve motions: look up those that the flow map of their scene contains, and integrate all others.
 
     A flow map is a table of all free motions of one scene (:mod:`.flow`).  It is tried only for free motions (no drive,
-    no added mass) of one scene whose bodies are alike.  Where the map cannot be used, because its stated error exceeds
-    rtol (it is infinite where the scene has no map) or all motions start at rest, all motions are integrated without an
-    error, with method "flow" too; ``about`` of the result then says why.
+    no added mass) of one scene whose bodies are alike.  Where its stated error exceeds rtol, as the infinite one of a
+    scene without a map does, the map is not used, and all motions are integrated; "flow_error" and "flow_problem" of
+    the result say so.  All are integrated too where all start at rest.  Nothing is raised in these cases, with method
+    "flow" neither.
 
     Motions that stay in the indentation of a standstill (``immobile``) are not integrated: they have status CAUGHT and
     NaN in all quantities, onset and rest times.  Their ``flow`` and number of switches are those of the look-up that

@@ -27,9 +27,9 @@ _EXAMINED = 256
 class Fastest(NamedTuple):
     """Motions of an ensemble and their highest speeds, in the unit of the roller.
 
-    motion : indices of the motions, (m,).
-    V, omega : largest magnitudes of the speeds that each starts with or reaches at an output time, (m,); omega < 0
-    where the start speeds have opposite signs.
+    motion : indices of the motions, (m,), int.
+    V, omega : largest magnitudes of the speeds that each starts with or reaches at an output time, (m,); omega has the
+    sign of the product V0 omega0, which is negative also for -0, the product of 0 and a negative start speed.
     """
 
     motion: Integers

@@ -169,7 +169,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     the error of its fit.
     Returns :class:`Piecewise` with the same starts, dimensionless.  It has one term less; of a speed of one term, which
     is constant, it has one term that is 0.  It is 0 in pieces without length or end, and its value at the left end of a
-    piece is exactly 0 where it is rounding.  Its ``error`` is still that of the speed.
+    piece is shifted to 0 where it is rounding.  Its ``error`` is still that of the speed.
     """
     lengths = speed.ends - speed.starts
     first, last = values_at_start(speed.terms), speed.terms.sum(axis=-1)
@@ -250,7 +250,7 @@ def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> F
     starts, ends: when the finer pieces start and end, (rows, k), in T_ref; none extends over a start of the function's
     own.  The last may end at infinity.
     Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms); their value at the left end
-    of a piece is exactly 0 where it is rounding.
+    of a piece is shifted to 0 where it is rounding.
     """
     piece = _piece_at(function.starts, starts)
     shape = rows, function.starts.shape[1]

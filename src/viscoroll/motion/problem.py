@@ -75,7 +75,7 @@ class MotionProblem(NamedTuple):
     limits : (rtol; threshold of rest, dimensionless, 0 for none; largest number of steps, the corners of the drive
     included).
     unsteady : whether the added mass N acts.
-    driven : whether a load or a prescribed speed other than 0 is given, or the added mass acts.
+    driven : whether a load other than 0, or a prescribed speed, is given, or the added mass acts.
     """
 
     roller: Roller
@@ -206,8 +206,8 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
     rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
     Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.  If ``rested`` is 0,
     the speeds are returned as they are, with False.  Else V0 and omega0 of each motion are multiplied by the same
-    factor in [0, 1], and the third entry is an array in their shape: True where V would lose more than 45 %
-    (:data:`LARGEST_LOSS`), for a motion that does not start at all the whole of it.  A motion from rest loses nothing.
+    factor in [0, 1], and the third entry is an array in their shape.  It is True where this takes more than 45 % of V
+    (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.  A motion from rest loses nothing, with False.
     Raises ParameterError if ``rested`` is not 0, and a speed is prescribed, any motion starts in full slip, or the
     roller has a cover: the cost is then not known.
     """

@@ -274,9 +274,10 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     that is still in full slip at the last output time, and for a start below the rest threshold, whose time of rest is
     0.  The time of rest is NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
 
-    The map does not cover a motion if kappa |V0| is at least HIGHEST or NaN, if its onset of partial slip is not
-    tabulated, if V there is below twice the rest threshold, or if it comes to rest within the boundary layer.  A start
-    with V0 = omega0 = 0 is not covered without a rest threshold.
+    The map does not cover a motion if kappa |V0| is at least HIGHEST, if a start speed is NaN, if the onset of partial
+    slip is not tabulated or more than 4096 times slower than the start, if V there is below twice the rest threshold,
+    or if the motion comes to rest within the boundary layer.  A start with V0 = omega0 = 0 is not covered without a
+    rest threshold.
     """
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
