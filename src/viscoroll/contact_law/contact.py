@@ -1,4 +1,8 @@
-"""The public contact law: :func:`contact`, the state of the contact at given speeds and creepages."""
+"""The public contact law: :func:`contact`, the state of the contact at given speeds and creepages.
+
+Numbers of equations are those of the paper: A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a
+viscoelastic half-space, Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5.
+"""
 
 from __future__ import annotations
 
@@ -48,47 +52,76 @@ def contact(
     slopes: bool = False,
     method: Literal["table", "direct"] = "table",
 ) -> Values:
-    """Return the state of the contact: Eqs. (6)-(10), (15)-(18).
+    """Compute contact length, creep force and rolling moment of a viscoelastic cylinder that rolls on a half-space.
 
-    Arguments broadcast against each other and against array parameters of the roller; if all are scalars so are the
-    results.
+    Both bodies are viscoelastic, or one of them is elastic, rigid, or a layer of finite thickness.  The contact is that
+    of steady rolling with partial or full slip at a given speed and creepage: Eqs. (6)-(10) and (15)-(18) of Zobova and
+    Goryacheva (2020).  For bodies that their paper does not treat (a Prony series, two materials, a layer) the
+    equations are theirs with the functions of these bodies (docs/theory.md).
+
+    V, delta and omega broadcast against each other and against array parameters of the roller.
 
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, everything dimensionless; or a
         :class:`Cylinder`, in SI units per m of its length.
-    V : velocity of the axis, any sign; of a Cylinder m/s.
-    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity (rad/s); any sign.
-        At V = 0 a given ``delta`` means the limit V -> 0+.
-    fields : names of the fields to compute.  ``lam zeta epsilon delta_star delta full_slip beta Q M`` are the
-        default; of bodies that differ, and of a Cylinder, ``M_half_space M_cylinder`` too, the parts of M in either
-        body; of a Cylinder also ``length``, the contact length in m, and ``C_rr`` = M/(P R), the coefficient of rolling
-        resistance; of a cover also ``delta_0``, the creepage of free rolling by the strain that the pressure causes.
-        Further ``grip``, the friction reserve 1 - |Q|/mu with all its digits; ``N``, the added mass of slow speed
-        changes, where the moment is M(V) + N dV/dt (of a Scene in units of T_ref^2); and single slopes: ``dQ_dV
-        dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``.
-    slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
-        fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
-        corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
-        ``dQ_domega`` is infinite.  Of bodies that differ, ``dM_half_space_dV`` and ``dM_cylinder_dV`` too.
+    V : velocity of the axis, any sign; of a Cylinder in m/s, of a Scene divided by R/T_ref.  T_ref is the unit of time:
+        T_epsilon of a Scene with ``alpha``, else the time in which the material counts.
+    delta, omega : exactly one of the two, any sign: the creepage (omega R - V)/V, dimensionless; or the angular
+        velocity, of a Cylinder in rad/s, of a Scene multiplied by T_ref.
+        At V = 0 a given ``delta`` means the limit V -> 0+; a given ``omega`` other than 0 means full slip, and 0 means
+        delta = 0.
+    fields : a name or several names of fields to compute; None: the default fields.  Dimensionless ones:
+        ``lam``: contact length divided by l0, the contact length at rest of half-spaces;
+        ``epsilon``: shift of the contact towards the leading edge in half contact lengths, 0 at V = 0;
+        ``delta_star``: critical creepage, > 0;
+        ``delta``: creepage; infinite with the sign of omega at V = 0 with omega other than 0;
+        ``full_slip``: whether |delta - delta_0| >= delta_star, where delta_0 is 0 unless a body is a layer;
+        ``beta``: length of the stick zone divided by the contact length, 0 in full slip, 1 where Q = 0.
+        Those with a unit of their own, by which those of a Scene are divided:
+        ``zeta``: half the transit time, T_ref or s; infinite at V = 0;
+        ``Q``: force on the cylinder by friction, in the direction of +V, of the sign of delta V (of a layer of
+        (delta - delta_0) V); P or N/m; in full slip |Q| = mu P;
+        ``M``: rolling resistance moment, of the sign of V, 0 at V = 0 and of elastic bodies; P R or N m/m.
+        These nine are the default.  Bodies that differ, and every Cylinder, add ``M_half_space`` and ``M_cylinder``,
+        the parts of M by the losses in either body; a Cylinder adds ``length``, the contact length in m, and ``C_rr`` =
+        M/(P R), the coefficient of rolling resistance; a layer adds ``delta_0``, the creepage at which Q = 0, caused by
+        the strain under the pressure.  If the body beside a layer relaxes too, only lam, length, zeta, epsilon,
+        delta_star, delta, M, C_rr and dM_dV are known, and the default fields are reduced to these.
+        Fields by name alone: ``grip``, the friction reserve 1 - |Q|/(mu P) without loss of digits, 0 in full slip;
+        ``N``, the added mass of slow speed changes, in which the moment is M(V) + N dV/dt (P T_ref^2 or N s^2/m), not
+        known of layers and of arrays of materials; and each slope below.
+    slopes : whether ``dQ_dV``, ``dQ_ddelta``, ``dQ_domega`` and ``dM_dV`` are computed in addition, and of bodies that
+        differ ``dM_half_space_dV`` and ``dM_cylinder_dV``.  ``dQ_dV`` is at fixed delta or fixed omega, whichever was
+        given, the others are at fixed V.  In full slip the slopes of Q are 0.  Where full slip begins Q has a corner
+        over V, and the slopes there are those of full slip.  In partial slip at V = 0 ``dQ_domega`` is infinite, and
+        where omega = 0 was given ``dQ_dV`` is -infinite.
     method : "table" (from the rows of the law: no equation is solved) or "direct" (the equations as the paper prints
-        them, solved by Brent-Dekker; no slopes).
+        them, solved by Brent-Dekker), which has no slopes, N, grip and delta_0, and takes an alpha alone, no material.
 
     Returns
     -------
     Values
-        The fields as attributes and by ``[name]``.  Of a Cylinder ``Q`` is in N/m, ``M`` and its parts in N m/m,
-        ``zeta`` in s; force and moment on it, Eqs. (20), (21), are Q - M_half_space/R and Q R + M_cylinder.
-        ``zeta`` is infinite at V = 0, ``delta`` at V = 0 with omega != 0.  ``epsilon`` may exceed 1: the contact then
-        lies wholly ahead of the axis.
+        The fields as attributes and by ``[name]``: those of ``fields`` in their order, then the slopes.  Each is an
+        array of the broadcast shape; if all inputs are numbers it is a float, ``full_slip`` a bool.  Arguments of
+        xarray or pandas give results with their labels.  Of a Cylinder slopes have the unit of Q or M divided by m/s,
+        by rad/s, or by 1.  Force and moment on the cylinder, Eqs. (20) and (21), are Q - M_half_space/R and
+        Q R + M_cylinder.  ``epsilon`` may exceed 1: the contact then lies wholly ahead of the axis.
 
     Raises
     ------
     ParameterError
-        NaN or infinite input, kappa |V| above 1e300 (for Q by method "direct" above 1e12), both or
-        neither of delta and omega, unknown field or method, shapes that do not broadcast.
+        NaN or infinite input, kappa |V| above 1e300 (for Q by method "direct" above 1e12), both or neither of delta
+        and omega, an unknown field or method, a field or method that these bodies do not have, shapes that do not
+        broadcast, a unit of another dimension.
     ConvergenceError
-        If an iteration reaches its limit.
+        Method "direct": an iteration reached its limit.
+
+    Warns
+    -----
+    ModelWarning
+        Of a Cylinder: its contact at rest is longer than its radius, or the transit frequency is outside the band in
+        which its material was measured.
 
     Examples
     --------
@@ -108,8 +141,8 @@ def contact(
     (``tests/kernels/rows/test_unsteady.py``).
 
     The law of one material is evaluated from polynomials of one variable (:mod:`.materials.law.table`), which are
-    computed at first use in some milliseconds and kept.  The result of a state does not depend on other states of the
-    call.
+    computed at first use, in some milliseconds for half-spaces, and kept.  The result of a state does not depend on
+    other states of the call.
 
     Beside float64 input and its result a call takes a few megabytes, for any sizes and any
     broadcasting (``tests/test_invariance.py``).

@@ -46,26 +46,32 @@ def field_names(
 
     Parameters
     ----------
-    fields : names of fields; None: the default fields of such a roller.
+    fields : a name or names of fields; None: the default fields of such a roller.  A name may occur twice; of no names
+        there are no fields.
     slopes : whether the slopes are added to these fields.
     method : "table", which has every field, or "direct" (the printed equations), which has no slopes, N, grip and
         delta_0.
-    like : whether both bodies are of one material; if not, the parts of M in either body are default fields too.
-    si : whether the roller is a cylinder, in SI units; it has ``length``, ``C_rr`` and the parts of M too.
-    cover : whether a body is a cover, a layer of finite thickness.
+    like : whether both bodies are of one material; if not, the parts of M in either body are default fields, and
+        ``slopes`` adds their slopes.
+    si : whether the roller is a cylinder, in SI units; ``length``, ``C_rr`` and the parts of M are then default fields.
+    cover : whether a body is a cover, a layer of finite thickness; ``delta_0`` is then a default field, and N is not
+        available.
     split : whether it is known how slip and M are split between the bodies.  It is not if the body beside a cover
         relaxes; the fields are then those of :data:`_BEFORE_THE_SPLIT`.
 
     Returns
     -------
     tuple of str
-        Those of ``fields``, or the default fields, then slopes that were not among them.  The
-        default fields of a cover end with ``delta_0``.
+        Those of ``fields`` in their order, or the default fields; then with ``slopes`` those slopes that were not among
+        them; then, of a cover with ``fields`` None and ``split``, ``delta_0``.  Without ``split`` default fields and
+        slopes that are not known are left out; a name in ``fields`` that is not known is an error then, and so is
+        ``slopes`` with ``fields``.
 
     Raises
     ------
     ParameterError
-        An unknown field or method, or a named field that the method or the roller does not have.
+        An unknown field or method; slopes, N, grip or delta_0 with method "direct"; N of a cover; without ``split`` a
+        field in ``fields`` that is not known.
     """
     check_choice("method", method, "table", "direct")
     if fields is not None:
@@ -103,8 +109,9 @@ def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
 
     names: fields of the call, as of :func:`field_names`.
     unlike: whether the bodies are of two materials; if not, each part of M is half of M, and is not computed.
-    Returns names without repetition: a field that is a multiple of another (``length`` of ``lam``, ``C_rr`` of ``M``)
-    is replaced by that other one.
+    Returns names without repetition, in the order of their first need: a field that is a multiple of another
+    (``length`` of ``lam``, ``C_rr`` of ``M``; of like bodies M_half_space, M_cylinder of ``M`` and their slopes of
+    ``dM_dV``) is replaced by that other one.
     """
     derived = _MULTIPLES if unlike else _MULTIPLES | _HALVES
     return tuple(dict.fromkeys(derived.get(name, name) for name in names))
@@ -112,7 +119,12 @@ def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def kernel_rows(names: tuple[str, ...]) -> Any:
-    """Return the row of each of the fields ``names`` as the record that kernels take; N has a kernel of its own."""
+    """Return the index of the output row of each field as the record that kernels take.
+
+    names: fields that kernels compute, as of :func:`computed_fields`; field k of them has row k of the output.
+    Returns :class:`...kernels.rows.contact_states.Fields`: an int for each field, -1 for those that are not in
+    ``names``.  N is not among them, since a kernel of its own computes it; its row is left free.
+    """
     from ..kernels.rows.contact_states import Fields
 
     return Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
@@ -125,10 +137,11 @@ def complete(
 
     names: fields of the call, as of :func:`field_names`.
     computed: name of the field in each row, as of :func:`computed_fields`.
-    rows: values, (rows, states), dimensionless.
-    shape: shape of the call; () for one state.
-    Returns a dict from each of ``names`` to an array of ``shape``, a float for shape (); ``full_slip`` is boolean.
-    ``length`` and ``C_rr`` are lam and M still, which the caller multiplies by their units.
+    rows: values, (rows, states), dimensionless; ``full_slip`` is 0 or 1.
+    shape: shape of the call, whose product is the number of states; () for one state.
+    Returns a dict from each of ``names`` to an array of ``shape``, for shape () a float; ``full_slip`` is a boolean
+    array, for shape () a bool.  Arrays are views of ``rows``.  ``length`` and ``C_rr`` have the values of lam and M,
+    which the caller of a Cylinder multiplies by their units.
     """
     found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
     if computed != names:

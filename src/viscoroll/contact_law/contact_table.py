@@ -54,14 +54,15 @@ def evaluate_contact(
     Returns
     -------
     dict of str to array
-        The fields in the shape to which V, creep and the parameters of the scene broadcast; floats (``full_slip``: a
-        bool) if all of these are numbers.
+        Name -> field, dimensionless, in the order of ``names`` (one that occurs twice is there once), in the shape to
+        which V, creep and alpha, kappa and mu of the scene broadcast; floats (``full_slip``: a bool) if all of these
+        are numbers.  At V = 0 zeta is infinite, and delta is infinite where omega is not 0.
 
     Raises
     ------
     ParameterError
         kappa |V| above :data:`FASTEST` (for Q by method "direct" above :data:`_FASTEST_DIRECT`), shapes that do not
-        broadcast, a material with method "direct", N of many materials.
+        broadcast, a material with method "direct", N of an array of materials, times of a material beyond the doubles.
     ConvergenceError
         If an iteration of method "direct" reaches its limit.
     """
@@ -97,23 +98,25 @@ def evaluate_law(
     names: tuple[str, ...],
     direct: bool = False,
 ) -> Floats:
-    """Return fields of the contact, a row each, at states of one or many laws.
+    """Evaluate fields of the contact, a row each, at states of one or many laws, on threads.
 
     Parameters
     ----------
-    material : the rows of one law, for all states; or many materials, of which each state names one; or None: each
-        state has a law of one relaxation time, by its alpha.
+    material : a :class:`LawTable`, the law of all states; or an array of materials, of which each state names one by
+        its index; or None: each state has a law of one relaxation time, by its alpha.
     arrays : five numbers or arrays that broadcast to ``shape``, dimensionless: alpha (index of the material, where
-        there are many; not used with the rows of one law), kappa, mu, V, and delta or omega.
+        there are many, as a float; not used with a LawTable), kappa, mu, V, and delta or omega.
     shape : shape of the states; () for one state.
     creep_is_omega : whether the last of ``arrays`` is omega, else delta.
-    names : fields that kernels compute, as of :func:`.contact_fields.computed_fields`.
+    names : fields that kernels compute, as of :func:`.contact_fields.computed_fields`, each once; N not with an array
+        of materials or ``direct``.
     direct : whether to solve the printed equations; ``material`` is None then.
 
     Returns
     -------
     array, (fields, states)
-        A row for each of ``names``; the states are those of ``shape``, flattened.  ``full_slip`` is 0 or 1.
+        A row for each of ``names``, dimensionless; the states are those of ``shape``, flattened, of which there may be
+        none.  ``full_slip`` is 0 or 1; N of a cover, which is not known, is NaN.
 
     Raises
     ------
@@ -129,8 +132,9 @@ def evaluate_law(
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
         """Evaluate the states ``start`` to ``stop`` - 1 and write them into these columns of ``out``.
 
-        alpha: alphas, or indices of materials, of these states, (stop - start,) or (1,).
-        parts: kappa, mu, V and creep of these states, (stop - start,) or (1,) each, dimensionless.
+        The row of N is written by a kernel of its own, without a LawTable by the formulas of the modes.
+        alpha: alphas, or indices of materials, of these states, (stop - start,) or (1,); not used with a LawTable.
+        parts: kappa, mu, V and creep of these states, (stop - start,) or (1,) each, dimensionless, read-only.
         Raises ConvergenceError if an iteration of the printed equations reaches its limit.
         """
         laws, order = ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
@@ -174,7 +178,9 @@ def _kernel(direct: bool) -> tuple[Any, Any]:
     """Return the kernel that evaluates the law at many states.
 
     direct: whether it solves the printed equations; else it reads the rows of the law.
-    Returns (the loop over states, the module with the types of its arguments).
+    Returns (the loop over states; the module :mod:`...kernels.rows.contact_states` with the types of its arguments).
+    The first loop is called as (alpha, request, count) and returns a status, 0 if all states were solved; the second
+    one as (laws, request, scratch, count).  Their first call compiles them, unless this machine has done so before.
     """
     from ..kernels.rows import contact_states as states
 
@@ -193,9 +199,11 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
     alpha: alphas of the states, or indices of their materials as floats, (n,) or (1,).
     parts: kappa, mu, V, creep, each (n,) or (1,), dimensionless.
     direct: whether the printed equations are solved, which need alpha alone.
-    Returns (a tuple of the records of the laws that kernels take, or ``alpha`` if ``direct``; indices of the states in
-    order of evaluation, (n,), or an empty array for the order given).  States are ordered by material, or of laws of
-    one relaxation time by octave of their speed, so that neighbours read the same numbers.
+    Returns (laws, order).  The laws are a tuple of records that kernels take: one for materials, and
+    :data:`_ALPHAS_TOGETHER` for alphas; each holds the law of one state at a time.  If ``direct`` they are ``alpha``
+    itself.  The order is an array of the indices of the states in the order of evaluation, (n,), or empty for the order
+    given.  States are ordered by material, or of alphas by octaves of alpha and speed, so that neighbours read the same
+    numbers; if ``direct``, of one state, and of one material for all, the order is empty.
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
@@ -206,22 +214,26 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
-    """Return fields of pure rolling (delta = 0) at kappa |V| = u and kappa = mu = 1, one row for each name, (names, n).
+    """Return fields of the contact at zero creepage, delta = 0, for kappa = mu = 1 and the speed V = u.
 
-    law: rows of the material.
-    u: speeds, (n,).
-    names: fields that kernels compute.
+    These are functions of u = kappa |V| alone, so that they serve every kappa: ``lam`` and ``epsilon`` as they are,
+    ``M`` as kappa M, ``dM_dV`` as it is.  (Of a cover the traction is not 0 at delta = 0.)
+    law: table of the material.
+    u: kappa |V|, >= 0, at most 1e300, (n,).
+    names: fields that kernels compute, as of :func:`.contact_fields.computed_fields`.
+    Returns an array (names, n), dimensionless.
     """
     return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
-    """Raise ParameterError where kappa |V| exceeds its largest allowed value; without elements nothing is refused.
+    """Raise ParameterError where kappa |V| exceeds its largest allowed value; else do nothing, as without elements.
 
     kappa: slenderness R/l0, > 0, any shape.
-    V: velocities divided by R/T_ref, any sign; broadcasts with kappa.  (Or V in another unit, with kappa divided by
-    that unit.)
+    V: velocities divided by R/T_ref, any sign, finite; broadcasts with kappa.  V may be in another unit, as m/s, if
+        kappa is divided by the size of one unit of the scene, R/T_ref, in it.
     fastest: largest allowed kappa |V|.
+    The error states the largest kappa |V|.
     """
     if not (kappa.size and V.size):
         return

@@ -32,7 +32,8 @@ class Law:
 
     Attributes
     ----------
-    roller, scene : the scene or cylinder, and its dimensionless parameters.
+    roller : the scene or cylinder, of the law of a grid that grid.
+    scene : its dimensionless parameters; the law of a grid has none.
 
     Examples
     --------
@@ -68,7 +69,11 @@ class Law:
         self._use(Jitted(scenes, table))
 
     def _use(self, jitted: Any) -> None:
-        """Keep the compiled function, its two kinds of user data, and the type of its output."""
+        """Keep the compiled law for calls.
+
+        jitted: a :class:`.Jitted` law, or that of a grid, which has the C function, and the addresses of its user data
+            for results without slopes (``plain``) and with slopes (``address``).
+        """
         from ..kernels.rows.jitted_law import ResultBuffer
 
         self._jitted, self._output = jitted, ResultBuffer
@@ -87,20 +92,26 @@ class Law:
     @overload
     def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Floats]: ...
     def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
-        """Evaluate Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
+        """Compute friction force Q and rolling moment M of the cylinder on its base at speed V and spin omega.
+
+        These are Eqs. (15)-(18) of the paper named in :mod:`.contact_law.contact`.
 
         Parameters
         ----------
-        V, omega : numbers, or arrays that broadcast, in the units of the roller: of a Cylinder m/s and rad/s, of a
-            Scene divided by R/T_ref and multiplied by T_ref.
+        V : velocity of the axis, any sign, a number or an array; of a Cylinder in m/s, of a Scene divided by R/T_ref,
+            where T_ref is its unit of time (T_epsilon where alpha is given).
+        omega : angular velocity, any sign, broadcasts with V; of a Cylinder in rad/s, of a Scene multiplied by T_ref.
+            At V = 0 a value other than 0 means full slip; 0 is the limit V -> 0+ with the creepage 0.
         slopes : whether the derivatives are computed too.
 
         Returns
         -------
         Loads or LoadsAndSlopes
-            Q, M, M_half_space, M_cylinder, and with slopes dQ_dV at fixed omega, dQ_domega, dM_half_space_dV,
-            dM_cylinder_dV; floats for two numbers, else arrays of the broadcast shape.  Of a Cylinder Q is in N/m and
-            M in N m/m, of a Scene they are divided by P and P R.
+            Named tuple of Q, M, M_half_space and M_cylinder (the parts of M by the losses in either body); with slopes
+            also dQ_dV at fixed omega, dQ_domega at fixed V, dM_half_space_dV and dM_cylinder_dV.  Each is a float if V
+            and omega are numbers, else an array of the broadcast shape.  Of a Cylinder Q is in N/m and M in N m/m, of a
+            Scene they are divided by P and P R; slopes have these units divided by that of V or omega.  In full slip
+            |Q| = mu P, and the slopes of Q are 0; at V = omega = 0 dQ_domega is infinite and dQ_dV -infinite.
 
         Raises
         ------
@@ -108,6 +119,11 @@ class Law:
             NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
         OutOfTableError
             The law of a grid: a state outside of its axes.
+
+        Warns
+        -----
+        ModelWarning
+            Of a Cylinder, as :func:`contact`: a contact longer than the radius, or outside of the measured band.
         """
         if slopes is not False:
             slopes = check_bool("slopes", slopes)
@@ -125,35 +141,44 @@ class Law:
         return _loads_and_slopes(out) if slopes else _loads(out[:4])
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        """Return the law at arrays ``V`` and ``omega`` as a ``kind``: :class:`Loads` or :class:`LoadsAndSlopes`."""
+        """Return the law at arrays ``V`` and ``omega``, which broadcast, in the units of the roller.
+
+        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape.
+        """
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
-        """Raise ParameterError for finite numbers at which the law is not defined."""
+        """Raise ParameterError where kappa |V| exceeds 1e300; V, omega: finite, in the units of the roller."""
         refuse_overflow(self._kappa, V)
 
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
-        """(V, omega) -> :class:`LoadsAndSlopes` for numba's jitted functions, which take it as an argument or from
-        around them.  It returns NaN where the law would raise an error.
+        """The law for functions that numba compiles, which take it as an argument or use it as a global variable.
+
+        It is called as (V, omega) with two numbers in the units of the roller, and returns :class:`LoadsAndSlopes` of
+        eight floats; all of them are NaN where the law would raise an error.  It does not warn.
         """
         return self._jitted
 
     @property
     def address(self) -> tuple[int, int]:
-        """Return the address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and
-        of its user data, as integers.
+        """Return two addresses for programs in C, as integers: that of a function and that of its user data.
 
-        It takes V and omega in the units of the roller, fills ``out`` with the eight numbers of
-        :class:`LoadsAndSlopes` and returns 0; where the law would raise an error, it fills ``out`` with NaN and
-        returns another number.  Any number of threads may call it, while this law exists.  All laws of half-spaces
-        share the function, and all laws of covers another one.
+        The function is ``int law(double V, double omega, double out[8], void *user_data)``.  It takes V and omega in
+        the units of the roller, fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` in their order (Q, M,
+        M_half_space, M_cylinder, dQ_dV, dQ_domega, dM_half_space_dV, dM_cylinder_dV) and returns 0; where the law
+        would raise an error, it fills ``out`` with NaN and returns another number.  Any number of threads may call it,
+        while this law exists.  All laws of half-spaces share the function, all laws of covers another one, and all
+        laws of grids a third.
         """
         return self._jitted.function_address, self._jitted.address
 
     @property
     def ctypes(self) -> tuple[Any, Any]:
-        """Function and user data for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them."""
+        """Function and user data of :attr:`address` for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them.
+
+        Each of the two keeps the law alive.
+        """
         return self._jitted.ctypes
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -167,7 +192,7 @@ class _LawOfGrid(Law):
     """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
 
     def __init__(self, grid: LawGrid) -> None:
-        """Compile the splines of a ``grid``."""
+        """Compile the splines of a ``grid`` of loads over V and delta; V and omega then have the units of the grid."""
         from ..kernels.splines.law import jitted_grid
 
         self.roller: Any = grid
@@ -176,21 +201,25 @@ class _LawOfGrid(Law):
         self._use(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        """Return the law at arrays, one state after another; see :class:`Law`."""
+        """Return the law at arrays ``V`` and ``omega``, which broadcast, one state after another.
+
+        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape, which is
+        () for numbers.  Raises OutOfTableError for the first state outside of the axes.
+        """
         evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
         return kind(*evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
-        """Raise OutOfTableError for a state outside the axes of the grid."""
+        """Raise OutOfTableError for a state that the splines found to be outside; V, omega: in units of the grid."""
         self.roller.refuse_outside(V, omega)
 
 
 def law(roller: Roller | LawGrid) -> Law:
-    """Return the contact law of one scene as a function of V and omega, for integrators of one's own: Eqs. (6)-(10),
-    (15)-(18).
+    """Return the contact law of one cylinder on its base as a fast function of V and omega, for your own integrator.
 
-    ``law(V, omega)`` is :func:`contact` at a given omega, where only V and omega remain to be checked;
-    ``law.jitted`` and ``law.address`` are the same for numba and C.
+    ``law(V, omega)`` gives the friction force and the rolling moment that :func:`contact` gives at a given omega,
+    Eqs. (6)-(10) and (15)-(18) of the paper named there; the parameters of the roller are checked once, here.
+    ``law.jitted`` and ``law.address`` are the same function for numba and C.
 
     Parameters
     ----------
@@ -201,19 +230,21 @@ def law(roller: Roller | LawGrid) -> Law:
     Returns
     -------
     Law
-        A function of V and omega.  Creep is delta = (omega - V)/V, and at V = 0 < abs(omega) the contact slips as a
-        whole.  Threads may share it; pickled, it binds its scene anew.
+        A function (V, omega) -> named tuple of Q, M, M_half_space, M_cylinder; with ``slopes=True`` also of four
+        derivatives (:meth:`Law.__call__`).  Threads may share it; pickled, it binds its scene anew.
 
     Raises
     ------
     ParameterError
-        What is no scene and no cylinder; arrays for alpha, kappa or mu; a material each.
+        What is no scene, cylinder or grid; arrays for alpha, kappa or mu; an array of materials; a layer beside a body
+        that relaxes too, since its slip is not known.
 
     Notes
     -----
     For numbers the bits are those of :func:`contact`; for arrays :func:`contact` is called
-    (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
-    a corner in V only; the slopes there are those of full slip.  A call without slopes does not compute them.
+    (``tests/test_bound_law.py``).  At rest, V = omega = 0, dQ_domega is infinite and dQ_dV is -infinite.  Where full
+    slip begins, Q has a corner in V only; the slopes there are those of full slip, 0.  A call without slopes does not
+    compute them.
 
     Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
 

@@ -30,14 +30,15 @@ RATIO_RANGE = (1e-290, 1e290)
 class Roller:
     """Base of a scene and a cylinder: data by which functions compute, and the scale of their arguments and results.
 
-    Its subclasses are dataclasses, whose fields may be arrays.
+    Its subclasses are dataclasses, whose fields may be arrays.  Two rollers are equal, and have one hash, if they are
+    of one class and all fields are equal.
 
     Attributes
     ----------
-    scale : 1 of each dimensionless quantity, in SI units for a cylinder.
+    scale : :class:`.Scale`, which gives the unit of each quantity by name, of a cylinder in SI units; 1 of a scene.
     material : the material, None where numbers stand for it.
     body_data : data of the bodies in SI units; None of a scene.
-    about : attributes of datasets.
+    about : attributes that datasets of results get, by name; empty of a scene.
     """
 
     scale: Scale
@@ -64,15 +65,16 @@ class Roller:
         raise NotImplementedError
 
     def replace(self, **changes: Any) -> Self:
-        """Return a copy with some parameters changed."""
+        """Return a copy with some parameters changed; ``changes``: new values by name."""
         raise NotImplementedError
 
     def take(self, index: Integers, count: int) -> Self:
-        """Return some of ``count`` rollers.
+        """Select some of the ``count`` rollers that this object with array parameters stands for.
 
-        index: index of numpy into (count,).
-        count: number of rollers; parameters of shape (count,) are indexed, all others stay as they are.
-        Returns a roller of the same class; itself if no parameter has that shape.
+        index: index of numpy into an array (count,): an integer for one roller, a slice, a mask, or integers (k,).
+        count: number of rollers; numbers and materials of shape (count,) are indexed, all others stay as they are.
+        Returns a roller of the same class whose indexed parameters are numbers, or arrays (k,); this object itself if
+        no parameter has that shape.
         """
         parts = {name: value[index] for name, value in self._arrays.items() if getattr(value, "shape", ()) == (count,)}
         return self.replace(**parts) if parts else self
@@ -101,6 +103,8 @@ class Parameters(Roller):
     """Dimensionless parameters, as a :class:`viscoroll.Scene` takes them; each a number or an array, and they
     broadcast.
 
+    The unit of time, T_ref, is T_epsilon where alpha is given, else the time in units of which the material counts.
+
     alpha : T_epsilon/T_sigma, in [1, :data:`HIGHEST_ALPHA`]; of a material its alpha, which the class sets.
     kappa : slenderness R/l0, > 0.
     mu : coefficient of friction, > 0.
@@ -121,10 +125,13 @@ class Parameters(Roller):
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
 
     def __post_init__(self) -> None:
-        """Check the parameters, and replace them by floats or read-only arrays.
+        """Check the parameters, and replace them by floats or read-only arrays; set ``shape``, their broadcast shape.
 
-        Raises ParameterError: both or neither of alpha and material, a material of another type, values out of range,
-        NaN or infinite, shapes that do not broadcast, mu/kappa outside :data:`RATIO_RANGE`.
+        A gamma of None stays None.  With a material ``alpha`` becomes that of the material, a float or an array (n,).
+        A :class:`LawTable` is replaced by its material (or by its alpha, with None for the material), and kept for
+        :attr:`table`.
+        Raises ParameterError: both or neither of alpha and material, a material of another type, kappa, mu or j that is
+        None, values out of range, NaN or infinite, shapes that do not broadcast, mu/kappa outside :data:`RATIO_RANGE`.
         """
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
@@ -155,8 +162,11 @@ class Parameters(Roller):
 
     @property
     def table(self) -> LawTable | None:
-        """Return the rows of the law of the one material of the scene, as given or computed at first use; None if it
-        has several alphas or materials.
+        """Return the :class:`LawTable` of the scene, from which all its contact states are computed.
+
+        It is the one that was given as ``material``, else it is computed at first use and kept for the process.  None
+        for several materials (also of shape (1,)) and for an array of alphas, unless that has a single element.
+        Raises ParameterError for a material with times outside 1e-100 to 1e100 of their unit, or a layer too thin.
         """
         if self._law is not None:
             return self._law
@@ -168,7 +178,7 @@ class Parameters(Roller):
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """alpha, kappa, mu, gamma and j by name, where they are given."""
+        """alpha (also that of a material), kappa, mu, gamma and j by name; gamma is missing where it was not given."""
         values = {name: getattr(self, name) for name in PARAMETERS}
         return {name: value for name, value in values.items() if value is not None}
 
@@ -177,10 +187,11 @@ class Parameters(Roller):
         return self
 
     def replace(self, **changes: Any) -> Self:
-        """Return a copy with some parameters changed.
+        """Return a copy of the same class with some parameters changed.
 
-        changes: parameters by name; an alpha takes the place of a material, and the reverse.
-        Raises ParameterError for values out of range.
+        changes: new values of alpha, kappa, mu, gamma, j and material by name; an alpha takes the place of a material,
+            and the reverse.  Without both the material stays, with its :class:`LawTable` if it was given as one.
+        Raises ParameterError as the class does: for values out of range, and for alpha and material together.
         """
         material: dict[str, Any] = {}
         if changes.keys() & {"alpha", "material"}:
@@ -191,23 +202,30 @@ class Parameters(Roller):
 
     @property
     def series(self) -> Prony | None:
-        """The series of the material, or of both bodies together; None of an alpha and of several materials."""
+        """The series of the one material, or of both bodies together; None where alpha was given, and of several
+        materials.
+        """
         one: Any = None if self.material_array is not None else self.material
         return one.total if isinstance(one, Bodies) else one
 
     @property
     def material_array(self) -> Prony | Bodies | None:
-        """Several materials, of like bodies their series; None of one material."""
+        """The n materials of an array of materials, which are like bodies or pairs; None of one material and of alpha.
+
+        Of pairs of like bodies their n series.  An array of a single material, of shape (1,), counts as several.
+        """
         several: Any = self.material
         if several is None or not several.shape:
             return None
         return several.cylinder if isinstance(several, Bodies) and several.like else several
 
     def in_own_time(self) -> tuple[Any, float]:
-        """Return the material in its own unit of time, in which its slow time is near 1.
+        """Return the one material of the scene in its own unit of time, in which its slow time is near 1.
 
-        Returns (alpha or the series in that time; the unit divided by T_ref).  For a cover (the cover, 1): its law is
-        not that of the series alone.
+        Curves of a material are kept in that time, so that scenes with one material in two units share them.
+        Returns (material, unit): the series, with times divided by the unit; the unit divided by T_ref.  For alpha
+        (alpha, 1.0), where alpha may be an array; for an elastic series (1.0, 1.0); for a cover (the cover, 1.0), since
+        its law is not that of the series alone.  Not for several materials, of which (their alphas, 1.0) is returned.
         """
         if self.cover is not None:
             return self.cover, 1.0
@@ -226,9 +244,11 @@ class Parameters(Roller):
     def on_slope(self, slope: Any) -> Self:
         """Return the scene under the load P cos(slope), the normal part of the weight on a slope.
 
-        slope: angle, rad, in (-pi/2, pi/2), a number or an array; None: level.
-        Returns a scene whose kappa is divided by sqrt(cos(slope)) and whose gamma is multiplied by cos(slope).
-        Raises ParameterError for a slope out of range.
+        slope: angle, rad, in (-pi/2, pi/2), a number or an array, which broadcasts with the parameters; None: level.
+        Returns a scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied by
+        cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array of
+        slopes gives as many covers.
+        Raises ParameterError for a slope out of range, and for shapes that do not broadcast.
         """
         cosine = slope_tan_cos(slope)[1]
         changes = {"kappa": self.kappa / np.sqrt(cosine), "gamma": None if self.gamma is None else self.gamma * cosine}
@@ -238,7 +258,7 @@ class Parameters(Roller):
 
     @property
     def _arrays(self) -> dict[str, Any]:
-        """Its parameters, without the alpha of a material."""
+        """The parameters by name, as they were given: the material in place of its alpha."""
         if self.material is None:
             return self.numbers
         return {"material": self.material} | {name: x for name, x in self.numbers.items() if name != "alpha"}
@@ -248,10 +268,11 @@ class Parameters(Roller):
 
 
 def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
-    """Return a series in its own unit of time; (alpha = 1, 1) of one without modes.
+    """Return a series in its own unit of time, in which its slow time is near 1.
 
-    series: with times divided by T_ref.
-    Returns (alpha or the series in the unit; the unit divided by T_ref).
+    series: one series, with times in units of T_ref.
+    Returns (the series with times divided by the unit; the unit in T_ref, a power of two); (1.0, 1.0), an alpha and a
+    unit, of an elastic series, which has no modes.
     """
     return series.in_own_time() if series.E.size else (1.0, 1.0)
 
@@ -271,14 +292,14 @@ def resolve_model(
     """Check the first argument of a call, and return the roller on its slope with its parameters and its scale.
 
     roller: the first argument of the call, of any type.
-    call: name of the function that is called, for errors, and to decide whether it takes two bodies of which one is a
-    layer.
+    call: name of the function that is called, for errors.  It also decides about a layer beside a body that relaxes
+        too: only the functions of :data:`_BEFORE_THE_SPLIT` take it.
     moves: whether the function needs gamma, which only a roller that moves has.
     slope: angle, rad, a number or an array; None: level.
-    Returns (the Scene or Cylinder under the load on the slope; its dimensionless parameters; its scale: 1 of each
-    dimensionless quantity in the units of the roller).
-    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma, and for a
-    layer beside a body that relaxes where the call needs slip or the parts of M.
+    Returns (the Scene or Cylinder under the load on the slope, the argument itself if ``slope`` is None; its
+    dimensionless parameters; its scale: 1 of each dimensionless quantity in the units of the roller).
+    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma where
+    ``moves``, and a layer beside a body that relaxes too in a function that does not take it.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
@@ -300,7 +321,9 @@ def resolve_model(
 
 
 def refuse_cover(scene: Parameters, why: str) -> None:
-    """Raise ParameterError where a body is a layer of finite thickness; ``why``: what is not known of such a layer."""
+    """Raise ParameterError where a body of ``scene`` is a layer of finite thickness; ``why``: end of the message, the
+    reason why the function does not take one.
+    """
     if scene.cover is not None:
         sentence = (
             f"thickness = {format_value(scene.cover.thickness)} (divided by l0): for a layer of finite thickness {why}"
@@ -309,11 +332,11 @@ def refuse_cover(scene: Parameters, why: str) -> None:
 
 
 def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a single number") -> None:
-    """Raise ParameterError where a parameter is an array.
+    """Raise ParameterError for the first of some parameters that is an array, also of shape (1,).
 
-    scene: the parameters.
-    names: names of the parameters.
-    allowed: what the message says is allowed.
+    scene: the dimensionless parameters of a roller.
+    names: names of the parameters that must be numbers, as "alpha"; None as a value is accepted.
+    allowed: words of the message that follow "must be".
     """
     for name in names:
         if shape := np.shape(getattr(scene, name)):
@@ -321,7 +344,11 @@ def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a sin
 
 
 def _refuse_ratio(mu: Floats, kappa: Floats) -> None:
-    """Raise ParameterError where mu/kappa, and with it delta_star, is outside :data:`RATIO_RANGE`."""
+    """Raise ParameterError for the first mu/kappa outside :data:`RATIO_RANGE`; if there is none, do nothing.
+
+    mu/kappa is the unit of delta_star, which would leave the range of doubles.
+    mu, kappa: coefficient of friction and slenderness, > 0, arrays that broadcast.
+    """
     low, high = RATIO_RANGE
     with np.errstate(over="ignore", under="ignore"):
         ratio = np.asarray(mu / kappa)

@@ -34,28 +34,35 @@ def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers) -> Values:
 def stress(
     roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
 ) -> Values:
-    """Return pressure and shear stress along the contact, Eqs. (11)-(14).
+    """Compute pressure and shear stress along the contact of a rolling cylinder and its base, Eqs. (11)-(14).
+
+    The equations are those of Zobova and Goryacheva (2020), see :func:`contact`.
 
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a :class:`Cylinder`, in SI units.
     x : position divided by l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
         value: the stresses are 0 outside the contact.
-    V : velocity of the axis, any sign; of a Cylinder m/s, of a Scene divided by R/T_ref.
+    V : velocity of the axis, any sign; of a Cylinder m/s, of a Scene divided by R/T_ref.  T_ref is the unit of time:
+        T_epsilon of a Scene with ``alpha``, else the time in which the material counts.
     delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity, any sign; omega of a Cylinder in rad/s,
-        of a Scene multiplied by T_ref.  All arguments broadcast.
+        of a Scene multiplied by T_ref.  At V = 0 a delta means the limit V -> 0+, an omega other than 0 full slip.
+        All arguments broadcast.
 
     Returns
     -------
     Values
-        ``p``: pressure divided by E', >= 0.  ``tau``: shear stress on the cylinder divided by E', of the sign of omega
-        - V, |tau| <= mu p.  Of a Cylinder in Pa.  Of a cover ``p`` alone: its shear stress is not known.  Both have
-        the broadcast shape of arguments and roller; they are floats if all of these are numbers.
+        ``p``: pressure, >= 0.  ``tau``: shear stress on the cylinder in the direction of +x, of the sign of omega R - V
+        (at V = 0 of delta), 0 for delta = 0; |tau| <= mu p, with equality in the slip zone and, in full slip, in the
+        whole contact.  Both are in Pa of a Cylinder, else divided by E', and 0 outside the contact.  If a body is a
+        layer of finite thickness there is ``p`` alone: its shear stress is not known.  Both have the broadcast shape
+        of arguments and roller; they are floats if all of these are numbers.
 
     Raises
     ------
-    ParameterError, ConvergenceError
-        As for :func:`contact`.
+    ParameterError
+        NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega, shapes that do not broadcast,
+        a unit of another dimension.
 
     Examples
     --------
@@ -116,11 +123,13 @@ def stress(
 def _compute_stresses(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
 
-    scene: parameters of the roller.
-    alpha: alphas, or of many materials their indices as floats, (n,) or (1,); points of one material lie together.
-    points: record of the kernel; its fields (position, kappa, mu, lam, epsilon, beta, zeta) are (n,) or (1,),
-        dimensionless, positions in the frame where V > 0.
-    p, tau: pressure and size of the shear stress divided by E', (n,), written; of a cover tau is not written.
+    scene: dimensionless parameters of the roller.
+    alpha: alphas, or for an array of materials their indices as floats, (n,) or (1,); for one material not used.
+        Consecutive points of one material are computed together.
+    points: record :class:`...kernels.rows.stress.Points`; its fields (position, kappa, mu, lam, epsilon, beta, zeta)
+        are (n,) or (1,), dimensionless, positions in the frame where V > 0, divided by l0.
+    p, tau: pressure and size of the shear stress divided by E', (n,), written, 0 outside the contact; of a cover tau is
+        not written.
     """
     from ..kernels.rows.stress import new_memory_weights, stress_loop
 
@@ -141,13 +150,13 @@ def _compute_stresses(scene: Parameters, alpha: Floats, points: Any, p: Floats, 
 
 
 def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
-    """Return p/E' at points on a cover, by one solve for each state of the contact.
+    """Return p/E' at points on a cover, by one solve of the contact of the layer for each different state.
 
-    scene: parameters with a cover.
-    index: index of the cover, if there are many.
-    points: record of the kernel, with position (divided by l0), kappa, lam, epsilon and zeta of each point, (n,) or
-    (1,).
-    Returns p/E', (n,), where n is the common length of these fields.
+    scene: dimensionless parameters of a roller with a cover.
+    index: index of the cover, if the scene has an array of covers; else not used.
+    points: record :class:`...kernels.rows.stress.Points`, of which position (divided by l0, in the frame where V > 0),
+        kappa, lam, epsilon and zeta (infinite at V = 0) are used, (n,) or (1,).
+    Returns p/E', dimensionless, >= 0, 0 outside the contact, (n,), where n is the common length of these fields.
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = CoverModes(cover)
