@@ -41,8 +41,8 @@ def stress(
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a :class:`Cylinder`, in SI units.
-    x : position divided by l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
-        value: the stresses are 0 outside the contact.
+    x : position divided by l0, of a Cylinder in m, from the point below the axis, positive in the direction of a
+        positive V; any value: the stresses are 0 outside the contact.
     V : velocity of the axis, any sign; of a Cylinder m/s, of a Scene divided by R/T_ref.  T_ref is the unit of time:
         T_epsilon of a Scene with ``alpha``, else the time in which the material counts.
     delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity, any sign; omega of a Cylinder in rad/s,

@@ -15,12 +15,14 @@ from ...core.errors import ParameterError, described_error
 from ..contact_table import refuse_overflow
 from ..parameters import Parameters, refuse_arrays
 
-#: kappa |V| of a given speed
+#: largest kappa |V| of a given speed
 FASTEST = 1e100
 
 
 class Gains(NamedTuple):
-    """Gains of force and torque on V and omega, dimensionless."""
+    """Gains of force and torque on V and omega, dimensionless: force = value + force_V V + force_omega omega, and
+    torque likewise.
+    """
 
     force_V: float = 0.0
     force_omega: float = 0.0
@@ -41,10 +43,14 @@ class Gains(NamedTuple):
 class Loads(NamedTuple):
     """Loads of one material as vectors of one length, dimensionless.
 
-    shape : shape of the call.  gains : feedback.  given : where V is given, the name of the load that is given with
-    it ("force" or "torque"), else None.  force, torque : values at V = omega = 0; 0 for the load that is to be
-    found.
-    kappa : value on the slope.  mu, j : parameters.  V : given speeds, or None.
+    shape : shape to which the loads and the parameters of the scene broadcast, () for one load; vectors are (n,), with
+    n the product of the shape.
+    gains : gains of a feedback, one set for all loads; 0 without feedback.
+    given : where V is given, the name of the load that is given with it ("force" or "torque"), else None.
+    force, torque : values at V = omega = 0, divided by P and P R, (n,); a slope is in the force.  Of the load that is
+    to be found beside a given V the number here has no meaning.
+    kappa, mu, j : parameters, (n,), kappa with the load on the slope.
+    V : given speeds, (n,), or None.
     """
 
     shape: tuple[int, ...]
@@ -65,14 +71,15 @@ def loads_of(
     slope: ArrayLike | None,
     V: ArrayLike | None,
 ) -> Loads:
-    """Check and broadcast the loads of a call of :func:`.steady.steady`.
+    """Check the loads of a call of :func:`.steady.steady`, and broadcast them with the parameters of the scene.
 
     scene : dimensionless parameters of the roller, on the slope; one alpha or one material, the others numbers or
         arrays.
     force, torque : numbers, arrays or :class:`Feedback`, divided by P and P R; None: 0.
-    slope : angle, rad, a number or an array; tan(slope) is added to the force.  None: level.
-    V : given speeds, dimensionless, any sign; None where the speed is to be found.
-    Returns the :class:`Loads`: the broadcast loads, flattened to vectors (n,).
+    slope : angle, rad, a number or an array; tan(slope) is added to the force, which is divided by the load on the
+        slope, P cos(slope).  None: level.
+    V : given speeds, dimensionless, any sign, a number or an array; None where the speed is to be found.
+    Returns the :class:`Loads`: the broadcast loads, flattened to vectors (n,), (1,) where all are numbers.
     Raises ParameterError: several alphas; NaN or infinite input; shapes that do not broadcast; kappa |V| above
     :data:`FASTEST`; a feedback that changes with time or has arrays of gains; with V both or neither of force and
     torque (a slope alone counts as the force), or a feedback.
@@ -96,11 +103,12 @@ def loads_of(
 
 
 def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
-    """Split a load into its value without feedback and the gains of its feedback.
+    """Split a load into its value at rest and the gains of its feedback.
 
     name: name of the load, "force" or "torque", for errors.
-    value: a number, an array or a :class:`Feedback`; None: no load.
-    Returns (value at V = omega = 0, a number or an array; gain on V; gain on omega), in the unit of ``value``.
+    value: a number, an array or a :class:`Feedback`, whose value may be an array too; None: no load.
+    Returns (value at V = omega = 0, a number or an array; gain on V; gain on omega, floats), in the unit of ``value``;
+    (0, 0.0, 0.0) for None, gains of 0.0 without feedback.
     Raises ParameterError for NaN or infinite values, a feedback that changes with time, or arrays of gains.
     """
     if not isinstance(value, Feedback):
@@ -115,9 +123,9 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
 def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -> str:
     """Return the name of the load that is given beside V, "force" or "torque"; the other one is to be found.
 
-    slope: angle, rad, or None; without force and torque a slope counts as the force given.
+    slope: angle, rad, or None; without force and torque a slope counts as the force given, and the result is "force".
     loads: ``force`` and ``torque``, each a number or an array, None where it is not given.
-    Raises ParameterError where both are given, where neither of the two and no slope is given, and for a feedback.
+    Raises ParameterError for a feedback, where both are given, and where neither of the two and no slope is given.
     """
     names = [name for name, value in loads.items() if value is not None]
     for name in names:

@@ -1,7 +1,8 @@
 """Rolling resistance over speed: extrema of M(V), and the branches between them on which M(V) is inverted.
 
 kappa M is a function of u = kappa V alone for a material.  A gain G on the speed turns M(V) = load into M(V) - G V =
-load, the same problem with another curve.
+load, the same problem with another curve.  All is dimensionless unless units are named; a law is a :class:`LawTable`,
+the rows of one material.
 """
 
 from __future__ import annotations
@@ -51,6 +52,8 @@ Function = Callable[[Floats], Floats]
 class ResistanceExtrema(NamedTuple):
     """Every local maximum and minimum of M(V) for V > 0, by rising V; the first and the last are maxima.
 
+    Maxima and minima alternate; an elastic material has none.
+
     V : speeds, (n,), of a cylinder in m/s, of a scene divided by R/T_ref.
     M : rolling resistance moments there, (n,), of a cylinder in N m/m, of a scene divided by P R.
     is_maximum : whether it is a maximum, else a minimum, (n,).
@@ -72,7 +75,7 @@ class Branches:
     """The curve kappa (M - G V) over u = kappa V at nodes, and its branches, on each of which it rises or falls
     throughout.
 
-    G is a gain on the speed, as of a feedback.  All is dimensionless.
+    The branches lie between the first node, the extrema and the last node.  G is a gain on the speed, as of a feedback.
     u : nodes of kappa V, ascending, (n,).
     resistance : kappa (M - G V) at the nodes, (n,).
     extremum : whether a node is a local extremum of the curve, (n,).
@@ -96,17 +99,20 @@ class Branches:
 
     @cached_property
     def maximum(self) -> tuple[float, float]:
-        """Return (largest value, kappa V there)."""
+        """Return (largest value of the curve at a node, u of that node); without a gain that is the maximum of
+        kappa M.
+        """
         n = int(np.argmax(self.resistance))
         return float(self.resistance[n]), float(self.u[n])
 
     def locate_loads(self, load: Floats) -> tuple[Integers, Integers]:
-        """Locate the branches on which the curve takes given values, as brackets for a root solve.
+        """Locate the intervals between nodes in which the curve takes given values, as brackets for a root solve.
 
         load : values of kappa (M - G V), dimensionless, any sign, (n,).
         Returns (index of the load; index of the node below the crossing, which lies between that node and the next
-        one), one entry for each crossing, (crossings,) each; a load has none to many.  An extremum, and loads within
-        rounding of it, belong to the branch that ends there.
+        one), one entry for each crossing, (crossings,) each, integers, branch by branch.  A load has none to many: none
+        if it is outside the values of the curve at the nodes, or equal to the value at the first or the last node.  A
+        load within 1e-15 of an extremum, relative, has one crossing there, on the branch that ends at the extremum.
         """
         from ...kernels.rows.load_crossings import EXTREMUM_RTOL
 
@@ -127,25 +133,28 @@ class Branches:
 
 
 def resistance_extrema(roller: Roller) -> ResistanceExtrema:
-    """Find every local maximum and minimum of the rolling resistance M over the speed.
+    """Find every local maximum and minimum of the rolling resistance moment M of a cylinder over its speed.
 
-    A rubber with widely separated relaxation times has several; one relaxation time has a single maximum.
+    They bound the loads under which it can roll steadily: M rises with the speed from 0 and falls to 0 again.  A rubber
+    with widely separated relaxation times has several maxima; one relaxation time has a single one.
 
     Parameters
     ----------
-    roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; numbers, no
-        arrays.
+    roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; alpha, material
+        and kappa must be single, mu and the others may be arrays.
 
     Returns
     -------
     ResistanceExtrema
-        ``V``, ``M`` and ``is_maximum`` as arrays of one length, of a Cylinder in m/s and N m/m; empty for an elastic
-        material.
+        Named tuple of ``V``, the speeds > 0, ascending, ``M``, the moments there, and ``is_maximum``, true for a
+        maximum and false for a minimum, arrays of one length; of a Cylinder V is in m/s and M in N m/m, of a Scene they
+        are divided by R/T_ref (T_ref is its unit of time) and P R.  M is odd in V, so that negative speeds need no
+        search.  Empty arrays for elastic bodies.
 
     Raises
     ------
     ParameterError
-        Arrays in the parameters of the roller.
+        Arrays in alpha or kappa, or an array of materials; what is no scene and no cylinder.
 
     Notes
     -----
@@ -173,9 +182,10 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
 def branches(law: LawTable, gain: float) -> Branches:
     """Return the curve kappa (M - G V) over speed, divided into branches on which it is monotone.
 
-    law : rows of the material.
+    law : table of the material.
     gain : G, slope of the load in V, dimensionless, any sign; 0 for a load that does not depend on V.
-    Returns the :class:`Branches`, which are kept for the next call.
+    Returns the :class:`Branches` for u > 0, which are kept for the next call.  Where the curve has no extremum, as for
+    elastic bodies, there is one branch over all nodes.
 
     Raises
     ------
@@ -201,9 +211,9 @@ def branches(law: LawTable, gain: float) -> Branches:
 def speed_nodes(law: LawTable) -> Floats:
     """Return nodes of log2(u), u = kappa V, closely spaced where the material relaxes.
 
-    law : rows of the material.
+    law : table of the material.
     Returns the nodes, ascending, (n,): 16 in an octave from 15 octaves below to 15 octaves above the rates of the
-    modes, 2 in an octave for 446 octaves beyond on either side.
+    modes, of an elastic material around u = 1; 2 in an octave for 446 octaves beyond on either side.
     """
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
@@ -218,7 +228,7 @@ def speed_nodes(law: LawTable) -> Floats:
 
 
 def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
-    """Return kappa (M - gain V) and its slope in kappa V at u = kappa V, two rows; ``law``: rows of the material."""
+    """Return the curve kappa (M - gain V) and its slope over u at u = kappa V > 0, (n,), as two rows, (2, n)."""
     return pure_rolling_fields(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
 
 
@@ -228,10 +238,10 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
     function : takes points (m,) and returns its values there, (m,).
     nodes : points, ascending, (n,).
     noise : rounding error of the function at the nodes, absolute, a number or (n,); nodes with values no larger than
-        it have no sign and are left out.
+        it have no sign and are left out, so that with 0 a zero at a node is found between its neighbours.
     Returns the zeros, ascending, (zeros,), to the rounding of the nodes; empty if there are none.  They are bisected
-    from the changes of sign.  A pair of zeros without a change of sign is found where |function| has a minimum at a
-    node.
+    from the changes of sign between nodes.  A pair of zeros without such a change is found if |function| has a minimum
+    at a node and points nearby show the other sign; a zero at which the function touches 0 is not found.
     """
     values = function(nodes)
     signed = np.abs(values) > noise
@@ -250,7 +260,7 @@ def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
     """Find the intervals between points in which a function changes its sign.
 
     x: points, ascending, (n,).
-    y: values of the function there.
+    y: values of the function there, (n,); an interval with the value 0 at an end counts as none.
     Returns (lower ends, upper ends, whether the function rises), (intervals,) each.
     """
     at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)

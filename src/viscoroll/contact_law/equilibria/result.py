@@ -28,7 +28,7 @@ _LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "effic
 
 @dataclass(frozen=True, eq=False)
 class Loss:
-    """Power balance of steady rolling, in the shape of the equilibria.
+    """Power balance of steady rolling, in the shape of the equilibria, with NaN where the equilibria are padded.
 
     Powers are divided by P R/T_ref, of a Cylinder in W per m of length.
 
@@ -37,10 +37,10 @@ class Loss:
     slip : power lost in slip, (omega - V) Q of a scene, (omega R - V) Q of a Cylinder.
     half_space, cylinder : power lost in rolling in either body, V M_half_space and omega M_cylinder (of a Cylinder the
         first divided by R); their sum with ``slip`` is the power of force and torque.
-    coefficient : coefficient of rolling resistance, dimensionless: all losses divided by P |V|; at V = 0 the limit V
-        -> 0.
-    efficiency : output power divided by input power.  Force V and torque omega are input where they are positive,
-        output where they are negative.  0 without output; NaN without input, as at rest.
+    coefficient : coefficient of rolling resistance, dimensionless: all losses divided by P |V|; at rest the limit V ->
+        0, |Q delta|/P; infinite for a cylinder that spins at V = 0.
+    efficiency : output power divided by input power, dimensionless.  Force V and torque omega are input where they are
+        positive, output where they are negative.  0 without output; NaN without input, as at rest.
     """
 
     slip: Floats
@@ -53,7 +53,7 @@ class Loss:
 class Diagnosis(NamedTuple):
     """Data for the explanation why a load has no equilibrium.
 
-    loads : the loads, n of them.
+    loads : the loads, n of them, dimensionless.
     states : (index of the load, V, Q) of all states, whether or not the friction suffices, (states,) each,
         dimensionless.
     number : equilibria of each load, (n,).
@@ -69,19 +69,24 @@ class Diagnosis(NamedTuple):
     elastic: bool
 
     def text(self, scale: Scale) -> Any:
-        """Return the reason for each load, one string or an array of strings; empty where an equilibrium exists.
+        """Return for each load the reason why it has no equilibrium, "" where it has one.
 
-        scale: units of the roller.
+        scale: units of the roller, in which the sentences state their numbers.
+        Returns a str for one load, else an array of str (dtype object) in the shape of the loads.
         """
         shape = self.loads.shape
         found = [self._reason(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)]
         return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
     def _reason(self, n: int, scale: Scale) -> str:
-        """Return why a load has no equilibrium, in one sentence.
+        """Return why a load has no equilibrium, as a sentence without a full stop.
 
-        n : index of the load in the flattened loads.
-        scale : units of the roller, in which the sentence states its numbers; of a scene they are dimensionless.
+        It is the first of these that applies: friction (the balance needs more than mu, or mu exactly; of several
+        states that with the smallest |Q| is named); elastic bodies, which roll without resistance; a feedback that
+        balances the moment at no speed; a load above the largest moment.
+        n : index of a load without equilibrium in the flattened loads.
+        scale : units of the roller, in which the sentence states its numbers but Q and mu, which are dimensionless; of
+            a scene all are.
         """
         name, moment, of_load, of_speed = "force + torque", "rolling moment", "", ""
         if scale.si:
@@ -114,20 +119,26 @@ class Steady(Values):
     """Equilibria of rolling under load, the result of :func:`viscoroll.steady`.
 
     The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); shorter lists are padded
-    with NaN (``stable``: False).  The axes before it are those of the loads; of one load there are none.
+    with NaN (``stable``: False).  The axes before it are those of the loads; of one load there are none.  Without an
+    equilibrium that axis has length 0.  Quantities of a Scene are dimensionless; those of a Cylinder are in SI units,
+    per m of its length: m/s, rad/s, N/m, N m/m, 1/s, W/m.
 
     Attributes
     ----------
-    V, omega, delta : speeds and creepage (omega - V)/V, infinite for a cylinder that spins at V = 0.
-    Q, M : creep force and rolling resistance moment, divided by P and P R; M_half_space, M_cylinder : the parts of M.
-    beta : stick zone divided by contact length.  grip : friction reserve 1 - |Q|/mu, 0 in full slip.
-    stable : whether (V, omega) returns after any small disturbance; False if an eigenvalue is 0.
-    eigenvalues : last axis of two, complex, fast and slow: growth rates of small disturbances, in units of
-        gamma/T_ref.
-    force, torque : loads, with slope and feedback; the one to be found where V was given.
+    V, omega, delta : speeds, divided by R/T_ref and multiplied by T_ref, and creepage (omega R - V)/V, +infinite for a
+        cylinder that spins at V = 0 in either sense; at rest, V = omega = 0, its limit V -> 0+.
+    Q, M : creep force and rolling resistance moment, divided by P and P R.
+    M_half_space, M_cylinder : the parts of M by the losses in either body.
+    beta : stick zone divided by contact length, 0 in full slip.
+    grip : friction reserve 1 - |Q|/(mu P), 0 in full slip.
+    stable : whether (V, omega) returns after any small disturbance: both eigenvalues have a real part < 0.
+    eigenvalues : complex, on a last axis of two, the one of the smaller real part first: growth rates of small
+        disturbances of (V, omega), in units of gamma/T_ref.  At rest the first is -infinite.
+    force, torque : the loads of the equilibrium, with slope and feedback; where V was given one of them is found.
     loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
     count : number of equilibria of each load, an int for one load.
-    Of a Cylinder all in SI units, per m of its length: m/s, rad/s, N/m, N m/m, 1/s, W/m.
+    success, status : whether there is an equilibrium, and 0 or 1 if there is one or none, for each load.
+    reason, message : why there is none, "" where there is one, for each load.
 
     Examples
     --------
@@ -149,7 +160,9 @@ class Steady(Values):
         """Return the powers of each equilibrium, its coefficient of rolling resistance and its efficiency.
 
         Returns a :class:`Loss` whose fields have the shape of ``V``, (loads..., equilibria), with the labels of the
-        arguments where these had some; powers divided by P R/T_ref, of a Cylinder in W per m of its length.
+        arguments where these had some that fit the loads; powers divided by P R/T_ref, of a Cylinder in W per m of its
+        length.  Padding is NaN; at V = 0 the coefficient is a limit, and without input the efficiency is NaN, as the
+        class states.
         """
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
@@ -176,7 +189,7 @@ class Steady(Values):
 
     @property
     def status(self) -> Any:  # type: ignore[override]
-        """0 where there is one, else 1."""
+        """0 where there is an equilibrium, else 1; an int, or an array in the shape of the loads."""
         return np.where(self.success, 0, 1)[()]
 
     @property
@@ -208,8 +221,10 @@ class Steady(Values):
     def to_xarray(self) -> xr.Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
 
-        Returns a dataset over the axes of the loads (named as in labelled arguments, else ``state``, of several axes
-        ``state_0``, ``state_1`` ...) and ``equilibrium``.  Beside the fields of this result it has ``rate_fast`` and
+        Returns a dataset over the axes of the loads (of one load there are none; named as in labelled arguments, else
+        ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  A coordinate of the labels that
+        has the name of a field is called ``given_`` and that name.  Beside the fields of this result (``eigenvalues``,
+        ``reason``, ``success`` and ``status`` are left out) it has ``rate_fast`` and
         ``rate_slow``, the real parts of the eigenvalues; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
         ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; ``stable`` is 0 or 1; ``count`` has the axes
         of the loads alone.
@@ -237,7 +252,9 @@ class Steady(Values):
 
 
 def append_axis(unit: Any) -> Any:
-    """Return the ``unit`` of each load with an axis for its equilibria; a single unit as it is."""
+    """Return the ``unit`` of each load, (loads...), with a last axis of length 1 for its equilibria; a number as it
+    is.
+    """
     return unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
 
 
@@ -245,12 +262,14 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     """Pack steady states, one after another, into arrays over loads and equilibria, in the units of the roller.
 
     loads : the loads, n of them, dimensionless.
-    states : existing states, sorted by load and |V|, dimensionless.
-    reasons : data of the loads without equilibrium; its ``number`` is the number of states of each load.
+    states : :class:`.states.States` that exist, sorted by load and |V|, dimensionless.
+    reasons : :class:`Diagnosis`, data of the loads without equilibrium; its ``number`` is the number of states of each
+        load.
     scale : units of the roller, which the result has.
-    labels : labels of the arguments of the call, or None; used where they label the loads.
-    Returns the :class:`Steady`, whose fields have the axes of the loads and one of equilibria, padded with NaN where
-    loads have fewer equilibria than others.
+    labels : labels of the arguments of the call, or None; the fields get them if their shape is that of the loads.
+    Returns the :class:`Steady`, whose fields have the shape (loads..., equilibria), of one load (equilibria,), padded
+    with NaN where loads have fewer equilibria than others; ``eigenvalues`` have a further axis of two, ``count`` has
+    the axes of the loads alone, an int for one load.  With V given, force or torque is what the balance needs.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

@@ -6,8 +6,10 @@ With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
 
 R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V delta_0 of covers) or at
-a limit of stick, which are found first.  If fw + qw = 0, the sum determines V, and R = 0 is an equation for omega.  All
-states here are in a frame where V > 0.
+a limit of stick, which are found first.  If fw + qw = 0, the sum determines V, and R = 0 is an equation for omega.
+
+In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x is log2(kappa V), and
+a law is a :class:`LawTable`, the rows of one material.
 """
 
 from __future__ import annotations
@@ -41,10 +43,10 @@ _ROUNDING = 2e-15
 class _FreeRolling(NamedTuple):
     """The contact at several speeds, in the frame of the motion, each (n,).
 
-    V : speeds.
+    V : speeds, > 0.
     M, M_half_space : moment of both bodies and of the half-space.
-    limit : omega - V less ``slip`` at which the whole contact slips.
-    slip : omega - V of free rolling, V delta_0, at which Q = 0.
+    limit : V delta_star, > 0: full slip begins at omega - V = ``slip`` + limit and ``slip`` - limit.
+    slip : omega - V of free rolling, V delta_0, at which Q = 0; the number 0.0 times V for half-spaces.
     """
 
     V: NDArray
@@ -68,8 +70,9 @@ class _ScanProblem(NamedTuple):
     mu: float
 
     def free_rolling(self, x: NDArray) -> _FreeRolling:
-        """Return the contact at x = log2(kappa V), (n,): moments, creepage of free rolling and limit of stick at that
-        speed.
+        """Return the contact at given speeds as :class:`_FreeRolling`: moments, slip of free rolling, limit of stick.
+
+        x: log2(kappa V), (n,).
         """
         V = np.exp2(x) / self.kappa
         M, M_half_space, star = contact_fields_at(
@@ -78,15 +81,15 @@ class _ScanProblem(NamedTuple):
         return _FreeRolling(V, M, M_half_space, star * V, free_creep(self.law, self.kappa, self.mu, V) * V)
 
     def loads_at(self, V: Any, omega: Any) -> NDArray:
-        """Force and torque at the speeds V and omega."""
+        """Return force and torque at the speeds V and omega, numbers or (n,), as two rows: (2,) or (2, n)."""
         return self.load_rows @ np.array([np.ones_like(V), V, omega])
 
     def slip(self, V: NDArray, M: NDArray) -> NDArray:
-        """omega - V from the sum of the equations, at V and M."""
+        """Return omega - V at which force + torque equal M at V, (n,); the gains on omega must not add to 0."""
         return (M - self.loads_at(V, V).sum(axis=0)) / self.load_rows[:, 2].sum()
 
     def residual(self, x: NDArray, slip: NDArray) -> NDArray:
-        """R at x = log2(kappa V) and slip = omega - V."""
+        """Return R = Q - M_half_space + force, 0 in equilibrium, at x = log2(kappa V) and slip = omega - V, (n,)."""
         V = np.exp2(x) / self.kappa
         Q, M_half_space = contact_fields_at(self.law, self.kappa, self.mu, V, slip / V, "Q", "M_half_space")
         return Q - M_half_space + self.loads_at(V, V + slip)[0]
@@ -96,7 +99,8 @@ class _ScanProblem(NamedTuple):
 
         V, slip : speed and omega - V, (n,), dimensionless, in the frame where V > 0.
         Returns (rows of :class:`Field` with the slopes of the law from row 6 on, (10, n); residuals, (2, n): M less
-        force and torque, and Q - M_half_space + force), dimensionless.
+        force and torque, and Q - M_half_space + force), dimensionless; a state is one of equilibrium if both residuals
+        are 0.
         """
         rows = state_rows(self.law, self.kappa, self.mu, V, slip / V)
         force, torque = self.loads_at(V, V + slip)
@@ -108,10 +112,11 @@ class _ScanProblem(NamedTuple):
 def scan_states(law: LawTable, loads: Loads) -> States:
     """Find all states of rolling under loads with a gain on omega, by a scan over the speed.
 
-    law : rows of the material.
-    loads : the loads, with gains on omega.
-    Returns the :class:`States` of both directions of motion, and those that spin at V = 0 and omega other than 0;
-    unsorted. Rest, V = omega = 0, is not among them.
+    law : table of the material.
+    loads : the loads, of which at least one of force and torque has a gain on omega; V is not given.
+    Returns the :class:`States` of both directions of motion, with the signs of the motion, and those that spin at V = 0
+    and omega other than 0; load by load, else unsorted.  In all of them the friction suffices.  Rest, V = omega = 0, is
+    not among them.
     """
     gains = loads.gains
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
@@ -132,12 +137,14 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
     """Return the equilibrium with V = 0 and omega other than 0 under the n-th load, if there is one.
 
     At V = 0 and omega other than 0 the whole contact slips: Q is all of the friction, and must balance the force to
-    the bit.
+    the bit.  As M = 0 there, omega follows from force + torque = 0.
 
-    law: rows of the material.
+    law: table of the material.
     loads: the loads with their gains, dimensionless.
     n: index of the load.
-    Returns a list of one :class:`States` with one state, whose creepage is infinite, or an empty list.
+    Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is +infinite for either sense of
+    omega, and whose eigenvalues are those of the slowest speed of the nodes; or an empty list: also where the gains on
+    omega add to 0, and where force + torque are 0 at rest.
     """
     gains, total = loads.gains, loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
@@ -164,9 +171,10 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     """Find the states of a load by a scan over V, where the sum of the equations gives omega at each V.
 
     Used where the gains on omega of force and torque have a sum other than 0.
-    problem : the load and the rows of its material.
-    Returns (x = log2(kappa V), ascending; slip = omega - V), (states,) each, dimensionless, in the frame where V > 0.
-    The states are approximate; :func:`_polish` refines them and drops those that are none.
+    problem : :class:`_ScanProblem`, the load and the table of its material.
+    Returns (x = log2(kappa V), ascending; slip = omega - V), (states,) each, dimensionless, in the frame where V > 0;
+    empty arrays if there is no state.  The states are approximate; :func:`_polish` refines them and drops those that
+    are none.
     """
 
     def beyond(x: NDArray, part: float) -> NDArray:
@@ -195,10 +203,11 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     """Find the states of a load by a scan over the slip, where the sum of the equations gives V alone.
 
-    Used where the gains on omega of force and torque have the sum 0.
-    problem : the load and the rows of its material.
-    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where V > 0, unsorted.
-    States of partial slip are zeros over the slip, those of full slip follow from Q = mu or -mu.
+    Used where the gains on omega of force and torque have the sum 0, but are not 0.
+    problem : :class:`_ScanProblem`, the load and the table of its material.
+    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where V > 0, unsorted;
+    empty arrays if there is no state.  States of partial slip are zeros over the slip, those of full slip follow from
+    Q = mu or -mu.
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
@@ -221,12 +230,13 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
     """Refine approximate states by Newton steps in V and slip, and drop those that are no states or occur twice.
 
-    problem : the load and the rows of its material.
-    V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0.
-    Returns rows of :class:`Field` with the slopes of the law at the refined states, (10, states), sorted by V and
-    creepage. A step that does not reduce the residuals is rejected.  A state whose residual stays above
-    :data:`_RESIDUAL` of its terms is dropped.  Where the contact passes from full slip to full slip within the
-    rounding of V, two zeros are one state, or none.
+    problem : :class:`_ScanProblem`, the load and the table of its material.
+    V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0; n may be 0.
+    Returns rows of :class:`Field` with the slopes of the law from row 6 on at the refined states, (10, states), sorted
+    by V and creepage.  A step that does not reduce the sum of the residuals, or changes V by a thousandth or more, is
+    rejected.  A state whose residual stays above :data:`_RESIDUAL` of its terms is dropped, and of states whose V and
+    delta agree to :data:`_SAME_STATE`, relative, all but the first.  Where the contact passes from full slip to full
+    slip within the rounding of V, two zeros are one state, or none.
     """
     rows, residuals = problem.rows(V, slip)
     gains = problem.load_rows[:, 1:]

@@ -3,6 +3,8 @@
 For given V and Q the creepage follows without a root: by Eq. (15) H(eta) = (1 - |Q|/mu) H(zeta), which is Eq. (6) at
 the speed V/root with root^2 = 1 - |Q|/mu.  So delta = delta_star(V) - root delta_star(V/root) and beta = root
 lam(V/root)/lam(V).
+
+In this file all is dimensionless, and a law is a :class:`LawTable`, the rows of one material.
 """
 
 from __future__ import annotations
@@ -31,9 +33,11 @@ _ROWS = "Q", "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_hal
 
 
 class Field(IntEnum):
-    """Row of a quantity in an array of states, in a frame where V > 0.
+    """Index of the row of a quantity in an array of states, (10, n).
 
-    From row 6 on the array has the slopes of the law while states are computed, then omega and the eigenvalues.
+    From row 6 on the array has the slopes of the law while states are computed, in a frame where V > 0: dQ/dV at fixed
+    omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV.  In :class:`States` the same rows have omega, the real parts of
+    the faster and of the slower eigenvalue, and the imaginary part of the slower one.
     """
 
     V = 0
@@ -58,7 +62,7 @@ class States(NamedTuple):
     load : index of the load of each state, (n,).
     rows : quantities of the states, (10, n), in the order of :class:`Field`, with omega and the eigenvalues from row 6
         on; V, Q, M and omega have the signs of the motion.  delta and omega are NaN where the friction does not
-        suffice.
+        suffice; Q is what the balance needs there, and the other rows mean nothing.
     """
 
     load: Integers
@@ -73,7 +77,7 @@ class States(NamedTuple):
         sign : sign of V, 1.0 or -1.0, (n,).
         answers : rows of :class:`Field` with the slopes of the law from row 6 on, (10, n), in a frame where V > 0; not
             changed.
-        Returns the :class:`States`.
+        Returns the :class:`States`, (n,); omega is NaN where delta is.
         """
         rows = answers.copy()
         rows[[Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] *= sign
@@ -85,13 +89,15 @@ class States(NamedTuple):
     def at_rest(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
         """Return the states of V = omega = 0, the limit of slow rolling.
 
-        The contact is that of Carter; a disturbance decays as V' = -rate V, with omega in proportion to V.
+        The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its creepage of free
+        rolling are used.  A disturbance decays as V' = -rate V, with omega in proportion to V.
 
-        loads : the loads, dimensionless.
+        loads : the loads, dimensionless: Q balances the torque, or where V and the force were given the force.
         load : index of the load of each state, (n,).
-        law : rows of the material.
-        Returns the :class:`States`, (n,): the eigenvalue of slip is -inf, the slow one is that of the less stable
-        direction; delta and omega are NaN where the friction does not suffice.
+        law : table of the material.
+        Returns the :class:`States`, (n,), with V = omega = M = 0: the eigenvalue of slip is -inf, the slow one is that
+        of the less stable direction, 0 for elastic bodies without gains; delta and omega are NaN where the friction
+        does not suffice, |Q| >= mu.
         """
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
@@ -120,7 +126,9 @@ class States(NamedTuple):
         return cls(np.concatenate([each.load for each in parts]), np.concatenate([each.rows for each in parts], axis=1))
 
     def existing(self) -> States:
-        """States for which the friction suffices, sorted by load and rising |V|."""
+        """Return the states for which the friction suffices (omega is finite), sorted by load, then by rising |V|; of
+        equal |V| in their order.
+        """
         chosen = np.isfinite(self.rows[Field.OMEGA]).nonzero()[0]
         chosen = chosen[np.lexsort((np.abs(self.rows[Field.V, chosen]), self.load[chosen]))]
         return States(self.load[chosen], self.rows[:, chosen])
@@ -129,12 +137,13 @@ class States(NamedTuple):
 def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
-    slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n), dimensionless.
+    slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n), dimensionless, finite.
     gains : gains of force and torque on V and omega.
     j : moments of inertia divided by m R^2, (n,).
     Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower one, imaginary part
-    of the slower (>= 0; the faster has its negative).  The determinant is b (M'(V) - gain)/j without a gain on omega,
-    where b = dQ/domega; it is computed without the cancellation of the large slopes of Q.
+    of the slower (>= 0; the faster has its negative).  Of a complex pair both real parts are equal, of real eigenvalues
+    the imaginary part is 0.  The determinant is b (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is
+    computed without the cancellation of the large slopes of Q.
     """
     a, b, d_half_space, d_cylinder = slopes
     with np.errstate(invalid="ignore"):
@@ -156,23 +165,23 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
 def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
     """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
 
-    law : rows of the material.
+    law : table of the material.
     kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V : speeds, (n,), dimensionless.
-    delta : creepage, a number or (n,).
-    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; slopes in V are at fixed delta.
+    V : speeds, > 0, (n,), dimensionless.
+    delta : creepage, any sign, a number or (n,).
+    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1, ``dQ_dV`` is at fixed delta.
     Returns the fields, (names, n), dimensionless.
     """
     return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
 
 def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
-    """Return delta_0 at V > 0, the creepage at which Q = 0; 0.0 of half-spaces.
+    """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
 
-    law : rows of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction.
-    V : speeds, (n,).
-    Returns the creepage, (n,), dimensionless.
+    law : table of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V : speeds, > 0, (n,).
+    Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0 of half-spaces.
     """
     return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
 
@@ -180,10 +189,11 @@ def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
 def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
     """Return the law at V > 0 and a creepage, as the rows from which :meth:`States.of` makes states.
 
-    law : rows of the material.
+    law : table of the material.
     kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V, delta : speeds and creepages, (n,), dimensionless.
-    Returns rows of :class:`Field` with slopes, (10, n); row 6 is dQ/dV at fixed omega.
+    V, delta : speeds, > 0, and creepages, (n,), dimensionless.
+    Returns rows of :class:`Field` with slopes, (10, n); row 6 is dQ/dV at fixed omega.  In full slip Q is mu or -mu,
+    and beta and the slopes of Q are 0.
     """
     rows = np.empty((2 + len(_ROWS), V.size))
     rows[Field.V], rows[Field.DELTA], rows[2:] = V, delta, contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
@@ -194,11 +204,12 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
 def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
     """Find the speeds at which kappa (M - gain V) equals a given total, in both directions of motion.
 
-    law : rows of the material.
-    gain : slope of the load in V, dimensionless.
+    law : table of the material.
+    gain : slope of the load in V, dimensionless; 0 for a load that does not depend on V.
     total : kappa (force + torque), dimensionless, any sign, (n,).
-    Returns (index of the load; sign of V, 1.0 or -1.0; kappa |V|), one entry for each crossing, (crossings,) each; a
-    load has none to many.
+    Returns (index of the load; sign of V, 1.0 or -1.0; kappa |V|, > 0), one entry for each crossing, (crossings,) each;
+    first those with V > 0, then those with V < 0, of every branch.  A load has none to many; V = 0 is not among them.
+    Raises ParameterError for a gain out of range.
     """
     from ...kernels.rows.load_crossings import crossing_loop
 
@@ -217,13 +228,14 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
-    law : rows of the material.
-    loads : the loads, dimensionless; where one of force and torque is to be found, the other one determines Q.
+    law : table of the material.
+    loads : the loads, dimensionless, without a gain on omega.  Where V was given, that of force and torque which was
+        given too determines Q, and M is that of the law; else V must be such that force + torque equal M.
     load : index of the load of each state, (n,).
     sign : sign of the motion, in whose frame V > 0, 1.0 or -1.0, (n,).
     V : speeds, > 0, dimensionless, (n,).
-    Returns the :class:`States`, (n,), with NaN for delta and omega where |Q| >= mu, so that the friction does not
-    suffice.
+    Returns the :class:`States`, (n,), with the signs of the motion; delta and omega are NaN and beta is 0 where |Q| >=
+    mu, so that the friction does not suffice.
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V

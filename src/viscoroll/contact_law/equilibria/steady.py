@@ -32,37 +32,47 @@ def steady(
     slope: Numbers | None = None,
     V: Numbers | None = None,
 ) -> Steady:
-    """Find steady rolling: every pair of V and omega at which force and torque balance, and whether it is stable.
+    """Find steady rolling of a cylinder on its base: every pair of V and omega at which force and torque balance.
 
-    Arguments and what rolls broadcast against each other.
+    For each equilibrium the result says whether it is stable.  The arguments broadcast against each other and against
+    array parameters of the roller.
 
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material, kappa, mu and j are used; or a :class:`Cylinder`, in SI units
         per m of its length: V in m/s, omega in rad/s, force and Q in N/m, torque and M in N m/m, ``eigenvalues`` in
         1/s, powers of ``loss`` in W/m.
-    force : along V, of a Scene divided by P; default 0.  It may be a :class:`Feedback`.
-    torque : along omega, of a Scene divided by P R; default 0.  It may be a :class:`Feedback`.
+    force : along V, of a Scene divided by P; default 0.  It may be a :class:`Feedback` that is constant in time, with
+        numbers for its gains.
+    torque : along omega, of a Scene divided by P R; default 0.  It may be such a :class:`Feedback` too.
     slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta), and P sin(theta) adds to
         ``force``.  Of a Scene kappa becomes kappa/sqrt(cos(theta)), and the divisors of forces and torques have
         P cos(theta) in place of P.
-    V : the speed, in place of one of force and torque, which is found (a slope alone counts as the force given).
+    V : the speed, any sign, in place of one of force and torque, which is found (a slope alone counts as the force
+        given, and the torque is found); of a Scene divided by R/T_ref, where T_ref is its unit of time.
 
     Returns
     -------
     Steady
-        Of one load exactly its equilibria by rising |V|, none to many.  Of arrays of loads a last axis in
-        addition, padded with NaN, and their ``count``; arrays of xarray and series of pandas give their labels
-        (series: data frames, a column an equilibrium).  ``reason`` says why there is none.
+        Of one load ``V``, ``omega``, ``delta``, ``Q``, ``M``, ``stable`` and the other fields as arrays of exactly its
+        equilibria by rising |V|, none to many.  Arrays of loads have that axis behind their own, padded with NaN
+        (``stable``: False), and the ``count`` of equilibria for each load; arrays of xarray and series of pandas give
+        their labels (series: data frames, a column an equilibrium).  ``reason`` says why there is none.
 
     Raises
     ------
     ParameterError
         NaN or infinite input, a slope out of range, V together with both or neither of force and torque or
-        with a feedback, an array of alphas, shapes that do not broadcast, kappa |force + torque| in (0, 1e-120) or
-        above 1e80.
-    ConvergenceError
-        If an iteration reaches its limit.
+        with a feedback, an array of alphas or materials, a layer beside a body that relaxes too, shapes that do not
+        broadcast, kappa |V| above 1e100; without a gain on omega also kappa |force + torque| in (0, 1e-120) or above
+        1e80; a gain on V, divided by the longest retardation time, of a size outside 1e-40 to 1e8; a feedback that
+        changes with time or has arrays of gains.
+
+    Warns
+    -----
+    ModelWarning
+        Of a Cylinder: its contact at rest is longer than its radius, or the transit frequency at an equilibrium is
+        outside the band in which its material was measured.
 
     Examples
     --------
@@ -74,10 +84,10 @@ def steady(
     Notes
     -----
     For |force + torque| below the largest M(V) there are two equilibria for each maximum of M(V), on its rising and
-    its falling branch; they need |Q| < mu.  For force + torque = 0 there is V = 0 alone, where ``delta`` and
-    ``eigenvalues`` are those of V -> 0 (that of slip is -inf).  Where equilibria are a continuum (elastic bodies
-    without a drive; Q = mu exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan
-    of V, some 0.02 s a load.
+    its falling branch; they need |Q| < mu.  For force + torque = 0 without feedback there is V = 0 alone, where
+    ``delta`` and ``eigenvalues`` are those of V -> 0 (that of slip is -inf).  Where equilibria are a continuum (elastic
+    bodies without a drive; Q = mu exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a
+    scan of V, some 0.02 s a load.
 
     Stability is that of (V, omega) under force and torque as named, also where V was given.  Without feedback
     det = (dQ/domega) M'(V)/j, so that equilibria on a falling branch of M(V) are saddles.
@@ -120,11 +130,12 @@ def steady(
 
 
 def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
-    """Return the indices of the loads under which the cylinder can be at rest, V = omega = 0, (m,).
+    """Return the indices of the loads under which the cylinder is examined at rest, V = omega = 0, (m,).
 
-    loads : the loads, dimensionless: those with V = 0 given, or else with force + torque = 0.
-    neutral : whether every speed is steady without a load, as of elastic bodies; rest then counts only where |torque|
-        exceeds mu, so that the friction does not suffice, which the result has to say.
+    loads : the loads, dimensionless.  Chosen are those with V = 0 where V was given, else those with force + torque = 0
+        at rest, whether or not the friction suffices.
+    neutral : whether every speed is steady without a load, as of elastic bodies; without a given V rest is then chosen
+        only where |torque| exceeds mu, so that the friction does not suffice, which the result has to say.
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
@@ -135,9 +146,10 @@ def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
 def _states_under_load(law: LawTable, loads: Loads) -> States:
     """Find all states of rolling under loads without a gain on omega; rest is not among them.
 
-    law : rows of the material.
-    loads : the loads, dimensionless.
-    Returns the :class:`States`, unsorted; none for elastic bodies without a gain on V.
+    law : table of the material.
+    loads : the loads, dimensionless; V is not given.
+    Returns the :class:`States`, unsorted, whether or not the friction suffices; none for elastic bodies without a gain
+    on V, and none where force + torque equal M at no speed.
     Raises ParameterError for kappa |force + torque| other than 0 that is below :data:`LEAST_LOAD` or above
     :data:`MOST_LOAD`, and for a gain out of range.
     """
