@@ -4,6 +4,8 @@ N acts as an added mass.  Divided by the mass it is the unsteadiness g |N(V)| wi
 relative error of V in a motion where it was no larger before (docs/validity.md).
 Free rolling depends on u = kappa V, on g and on the material:
 u' = -g kappa M(u); the distance is the integral of u du/(g kappa M), in units of l0.
+
+The own time of a material is a unit of time in which its slow time is near 1; u and g are in that unit.
 """
 
 from __future__ import annotations
@@ -47,7 +49,7 @@ class ContactLengths(NamedTuple):
 
     @classmethod
     def of(cls, lam: Any, epsilon: Any, kappa: Any) -> ContactLengths:
-        """Return the lengths of contacts of given lam, epsilon and kappa."""
+        """Return the lengths of contacts of given lam, epsilon and kappa = R/l0, numbers or arrays that broadcast."""
         return cls(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
 
 
@@ -59,10 +61,11 @@ class Reach(NamedTuple):
     Attributes
     ----------
     speed : speed at which the part ends; 0: it lasts to rest.  Where the unsteadiness is above the level already at V,
-        the next higher speed from which on it is below; infinite if there is none.
-    time, distance : time and distance from V to there; an infinite time: to rest.  0 where the unsteadiness is above
-        the level at V.
-    left : distance from there to rest.
+        the next higher speed above which it is below the level; infinite if there is none.
+    time, distance : time and distance from V to there; where the part lasts to rest the time is infinite, and of
+        elastic bodies, which never stop, the distance too.  0 where the unsteadiness is above the level at V.
+    left : distance from the end of the part to rest: 0 where it lasts to rest and for elastic bodies; where the
+        unsteadiness is above the level at V, the distance from V to rest.
     """
 
     speed: Any
@@ -78,11 +81,12 @@ class Reach(NamedTuple):
 
 
 class Start(NamedTuple):
-    """Losses of a start at V after a long standstill, compared with a start from steady contact.
+    """Losses of a start at V after a standstill, compared with a start from steady contact, in the units of the caller.
 
     Attributes
     ----------
-    speed, distance : lost speed and lost distance; all of V where the cylinder stays in its indentation.
+    speed : lost speed, in [0, |V|]: |V| where the cylinder stays in its indentation, 0 for elastic bodies and V = 0.
+    distance : lost part of the distance to rest; the whole where the cylinder stays in its indentation.
     """
 
     speed: Any
@@ -123,10 +127,10 @@ class FreeRolling:
     def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
         """Return the states of a scene at given speeds.
 
-        scene: dimensionless parameters, numbers or arrays, with one or several materials.
+        scene: dimensionless parameters, numbers or arrays, with one or several materials or alphas, no cover.
         V: speeds, dimensionless, any sign and shape; broadcasts with the scene.
-        Returns the states in the broadcast shape, with results divided by R/T_ref, T_ref and R.  Without gamma only
-        their contact lengths are known.
+        Returns the states in the broadcast shape, with results divided by R/T_ref, T_ref and R.  Without gamma g is
+        NaN, and only their contact lengths are known.
         Raises ParameterError for a cover, whose N is not known.
         """
         refuse_cover(scene, "free rolling is not examined, since N is not available")
@@ -150,14 +154,14 @@ class FreeRolling:
         return cls(materials, index, u, g, 1.0 / (scene.kappa * unit), unit, 1.0 / scene.kappa)
 
     def scaled(self, scale: Scale) -> FreeRolling:
-        """Return the same states with the units of a cylinder's scale."""
+        """Return the same states with results in m/s, s and m for a ``scale`` of a cylinder; itself for a scene's."""
         if not scale.si:
             return self
         speed, time, length = self.speed * scale["V"], self.time * scale["t"], self.length * scale["x"]
         return replace(self, speed=speed, time=time, length=length, units=("m/s", "s", "m"))
 
     def take(self, index: tuple[Any, ...]) -> FreeRolling:
-        """Return the states at an index of numpy into u."""
+        """Return the states at an ``index`` of numpy into u: a tuple of integers, one for each axis, or of arrays."""
         arrays = ("index", "u", "g", "speed", "time", "length")
         return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays})
 
@@ -177,7 +181,11 @@ class FreeRolling:
                 yield material, order[first:last]
 
     def contact_lengths(self, kappa: Any) -> ContactLengths:
-        """Return the lengths of the contacts of the states; ``kappa`` of the scene, broadcasts with u."""
+        """Return the lengths of the contacts of the states at zero creepage, on which they do not depend.
+
+        kappa: slenderness R/l0 of the scene, broadcasts with u.
+        Returns :class:`ContactLengths`, dimensionless, in the shape of u; numbers if u has no axes.
+        """
         out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
         for material, part in self._groups():
             out[:, part] = pure_rolling_fields(law_table(material), u[part], "lam", "epsilon")
@@ -189,10 +197,12 @@ class FreeRolling:
     ) -> list[Floats]:
         """Evaluate a function of the curve of each material at its states.
 
-        function: takes (curve, u, g, *more) of the states of one material, (n,) each, and returns several arrays (n,).
-        elastic: values of the function for an elastic material, which has no curve; as many as the function returns.
-        more: further arguments, broadcast to u.
-        Returns a list of the arrays in the shape of u; numbers if u has no axes.
+        function: takes (:class:`Curve` of one material, u, g, *more) of its states, (n,) each, and returns a list of
+            arrays (n,).
+        elastic: numbers that an elastic material, which has no curve, has in place of these arrays, one for each.
+        more: further arguments of the function, each broadcast to u.
+        Returns a list of the arrays in the shape of u; numbers if u has no axes.  Overflow gives infinity, and NaN
+        where g is NaN, without warnings.
         """
         out = np.empty((len(elastic), self.u.size))
         arrays = [np.broadcast_to(array, self.u.shape).ravel() for array in (self.u, self.g, *more)]
@@ -206,19 +216,24 @@ class FreeRolling:
 
     @cached_property
     def unsteadiness(self) -> Any:
-        """g |N|, dimensionless, in the shape of u; 0 at rest."""
+        """g |N|, dimensionless, >= 0, in the shape of u; 0 at rest and for elastic bodies, NaN without gamma."""
         return self._evaluate(lambda curve, u, g: [np.where(u > 0.0, g * np.abs(curve.N(u)), 0.0)], [0.0])[0]
 
     def distance(self) -> Any:
-        """Return the distance to rest by the law of steady rolling, in the unit of the caller."""
+        """Return the distance to rest by the law of steady rolling, in the unit of the caller and the shape of u.
+
+        It is 0 at V = 0, and infinite for elastic bodies, also at V = 0.
+        """
         return self._evaluate(lambda curve, u, g: [curve.distance(u) / g], [np.inf])[0] * self.length
 
     def reach(self, level: float) -> Reach:
         """Return the part of free rolling in which the unsteadiness is below a level.
 
         level: of the unsteadiness, which is about the relative error of V by the law of steady rolling; dimensionless,
-        > 0.
-        Returns a :class:`Reach` in the shape of u and the units of the caller.
+            > 0.
+        Returns a :class:`Reach` in the shape of u and the units of the caller.  At rest N(0) decides which of its
+        cases holds, though :attr:`unsteadiness` is 0 there.  Of elastic bodies speed and left are 0, time and distance
+        infinite.
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
@@ -226,8 +241,9 @@ class FreeRolling:
 
             curve: free rolling of the material.
             u: kappa |V| at the start, (n,).
-            g: gamma/(1 + j), (n,).
-            Returns [u at the end, time, distance, distance left to rest], (n,) each.
+            g: gamma/(1 + j), (n,), > 0.
+            Returns [u at the end, time, distance, distance left to rest], (n,) each; where the unsteadiness is above
+            the level at the start, time and distance are 0, and the distance left is that from the start.
             """
             end, below = np.empty(u.size), np.empty(u.size, bool)
             levels, group = np.unique(g, return_inverse=True)
@@ -245,10 +261,11 @@ class FreeRolling:
     def start(self, rested: float = math.inf) -> Start:
         """Return the losses of a start after a standstill, compared with a start from steady contact.
 
-        rested: time of the standstill, in the unit of the caller, a number or an array that broadcasts to u; infinite
-            for a long one.
-        Returns a :class:`Start` in the shape of u and the units of the caller; the lost speed is all of V where the
-        cylinder does not leave its indentation.
+        rested: time of the standstill, >= 0, in the unit of the caller, a number or an array that broadcasts to u;
+            infinite for a long one.
+        Returns a :class:`Start` in the shape of u and the units of the caller; the lost speed is all of |V|, and the
+        lost distance the whole, where the work to leave the indentation exceeds the kinetic energy.  Both are 0 at V =
+        0 and for elastic bodies.
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:

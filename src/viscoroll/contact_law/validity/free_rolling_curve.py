@@ -31,12 +31,19 @@ class Curve:
 
     Dimensionless, in the material's own unit of time, lengths divided by l0.  For another g = gamma/(1 + j) times and
     distances are divided by g.  Below and above the splines the limits of slow and of fast rolling apply.
+
+    Attributes
+    ----------
+    ln_u : points of the splines, ln u, ascending, (points,).
+    modes : strengths J and retardation times T of the creep modes, slowest first, (modes,) each.
+    alpha : instantaneous divided by long-time stiffness, > 1.
     """
 
     def __init__(self, material: float | Prony) -> None:
         """Compute the splines, from 20 octaves below to 20 octaves above the rates of the material.
 
-        material: alpha > 1, or a series in its own time; not elastic.
+        material: alpha > 1, of which the unit of time is T_epsilon; or a :class:`Prony` series in its own time, with
+            one mode at least.
         """
         from scipy.interpolate import CubicSpline
 
@@ -58,27 +65,34 @@ class Curve:
         self._first_distance = u[0] ** 2 / M[0]  # from u[0] to rest, where M is proportional to u
 
     def _locate(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return (ln u, limited to the curve; u divided by the end of the curve that it is beyond, else 1)."""
+        """Return (ln u, limited to the range of the splines; u divided by the end that it is beyond, else 1), each in
+        the shape of u; the second is below 1 for u below the splines, above 1 for u above.
+        """
         inside = np.clip(u, self._low, self._high)
         return np.log(inside), u / inside
 
     def N(self, u: Floats) -> Floats:
-        """Return N at u, any shape; below the curve linear in u, above it proportional to u^-2."""
+        """Return N at u = kappa |V|, any shape, either sign; below the splines linear in u, above proportional to
+        u^-2.
+        """
         ln_u, beyond = self._locate(u)
         return (self._N(ln_u) + self._N_slope * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(beyond, 1.0) ** 2
 
     def M(self, u: Floats) -> Floats:
-        """Return kappa M at u, any shape."""
+        """Return kappa M at u, any shape, >= 0; below the splines proportional to u, above to 1/u; 0 at u = 0."""
         ln_u, beyond = self._locate(u)
         return np.exp(2.0 * ln_u) / self._u2_over_M(ln_u) * np.where(beyond < 1.0, beyond, 1.0 / beyond)
 
     def time(self, u: Floats) -> Floats:
-        """Return the time from u, any shape, to a fixed speed below the curve."""
+        """Return the time from u, any shape, down to the lower end of the splines; 0 at and below that end.
+
+        Only differences count: the time from u to a lower u2 is time(u) - time(u2), and that to rest is infinite.
+        """
         ln_u, beyond = self._locate(u)
         return self._time(ln_u) + 0.5 * self._high / self._M_high * (np.maximum(beyond, 1.0) ** 2 - 1.0)
 
     def distance(self, u: Floats) -> Floats:
-        """Return the distance from u, any shape, to rest, in units of l0."""
+        """Return the distance from u, any shape, to rest, in units of l0; below the splines proportional to u."""
         ln_u, beyond = self._locate(u)
         above = self._high**2 / (3.0 * self._M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
         return (self._first_distance + self._distance(ln_u)) * np.minimum(beyond, 1.0) + above
@@ -89,8 +103,9 @@ class Curve:
         u: kappa |V| at the start, dimensionless, any shape.
         level: level of |N|, > 0.
         Returns (speed; whether |N| is below the level at the start), both in the shape of u.  The speed is the u at
-        which |N| first reaches the level, 0 if never; where |N| is above the level at the start already, the next
-        higher u from which on it is below.
+        which |N| first reaches the level as u falls, 0 if never.  Where |N| is at or above the level at the start
+        already, it is the next higher u just above which |N| is below the level (at still higher u it may exceed the
+        level again); infinite if there is none.
         """
         roots = np.sort(np.concatenate([self._N.solve(value, extrapolate=False) for value in (level, -level)]))
         falls = roots[self._N(roots) * self._N(roots, 1) < 0.0]
@@ -111,10 +126,10 @@ class Curve:
         starts as short as it rolls, and the term is 0.  Between the two the term is taken in proportion to the
         relaxation of the slowest mode; it is below 0.05 for every alpha.
 
-        u: kappa V at the start, (n,).
-        distance: distance travelled until rest, in units of l0, (n,).
-        rested: time of the standstill in the material's own time, (n,).
-        Returns W, dimensionless, (n,).
+        u: kappa |V| at the start, (n,).
+        distance: distance travelled until rest, in units of l0, for the g of the motion, (n,).
+        rested: time of the standstill in the material's own time, >= 0, maybe infinite, (n,).
+        Returns W, dimensionless, >= 0, (n,); 0 at u = 0.
         """
         longest, W = _SHORT * np.maximum(2.0 * distance, _CLIMB), np.zeros(u.shape)
         for J, T in zip(*self.modes, strict=True):
@@ -126,5 +141,7 @@ class Curve:
 
 @lru_cache(maxsize=256)  # as many as the validity of an ensemble examines; 0.1 MB each
 def curve_of(material: float | Prony) -> Curve | None:
-    """Return the curve of a material in its own time; None for an elastic one, which rolls for ever."""
+    """Return the curve of a material in its own time, alpha or a series, which is kept for the next call; None for an
+    elastic one, which rolls for ever.
+    """
     return Curve(material) if total_series(material).alpha > 1.0 else None

@@ -24,16 +24,19 @@ _REST = 1e-300
 class Steadiness(Assumption):
     """Whether the law of steady rolling may drive a motion, and how far; all quantities in the units of the call.
 
-    ``value`` is the unsteadiness gamma |N(V)|/(1 + j), for a motion the largest so far; up to 0.1 is allowed, where the
-    error of V is below some 10 %.  The attributes describe free rolling from each V by the law of steady rolling.
+    ``value`` is the unsteadiness gamma |N(V)|/(1 + j), dimensionless, for a motion the largest so far; up to 0.1 is
+    allowed, where the error of V is below some 10 %.  The attributes describe free rolling from each V by the law of
+    steady rolling, of motions from the fastest speed of each; they have the shape of V, or one value for each motion.
+    Without a gamma, at rest and for a layer of finite thickness the entry ``steady`` of a report is a plain
+    :class:`Assumption` without them.
 
     Attributes
     ----------
     one_percent, ten_percent : the :class:`Reach` within which the error of V is below about 1 % and 10 %.
     start : the losses of a :class:`Start` after a long standstill.
-    whole : the distance to rest.
-    share : part of that distance, or of the distance of a motion, at which the error of V exceeds 10 %; None where it
-        is not known.
+    whole : the distance to rest, infinite for elastic bodies.
+    share : part of that distance, or of the distance of a motion, at which the error of V exceeds 10 %, 0 to 1; NaN for
+        a motion whose x is not known.
 
     Examples
     --------
@@ -50,23 +53,30 @@ class Steadiness(Assumption):
 
     @classmethod
     def of(cls, free: FreeRolling) -> Assumption:
-        """Return the assumption ``steady`` of states from which the cylinder rolls freely."""
+        """Return the assumption ``steady`` of states from which the cylinder rolls freely.
+
+        free: the states, in the units of the call; gamma must be known.
+        Returns a :class:`Steadiness` whose value is the unsteadiness of each state; a plain :class:`Assumption`, which
+        is undecided, if all states (one at least) are at rest.
+        """
         if free.u.size and not free.u.any():
             return Assumption(None, None, "the assumption is not checked at rest: give a speed")
         return cls._create(free.unsteadiness, free)
 
     @classmethod
     def along(cls, free: FreeRolling, rolls: Any, x: Any, *, ends: bool) -> Steadiness:
-        """Return the assumption ``steady`` of motions.
+        """Return the assumption ``steady`` of one motion, or of several.
 
-        free: states at the output times, (times, ...), with the distances and speeds of free rolling from each of
-        them.
-        rolls: mask of the times at which motions are not in full slip, which friction rules; in the shape of u.
+        free: states at the output times, (times,) or (times, motions); each gives the distance and the speeds of free
+            rolling from there.
+        rolls: mask of the times at which motions are not in full slip, in the shape of u.  In full slip friction rules
+            the motion, and the unsteadiness counts as 0.
         x: distances travelled in the unit of the caller, in the shape of u; NaN where they are not known.
-        ends: whether ``value`` is that of each motion as a whole, (...), else the largest so far at each time, (times,
-        ...).
-        Returns the assumption; its ``share``, (...), is the part of each motion's distance with an error of V above 10
-        %.
+        ends: whether ``value`` is that of each motion as a whole, () or (motions,); else, for one motion only, it is
+            the largest so far at each time, (times,).
+        Returns the assumption, whose value is dimensionless; its ``share``, () or (motions,), is the part of each
+        motion's distance with an error of V above 10 %, 0 for a motion that stays where it is, NaN where x is not
+        known.
         """
         free = replace(free, u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0))
         value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
@@ -84,9 +94,11 @@ class Steadiness(Assumption):
     def _create(cls, value: Any, free: FreeRolling, motion_share: Any = None) -> Steadiness:
         """Return the assumption with its sentence, which describes the state of the largest unsteadiness.
 
-        value: unsteadiness, dimensionless, any shape; of motions (motions,), or (times, motions).
-        free: the states in the shape of ``value``, of motions the fastest one of each.
-        motion_share: the share of motions, one for each; None for single states.
+        value: unsteadiness, dimensionless, any shape; of several motions (motions,), of one () or (times,).
+        free: the states in the shape of ``value``; of motions the fastest one of each, (motions,) or ().
+        motion_share: the share of motions, (motions,) or (), maybe NaN; None for single states.
+        Returns the assumption, which holds, in the shape of ``value``, where that is at most 0.1; of an empty value the
+        sentence says that there is no motion.
         """
         sentence = "there is no motion"
         if np.size(value):
@@ -102,29 +114,31 @@ class Steadiness(Assumption):
 
     @cached_property
     def one_percent(self) -> Reach:
-        """Part of free rolling with an error of V below 1 %."""
+        """Part of free rolling with an error of V below 1 %, a :class:`Reach` (unsteadiness up to 0.01)."""
         return self.free.reach(0.1 * STEADY_LIMIT)
 
     @cached_property
     def ten_percent(self) -> Reach:
-        """Part of free rolling with an error of V below 10 %."""
+        """Part of free rolling with an error of V below 10 %, a :class:`Reach` (unsteadiness up to 0.1)."""
         return self.free.reach(STEADY_LIMIT)
 
     @cached_property
     def start(self) -> Start:
-        """Losses of a start after a long standstill."""
+        """Losses of a start after a long standstill, a :class:`Start`."""
         return self.free.start()
 
     @cached_property
     def whole(self) -> Any:
-        """Distance to rest."""
+        """Distance to rest by the law of steady rolling; infinite for elastic bodies, also at V = 0."""
         return self.free.distance()
 
     @cached_property
     def share(self) -> Any:
-        """Part of the distance at which the error of V exceeds 10 %, 0 to 1, in the shape of the states: of the
-        distance to rest in free rolling, or of the distance of a motion, then one for each motion and NaN where x
-        is not known.
+        """Part of a distance on which the error of V exceeds 10 %, dimensionless, 0 to 1.
+
+        Of motions it is the part of the distance of each motion, one value for each, NaN where x is not known.  Else it
+        is the part of the distance to rest in free rolling, in the shape of the states: 1 where V is too slow at the
+        start already, 0 at rest and for elastic bodies.
         """
         if self.motion_share is not None:
             return self.motion_share
@@ -135,7 +149,9 @@ class Steadiness(Assumption):
 def _describe_free(free: FreeRolling) -> str:
     """Return sentences on free rolling from one state: distance, speeds at which errors are reached, loss of a start.
 
-    free: a single state (u without axes), whose units the sentences use.
+    free: a single state (u without axes), whose units the sentences use; dimensionless without names of units.
+    Returns a str without a full stop.  Where the unsteadiness is above 0.1 it states alone from which speed on it is
+    not; for an elastic cylinder alone that it never stops.
     """
     speed, time, length = (f" {unit}".rstrip() for unit in free.units)
     value, most, whole = float(free.unsteadiness), free.reach(STEADY_LIMIT), free.distance()
@@ -165,8 +181,10 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     """Return sentences on the error of a motion, or of the worst of several.
 
     free: fastest state of the motion, u without axes.
-    most: largest unsteadiness of the motion, dimensionless.
-    share: fraction of its distance with an error above 10 %, of several motions the mean; NaN where it is not known.
+    most: largest unsteadiness of the motion, dimensionless; up to 0.1 the speed and the share are not stated.
+    share: fraction of its distance with an error above 10 %, of several motions the mean; NaN where it is not known,
+        which the sentence then leaves out.
+    Returns a str without a full stop.
     """
     text = f"unsteadiness up to {most:.2g} (up to {STEADY_LIMIT} is allowed): "
     text += "the error of V is below 10 % "
