@@ -45,8 +45,9 @@ class Assumption(NamedTuple):
 
     Attributes
     ----------
-    holds : whether it holds, in the shape of V; None where no number here can decide.
-    value : the number that decides, in the shape of V; None likewise.
+    holds : whether it holds, a bool or an array in the shape of V; None where no number here can decide.
+    value : the number that decides, in the shape of V, of an assumption about the bodies alone a single number; None
+        likewise.
     sentence : the largest value, the allowed one, and what to do, in words.
     """
 
@@ -64,7 +65,10 @@ class Assumption(NamedTuple):
 
 
 class Validity(NamedTuple):
-    """All assumptions of the model, each with its value and whether it holds.
+    """All assumptions of the model, each an :class:`Assumption` with its value and whether it holds.
+
+    Values are dimensionless unless a unit is named, and in the shape of V (and omega); where the data that an entry
+    needs are missing, ``holds`` and ``value`` are None.
 
     Attributes
     ----------
@@ -150,22 +154,23 @@ UNKNOWN_CREEP = Assumption(
 
 
 def transit_frequency(V: Any, length: Any) -> Any:
-    """Return the rate at which a point passes the contact, |V| divided by the contact length.
+    """Return the transit frequency, the rate at which a point passes the contact: |V| divided by the contact length.
 
     The law is valid where the material is known at angular frequencies of this size.  Near the leading edge every
     contact has higher rates: modes faster than the transit frequency act there.
 
-    V: speed of the axis, any unit, any shape.
-    length: contact length in the unit of length of V; broadcasts with V.
-    Returns the rate in the unit of time of V, 1/s for SI units.
+    V: speed of the axis, any sign, any unit, any shape.
+    length: contact length, > 0, in the unit of length of V; broadcasts with V.
+    Returns the rate, >= 0, in the broadcast shape, in the inverse of the unit of time of V: 1/s for SI units.
     """
     return np.abs(V) / length
 
 
 def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
-    """Return kappa V at which the transit frequency has two given values (Eq. (6)), for half-spaces.
+    """Return kappa V at which the transit frequency has two given values, for half-spaces.
 
-    series: Prony series of the material, of both bodies together.
+    It follows from the transit time 2 zeta by Eq. (6) of the paper, without a root.
+    series: :class:`Prony` series of the material, of both bodies together; it may be elastic.
     low, high: the two transit frequencies, multiplied by T_ref of the series, dimensionless, > 0.
     Returns (kappa V at ``low``, kappa V at ``high``), dimensionless.
     """
@@ -176,7 +181,7 @@ def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float
 
 
 def _largest(values: Any) -> float:
-    """Return the largest of ``values``, any shape; 0 of none."""
+    """Return the largest of ``values``, any shape, as a float; 0.0 if there are none, or all are negative."""
     return float(np.max(values, initial=0.0))
 
 
@@ -184,7 +189,7 @@ def assess_small_contact(reach: Any) -> Assumption:
     """Compare the far end of the contact with :data:`REACH_LIMIT`.
 
     reach: distance from the axis to the far end of the contact divided by R, any shape.
-    Returns the assumption ``small_contact``.
+    Returns the assumption ``small_contact``, whose value is ``reach``; it holds where that is at most 0.2.
     """
     far = _largest(reach)
     return Assumption(
@@ -199,7 +204,7 @@ def assess_position(epsilon: Any) -> Assumption:
     """State whether the axis is above the contact, which the theory does not require.
 
     epsilon: shift of the contact towards the leading edge in half contact lengths, any shape.
-    Returns the assumption ``under_axis``.
+    Returns the assumption ``under_axis``, whose value is ``epsilon``; it holds where that is at most 1.
     """
     ahead = _largest(epsilon)
     where = (
@@ -211,9 +216,10 @@ def assess_position(epsilon: Any) -> Assumption:
 def assess_creep(delta: Any, full_slip: Any) -> Assumption:
     """Compare the creepage in full slip with :data:`CREEP_LIMIT`.
 
-    delta: creepage, dimensionless, any sign and shape.
+    delta: creepage, dimensionless, any sign and shape, infinite for a cylinder that spins at V = 0.
     full_slip: whether the contact slips fully; broadcasts with delta.
-    Returns the assumption ``creep``, whose value is |delta|; it holds in partial slip at any creepage.
+    Returns the assumption ``creep``, whose value is |delta| in the broadcast shape; it holds in partial slip at any
+    creepage, and in full slip where |delta| is at most 0.3.
     """
     size, full_slip = np.broadcast_arrays(np.abs(delta), full_slip)
     most = float(np.max(size, initial=0.0, where=full_slip))
@@ -227,11 +233,12 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
 
 
 def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
-    """Compare the speed with the shear wave speed.
+    """Compare the speed with the shear wave speed: far below it the inertia of the deforming bodies is negligible.
 
     wave_ratio: speed divided by the shear wave speed, >= 0, any shape; None where no density is known.
-    unknown: names of the bodies without a density, for the sentence.
-    Returns the assumption ``quasistatic``, whose value is the ratio; undecided for None.
+    unknown: names of the bodies without a density, for the sentence; not used for None.
+    Returns the assumption ``quasistatic``, whose value is the ratio; it holds where that is at most 0.2, and is
+    undecided for None.
     """
     if wave_ratio is None:
         return UNKNOWN.quasistatic
@@ -247,8 +254,9 @@ def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
     """Compare Dundurs' constant of two bodies with :data:`DUNDURS_LIMIT`.
 
     long, instant: the constant by the long-time and by the instantaneous moduli, dimensionless, any sign.
-    like: whether the bodies are alike, so that the constant is 0 at all times.
-    Returns the assumption ``bodies``; its value is that of the two constants which is larger in size.
+    like: whether the bodies are alike, so that the constant is 0 at all times; the numbers are not used then.
+    Returns the assumption ``bodies``; its value is that of the two constants which is larger in size, with its sign, a
+    float, 0.0 for like bodies; it holds, a bool, where its size is at most 0.05.
     """
     worst = max(long, instant, key=abs)
     if like:
@@ -266,12 +274,12 @@ def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
 def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Assumption:
     """Compare the transit frequency with the frequencies at which each body was measured.
 
-    frequency: transit frequency, 1/s, any shape.
-    records: name of a body -> the band of angular frequencies, rad/s, at which it was measured, and the misfit of the
-        fit; for the bodies that have data.
+    frequency: transit frequency, 1/s, >= 0, any shape.
+    records: name of a body -> :class:`Measured`, the band of angular frequencies, rad/s, at which it was measured, and
+        the misfit of the fit; for the bodies that have data.
     Returns the assumption ``measured``, whose value is the frequency.  It holds, in that shape, where the frequency
-    lies in the band of every body, and every fit meets its data to :data:`MISFIT_LIMIT`; without records it is
-    undecided.
+    lies in the band of every body, ends included, and every fit meets its data to :data:`MISFIT_LIMIT`; at V = 0 it
+    does not hold, though M = 0 there.  Without records it is undecided.
     """
     if not records:
         return UNKNOWN.measured

@@ -31,7 +31,9 @@ _COUPLED = (0.13, 0.08, 0.03, 0.006)
 def stated_error(thickness: float) -> float:
     """Return the largest error of Q divided by mu P, compared with the exact solution without coupling.
 
-    thickness: of the layer, divided by l0.
+    thickness: thickness of the layer divided by l0, > 0.
+    Returns the error, dimensionless, interpolated between the thicknesses 0.2 to 5 at which it was measured; the value
+    of the nearest end outside of them.
     """
     return float(np.interp(thickness, _THICKNESS, _ERROR))
 
@@ -39,10 +41,12 @@ def stated_error(thickness: float) -> float:
 def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]:
     """Return the lengths of the contact on a cover, and the assumption ``thick``.
 
-    scene: dimensionless parameters of a roller with a cover.
+    scene: dimensionless parameters of a roller with a cover, or with an array of covers.
     V: speeds, dimensionless, any sign and shape; broadcasts with the scene.
-    Returns (contact lengths; the assumption, whose value is half the contact length divided by the thickness; it holds
-    where one stick zone in front with slip behind is right at every creepage).  Both have the broadcast shape.
+    Returns (:class:`ContactLengths`; the assumption, whose value is half the contact length divided by the thickness;
+    it holds where that is at most the limit for Poisson's ratio of the layer, from 3 at nu = 0 to 1.25 at nu = 1/2, up
+    to which one stick zone in front with slip behind is right at every creepage).  Both have the broadcast shape.  The
+    sentence states the errors of the thinnest cover, and the limit for the cover whose limit is lowest.
     """
     cover = scene.cover
     assert cover is not None

@@ -41,8 +41,9 @@ _OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
 class WaveRatio(NamedTuple):
     """A speed compared with the slowest shear wave.
 
-    ratio : speed divided by the shear wave speed, in the shape of the speed; None where no density is known.
-    unknown : names of the bodies whose density is not known.
+    ratio : speed divided by the shear wave speed, >= 0, in the shape to which speed and moduli broadcast; None where no
+        density is known.
+    unknown : names of the bodies whose density is not known, as "the cylinder"; without rigid bodies.
     """
 
     ratio: Any
@@ -55,8 +56,8 @@ class BodyData:
 
     Attributes
     ----------
-    pair : both bodies; None where both are of the paper's material.
-    G : shear modulus of the paper's material, Pa; None with a pair.
+    pair : both bodies; None where both are of the paper's material, one of a single relaxation time.
+    G : long-time shear modulus of the paper's material, Pa, a number or (n,); None with a pair.
     R, l0 : radius and contact length at rest, m, numbers or (n,).
     T_ref : unit of time of the scene, s.
     plane : "strain" or "stress".
@@ -75,8 +76,8 @@ class BodyData:
     def records(self) -> dict[str, Measured]:
         """Return what was measured of each different body whose share of the compliance counts.
 
-        Returns a dict from "the material" (of like bodies), or "the cylinder" and "the base", to the record; without
-        bodies that have no record or a share below :data:`_LEAST_SHARE`, and empty without a pair.
+        Returns a dict from "the material" (of like bodies), or "the cylinder" and "the base", to its :class:`Measured`;
+        without bodies that have no record or a share of the compliance below 0.01, and empty without a pair.
         """
         pair = self.pair
         bodies: dict[str, tuple[Material, float]] = {}
@@ -94,7 +95,9 @@ class BodyData:
     def measured_rates(self) -> tuple[float, float] | None:
         """Return (lowest, highest) |V|/l0, 1/s, at which the transit frequency is in the measured bands of all bodies.
 
-        None where nothing was measured.  Bands that do not overlap give a lowest rate above the highest.
+        |V|/l0 is used because it does not depend on load and radius for half-spaces.  For a cover the ends have an
+        error below 1 %.  None where nothing was measured, and for an array of materials.  Bands that do not overlap
+        give a lowest rate above the highest.
         """
         records, series = self.records.values(), self.scene.series
         if not records or series is None:
@@ -111,9 +114,10 @@ class BodyData:
 
     @cached_property
     def measured_speeds(self) -> tuple[float, float] | None:
-        """Return the lowest and the highest |V|, m/s, at which every cylinder is inside the data; None without data.
+        """Return (lowest, highest) |V|, m/s, at which the transit frequency of every cylinder is in the measured band.
 
-        :data:`NO_SPEEDS` for a fit that misses its data.
+        None without data.  No speed is between them (the lowest is above the highest) where the bands have no speed in
+        common; :data:`NO_SPEEDS` for a fit that misses its data by more than 5 %.
         """
         if self.measured_rates is None:
             return None
@@ -123,12 +127,16 @@ class BodyData:
 
     @cached_property
     def small_at_rest(self) -> bool:
-        """Whether no contact at rest is longer than the radius."""
+        """Whether no contact at rest is longer than the radius: whether every kappa is at least 1."""
         return float(np.min(self.scene.kappa, initial=math.inf)) >= LEAST_KAPPA
 
     @cached_property
     def covered_speeds(self) -> tuple[float, float] | None:
-        """(Lowest, highest) |V|, m/s, without a warning of contacts; None where no speed gives one."""
+        """Return (lowest, highest) |V|, m/s, between which contacts do not warn; None where no speed gives a warning.
+
+        :data:`NO_SPEEDS` (or a lowest speed above the highest) where every speed gives one, as of a contact at rest
+        that is longer than the radius.
+        """
         bands = [band for band in (self.measured_speeds, None if self.small_at_rest else NO_SPEEDS) if band is not None]
         return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
 
@@ -139,10 +147,10 @@ class BodyData:
         return None if slowness is None else 1.0 / float(np.max(slowness))
 
     def relative_length(self, rate: Any) -> Any:
-        """Return the contact length divided by l0, for one material.
+        """Return the contact length divided by l0, for bodies of one material or pair, or one cover.
 
-        rate: |V|/l0, 1/s, any shape.
-        Returns lam, dimensionless, in one dimension at least.
+        rate: |V|/l0, 1/s, >= 0, a number or (n,).
+        Returns lam, dimensionless, (n,); (1,) for a number.
         """
         material, unit = self.scene.in_own_time()
         (lam,) = pure_rolling_fields(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
@@ -153,8 +161,9 @@ class BodyData:
 
         speed: the speed, m/s, >= 0, any shape that broadcasts with G.
         density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
-        Returns a :class:`WaveRatio`: the largest ratio of the bodies whose density is known, None if there is none,
-        and the names of the other bodies, without rigid ones.
+        Returns a :class:`WaveRatio`: the largest ratio of the bodies whose density is known, in the broadcast shape (0
+        for a rigid one and at speed 0), None if there is none, and the names of the other bodies, without rigid ones.
+        Like bodies of one material count as one, "the material".
         """
         bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, density)]
         if self.pair is not None:
@@ -174,10 +183,12 @@ class BodyData:
 
         report: report of the dimensionless scene; it is not changed.
         lam: contact length divided by l0, dimensionless, in the shape of the state.
-        V, omega: speeds, m/s and rad/s, any sign, arrays that broadcast with lam; omega may be None.
+        V, omega: speeds, m/s and rad/s, any sign, arrays that broadcast with lam; omega may be None.  Compared with the
+            waves is the larger of |V| and |omega| R, without omega |V|.
         density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
-        Returns a copy of the report with ``quasistatic``, ``bodies``, ``measured`` and ``plane``.
-        Raises ParameterError for a density that is not one number > 0.
+        Returns a copy of the report with ``quasistatic`` (undecided without any density), ``bodies``, ``measured``
+        (undecided without a measured material) and ``plane``, which states the plane and is always undecided.
+        Raises ParameterError for a density that is not one finite number > 0.
         """
         if density is not None:
             density = check_number("density", density, unit=SI, above=0.0)
@@ -197,16 +208,18 @@ class BodyData:
 
 
 def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
-    """Return whether speeds leave a band of |V|; speeds of 0 are allowed, since M = 0 there.
+    """Return whether a range of speeds leaves a band of |V|; a speed of 0 is allowed, since M = 0 there.
 
-    extent: (smallest, largest) of the speeds, signed.
-    band: (lowest, highest) |V|, in the same unit.
+    extent: (smallest, largest) of the speeds, signed.  A range that contains 0 or both signs leaves a band at its upper
+        end alone, because its small speeds are not known.
+    band: (lowest, highest) |V|, in the same unit; a range without 0 leaves every band whose lowest is above its
+        highest.
     """
     slowest, fastest = max(extent[0], -extent[1], 0.0), max(extent[1], -extent[0])
     return fastest > band[1] or 0.0 < slowest < band[0]
 
 
 def extent_of(values: Any) -> tuple[float, float]:
-    """Return (smallest, largest) of an array of any shape, without its NaN; (0, 0) if nothing is left."""
+    """Return (smallest, largest) of numbers of any shape, without NaN, as floats; (0.0, 0.0) if nothing is left."""
     ends = (end.reduce(values, axis=None, initial=np.nan) for end in (np.fmin, np.fmax))
     return tuple(0.0 if np.isnan(end) else float(end) for end in ends)  # type: ignore[return-value]

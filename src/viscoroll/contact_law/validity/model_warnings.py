@@ -56,7 +56,7 @@ _warned_records: set[Measured] = set()
 
 
 def _warn(text: str) -> None:
-    """Give a ModelWarning at the caller's line outside the package, except in workers.
+    """Give a :class:`ModelWarning` at the caller's line outside the package; in worker processes do nothing.
 
     text: the message.
     """
@@ -67,22 +67,26 @@ def _warn(text: str) -> None:
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
     """Give one warning of several faults; none for an empty list.
 
-    faults: sentences without numbers.
+    faults: sentences without numbers, without a full stop.
     subject: "motion" or "contact".
-    report: the call that reports each assumption.
+    report: the call that reports each assumption, as "validity(V).small_contact", for the message.
     """
     if faults:
         _warn(f"the model does not hold for this {subject}: {'; '.join(faults)}.  {report} reports each assumption")
 
 
 def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None = None, *, motion: bool = False) -> None:
-    """Warn of contacts longer than the radius, and of those outside the measured band of a material.
+    """Warn of contacts at rest longer than the radius, and of transit frequencies outside the measured band.
 
-    Only the extreme speeds are examined; rest is passed over, since M = 0 there.
+    These are at most two warnings, of :func:`_warn_of_faults` and :func:`_warn_of_band`.  Only the extreme speeds are
+    examined; rest is passed over, since M = 0 there, and speeds on both sides of 0 are compared with the upper end of
+    the band alone.
     roller: scene or cylinder; a scene has no data to compare with, and never warns.
-    V: speeds, m/s, any sign and shape, NaN where they are not known; None for prescribed ones that are not known.
+    V: speeds, m/s, any sign and shape, NaN where they are not known; None, for prescribed ones that are not known,
+        gives no warning.
     extent: (smallest, largest) of the speeds, m/s, signed, where the caller knows them; None: they are found.
-    motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined.
+    motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined, so that the length at
+        rest gives no warning here.
     """
     data = roller.body_data
     if data is None or data.covered_speeds is None or V is None:
@@ -99,9 +103,11 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
 def _warn_of_band(data: BodyData, V: Any) -> None:
     """Warn of transit frequencies outside the measured band, once for each material in a process; workers do not warn.
 
+    The warning may still be left out: each speed is compared with the band of its own cylinder, while the caller
+    compares the extremes of all of them.  A fit that misses its data gives it at every speed.
     data: data of the bodies of a cylinder, of which at least one was measured.
     V: speeds, m/s, any sign; a number, or (n, ...) where ``data`` has n cylinders.
-    The materials are then entered into :data:`_warned_records`.
+    With a warning the measurements of the bodies are entered into :data:`_warned_records`.
     """
     records = data.records.values()
     if is_worker() or _warned_records.issuperset(records):
@@ -123,11 +129,12 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
 
 def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
     """Warn of motions of a run that start outside the measured band of a material, once for each material in a
-    process.
+    process; workers do not warn.
 
     share: fraction of all motions that start outside, 0 to 1; 0 gives no warning.
-    records: what was measured of the bodies; contacts do not warn of them again.
-    Returns whether a warning was given.
+    records: what was measured of the bodies, :class:`Measured` each; contacts do not warn of them again.  If all of
+        them have given a warning before, also if there are none, there is no warning.
+    Returns whether a warning was given, a bool.
     """
     data = list(records)
     if share <= 0.0 or is_worker() or _warned_records.issuperset(data):
@@ -143,10 +150,11 @@ def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool
 def warn_of_speeds(roller: Roller, V0: Any, V: Any) -> None:
     """Warn where the fastest speed of a motion, or of each of several, is outside the measured band of a material.
 
+    Slow speeds are not compared: a motion that ends at rest passes them.  The material has one warning in a process.
     roller: scene or cylinder; a scene has no data, and never warns.
-    V0: start speeds, m/s, a number or (n,); None for prescribed ones.
-    V: speeds at the output times, m/s, (times) or (n, times), NaN where a motion ended before; None where they were
-        not computed.
+    V0: start speeds, m/s, any sign, a number or (n,); None, for prescribed ones, counts as 0.
+    V: speeds at the output times, m/s, (times,) or (n, times), NaN where a motion ended before; None where they were
+        not computed: then the start speeds are compared alone.
     """
     data = roller.body_data
     if data is None or data.covered_speeds is None:
@@ -162,14 +170,17 @@ def warn_of_start(
 ) -> None:
     """Warn of motions for which the model fails grossly, judged by their start.
 
-    One motion from two floats costs one or two microseconds; of many some, evenly spaced, are examined.
+    There is one warning of speeds above the shear wave speed, where a density is known, and one of all other faults:
+    a contact longer than the radius, a creepage of order 1 in full slip, a free motion too slow for the quasi-steady
+    assumption.  One motion from two floats costs one or two microseconds; of an ensemble at most three are examined
+    (:func:`_worst_start_faults`).
     roller: scene or cylinder, on its slope.
     scene: dimensionless parameters of the roller, with gamma.
     start: (V, omega) at the start as the caller gave them, m/s and rad/s for a cylinder, numbers or (n,); None for a
-        prescribed one.
+        prescribed one, which counts as 0; of a scene not used.
     V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
     driven: whether something drives the motions, or they are rolled with the added mass N; slowness is not a fault
-    then.
+        then.
     """
     wave_speed = None if roller.body_data is None else roller.body_data.wave_speed
     if wave_speed is not None:
@@ -190,11 +201,15 @@ def _start_faults(
 ) -> list[str]:
     """Return sentences on what the model does not describe in one motion, judged by its start.
 
-    material: alpha (a float), Prony series or bodies of the roller.
+    The faults are kappa below 1; full slip with |omega0 - V0| >= |V0| where M is not small beside the friction; and a
+    free motion whose error of V exceeds 10 % on more than a tenth of its distance, judged at the start speed or at that
+    at which it begins to roll, whichever is larger.
+    material: alpha (a float), Prony series, bodies or cover of the roller; a cover is never too slow, since its N is
+        not known.
     kappa, mu, gamma, j: parameters of the scene, dimensionless.
-    V0, omega0: start speeds, dimensionless, any sign.
+    V0, omega0: start speeds, dimensionless, any sign; rest is no fault.
     driven: whether something drives the motion, or it is rolled with the added mass N; it may be slow then.
-    Returns the sentences, without numbers; an empty list where the model describes the motion.
+    Returns the sentences, without numbers and full stops, three at most; an empty list where there is no fault.
     """
     faults: list[str] = []
     one_time = type(material) is float
@@ -223,9 +238,10 @@ def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
 
     It is where the error of V exceeds 10 % on more than a tenth of its distance.  Bounds of N decide most motions: the
     table of :func:`_slow_starts` takes a second where its kernels are not compiled yet.
-    material: alpha (a float), Prony series or bodies.
+    material: alpha (a float), Prony series or bodies, no cover; an elastic one is never too slow.
     u: kappa |V| at the start, dimensionless, > 0.
     gamma, j: parameters of the scene, dimensionless.
+    Returns a bool; where the bounds do not decide, that of the next lower speed of the table, 16 to an octave.
     """
     one_time = type(material) is float
     ratio = u * u * (1.0 + j)
@@ -242,11 +258,12 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
     """Return the faults of the model in those motions of an ensemble, three at most, that are worst by simple bounds:
     of the smallest kappa, of the largest loss in full slip, and of the largest unsteadiness.
 
-    scene: dimensionless parameters of the roller, numbers or arrays (n,).
-    V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
-    driven: whether something drives the motions, or they are rolled with the added mass N.
-    Returns different sentences without numbers; an empty list where the model describes these motions.  Of more than
-    :data:`_EXAMINED` motions that many are examined, evenly spaced.
+    scene: dimensionless parameters of the roller, with gamma, numbers or arrays (n,).
+    V0, omega0: start speeds, dimensionless, numbers or arrays (n,); n may be 0.
+    driven: whether something drives the motions, or they are rolled with the added mass N; slowness is not a fault
+        then.
+    Returns the sentences of :func:`_start_faults`, each once; an empty list where these motions have no fault, or there
+    are none.  Of more than :data:`_EXAMINED` motions that many, evenly spaced, are compared by the bounds.
     """
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
     count = math.prod(np.broadcast_shapes(*(array.shape for array in arrays)))
@@ -273,10 +290,12 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
 def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tuple[list[float], list[bool]]:
     """Tabulate whether a free motion that starts at kappa V is too slow for the law of steady rolling.
 
-    material: alpha, Prony series or bodies, not elastic.
-    gamma, j: parameters of the scene, dimensionless.
-    Returns (kappa V, ascending, dimensionless; whether more than :data:`_SLOW_PART` of the distance from there has an
-    error of V above 10 %), two lists of one length.
+    The table is kept for the next call.
+    material: alpha, Prony series or bodies, not elastic, no cover.
+    gamma, j: parameters of the scene, dimensionless, > 0.
+    Returns (kappa V, ascending, floats, dimensionless, 16 to an octave over all speeds at which the material relaxes;
+    whether more than a tenth of the distance from there to rest has an error of V above 10 %, bools), two lists of one
+    length.
     """
     given = {"alpha": material} if isinstance(material, float) else {"material": material}
     free = FreeRolling.of_scene(Parameters(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given), 0.0)

@@ -26,13 +26,15 @@ from .steadiness import Steadiness
 
 
 def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, density: float | None = None) -> Validity:
-    """Report which assumptions of the model the contact at speed V violates.
+    """Report which assumptions of the model the contact of a rolling cylinder at speed V violates.
 
     Parameters
     ----------
     roller : a :class:`Scene`, or a :class:`Cylinder` with V in m/s and omega in rad/s.
-    V : speed of the axis, any sign, a number or an array; of a Scene divided by R/T_ref.
-    omega : angular velocity, broadcasts with V; None: the creepage is not known, and ``creep`` is not decided.
+    V : speed of the axis, any sign, a number or an array that broadcasts with array parameters; of a Scene divided by
+        R/T_ref, where T_ref is its unit of time.
+    omega : angular velocity, any sign, broadcasts with V; of a Scene multiplied by T_ref; None: the creepage is not
+        known, and ``creep`` is not decided.
     density : density of a Cylinder, and of the base where they are alike, kg/m^3; default: as the materials have it;
         without it the speed of shear waves is not known.
 
@@ -40,10 +42,13 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     -------
     Validity
         For each assumption a number, whether it holds (both in the broadcast shape, None where nothing decides), and a
-        sentence; ``print`` shows them.  For a Cylinder ``quasistatic`` compares the speed of the axis, and that of the
-        circumference where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long
-        times, of the bodies whose density is known; ``bodies`` has Dundurs' constant, ``measured`` the transit
-        frequency in 1/s.  Of a layer, ``thick`` has half the contact length divided by its thickness.
+        sentence; ``print`` shows them, and ``failed`` names those that fail.  A Scene decides ``small_contact`` and
+        ``under_axis``; ``steady`` if it has a gamma, a V other than 0 and no layer of finite thickness; ``creep`` with
+        omega, unless the body beside a layer relaxes too; of a layer ``thick``, with half the contact length divided by
+        its thickness.  For a Cylinder ``quasistatic`` compares the speed of the axis, and that of the circumference
+        where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times, of the
+        bodies whose density is known; ``bodies`` has Dundurs' constant, ``measured`` the transit frequency in 1/s if a
+        material has measured data.  ``plane`` is not decided.
 
     Raises
     ------
