@@ -20,7 +20,10 @@ __version__ = "0.3.0"
 
 
 def _read_modules() -> dict[str, str]:
-    """Return public name -> module that defines it, from ``__init__.pyi``, which type checkers and editors read."""
+    """Return a dict from each public name to the module that defines it, as ".scene"; "." for a public module.
+
+    They are read from ``__init__.pyi``, which type checkers and editors read too, so that they are listed once.
+    """
     with open(splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
         return {name: module for _, module, _, name, *_ in (line.split() for line in stub if line.startswith("from"))}
 
@@ -30,10 +33,10 @@ __all__ = ["__version__", *_MODULES]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name at its first use; an old name causes a warning and gives the object of the new name.
+    """Import a public name of the package at its first use: Python calls this for a name that it does not find.
 
     name: the name that was looked up in the package.
-    Returns the public object.
+    Returns the public object, and keeps it under its name.  An old name gives a warning and the object of the new name.
     Raises AttributeError for a name that is not public.
     """
     if name not in _MODULES:

@@ -35,39 +35,40 @@ UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g"
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Cylinder(Methods):
-    """A viscoelastic cylinder on a half-space, in SI units.
+    """A viscoelastic cylinder on a half-space (or on or under a layer of finite thickness), in SI units.
 
     The functions of the package, and its methods of the same names, take and give SI units, per m of its length.
     Arguments that carry another unit are converted, or refused (``docs/howto/contact.md``).
-    :meth:`scene` is its dimensionless counterpart; ``scale`` holds what 1 of each of its quantities is.
+    :meth:`scene` is its dimensionless counterpart; ``scale`` gives the SI unit of each quantity of that scene.
 
     Parameters
     ----------
-    R : radius, m.  Each number may be an array (n,) with one value for each cylinder.
-    m : mass per unit length, kg/m.
-    E : long-time Young's modulus of both bodies, Pa.  E, nu, T_epsilon and T_sigma take the place of ``material``.
+    R : radius, m, > 0.  Each number may be an array (n,) with one value for each cylinder; arrays broadcast.
+    m : mass per unit length, kg/m, > 0.
+    E : long-time Young's modulus of both bodies, Pa, > 0.  E, nu, T_epsilon and T_sigma take the place of ``material``.
     nu : Poisson's ratio, in (-1, 0.5].
     T_epsilon : retardation time, s, at least T_sigma.  If it is an array (n,), each cylinder has its own material, and
         T_ref is the largest T_epsilon.
-    T_sigma : relaxation time, s.
-    mu : coefficient of friction.
-    j : moment of inertia divided by m R^2; 1/2 for a solid cylinder.
-    g : gravitational acceleration, m/s^2.
+    T_sigma : relaxation time, s, > 0.
+    mu : coefficient of friction, > 0; it must be given.
+    j : moment of inertia divided by m R^2, > 0; 1/2 for a solid cylinder.
+    g : gravitational acceleration, m/s^2, > 0; used for the weight.
     plane : "strain" of a long roller, or "stress" of a thin disc (then E' = pi E).
     material : a :class:`Material`, in place of E, nu, T_epsilon and T_sigma; or a law of :func:`viscoroll.load_law` of
         such a material, which brings its ``base`` with it.
     base : the :class:`Material` of the half-space; default: that of the cylinder.
-    load : normal force P, N/m; default: the weight m g.
+    load : normal force P, N/m, > 0; default: the weight m g.
 
     Raises
     ------
     ParameterError
-        Where a value is not finite or out of range, both or neither of material and E, nu, T_epsilon, T_sigma
-        are given, or both bodies are rigid.
+        Where a value is not finite or out of range, has a unit of another dimension, both or neither of material and E,
+        nu, T_epsilon, T_sigma are given, shapes do not broadcast, or the bodies do not go together: both are rigid or
+        layers, or ``material`` is a dimensionless law.  What the scene does not allow is refused at its first use.
 
     Notes
     -----
-    Dimensionless times are over ``T_ref``.
+    Dimensionless times are divided by ``T_ref``: T_epsilon, or T_ref of the materials.
 
     Examples
     --------
@@ -101,6 +102,8 @@ class Cylinder(Methods):
     ) -> None:  # fmt: skip
         """Check and freeze the parameters, which the class describes; each number may be an array (n,).
 
+        They become floats or read-only arrays in SI units.
+
         R: radius, m, > 0.
         m: mass per length, kg/m, > 0.
         E: long-time Young's modulus of both bodies, Pa, > 0; None with ``material``.
@@ -110,10 +113,10 @@ class Cylinder(Methods):
         j: moment of inertia divided by m R^2, > 0.
         g: acceleration of gravity, m/s^2, > 0.
         plane: "strain" or "stress".
-        material: material of the cylinder, or a law of one, in place of E to T_sigma.
-        base: material of the half-space; None: that of the cylinder.
+        material: :class:`Material` of the cylinder, or a :class:`LawTable` of one, in place of E to T_sigma.
+        base: :class:`Material` of the half-space; None: that of the cylinder, or of the law.
         load: force that presses the cylinder on the base, N/m, > 0; None: the weight m g.
-        pressed: the load by its name as a field, for :func:`dataclasses.replace`; ``load`` goes first.
+        pressed: the load by its name as a field, for :func:`dataclasses.replace`; not used beside ``load``.
         Raises ParameterError as the class says.
         """
         values: dict[str, Any] = {
@@ -153,8 +156,11 @@ class Cylinder(Methods):
     def pair(self) -> Pair:
         """Both bodies as :class:`.materials.pair.Pair`, in SI units.
 
+        The cylinder's material is ``material``, or that of the law given in its place, or is made of E to T_sigma; the
+        half-space has ``base``, or that of the law, or the same material.
         Raises ParameterError where they do not go together: a dimensionless law as ``material``, a ``base`` beside a
-        law that contains one, another ``plane`` than that of the law.
+        law that contains one, another ``plane`` than that of a law of two different bodies, two rigid bodies or two
+        layers, a layer in plane stress.
         """
         law = self.material
         if not isinstance(law, LawTable):
@@ -170,7 +176,7 @@ class Cylinder(Methods):
 
     @property
     def T_ref(self) -> float:
-        """What dimensionless times are counted in, s: T_epsilon, or T_ref of the materials."""
+        """Unit of dimensionless times, s, a float: T_epsilon (of an array the largest), or T_ref of the materials."""
         if self.T_epsilon is None or not self._sls_parameters:
             return self.pair.T_ref
         return float(np.max(self.T_epsilon, initial=0.0)) if np.ndim(self.T_epsilon) else self.T_epsilon
@@ -178,9 +184,11 @@ class Cylinder(Methods):
     def replace(self, **changes: Any) -> Cylinder:
         """Return a copy with some parameters changed; ``material`` takes the place of E to T_sigma, and the reverse.
 
-        changes: arguments of :class:`Cylinder` by name, in SI units.
-
-        A load that was given stays; ``load=None`` makes it the weight again.  Raises ParameterError as the class does.
+        changes: arguments of :class:`Cylinder` by name, in SI units.  With one of E, nu, T_epsilon and T_sigma the
+            material is dropped, so that all four must be given if the cylinder had a material.
+        Returns a new :class:`Cylinder`.  A load that was given stays; a load that was the weight is the weight of the
+        new m and g; ``load=None`` makes it the weight again.
+        Raises ParameterError as the class does; TypeError for an unknown name.
 
         Examples
         --------
@@ -198,21 +206,26 @@ class Cylinder(Methods):
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """What was given in numbers, by name."""
+        """The parameters that were given as numbers or arrays, by name, in SI units; "load" only if it was given."""
         values = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
         return {name: value for name, value in values.items() if value is not None}
 
     def on_slope(self, slope: Any) -> Cylinder:
-        """Return the same cylinder under the load P cos(slope).
+        """Return the same cylinder under the load P cos(slope), the part of the load normal to a slope.
 
         Parameters
         ----------
-        slope : angle in rad, a number or (n,), in (-pi/2, pi/2).
+        slope : angle in rad, a number or (n,), in (-pi/2, pi/2); None: level.
+
+        Returns
+        -------
+        Cylinder
+            A new one, whose ``load`` counts as given.  The force along the slope, P sin(slope), is not in it.
 
         Raises
         ------
         ParameterError
-            A slope out of this range.
+            A slope out of this range, or of a shape that does not broadcast.
 
         Examples
         --------
@@ -224,7 +237,11 @@ class Cylinder(Methods):
         return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report: the numbers with their SI units, load, plane and materials."""
+        """Return the title and the rows of the printed report.
+
+        The rows are the numbers that were given, with their SI units, the load, the plane, and the materials by name
+        (or by their text, if they have no name).
+        """
         values = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in values.items()]
         for name in ("material", "base"):
@@ -236,29 +253,41 @@ class Cylinder(Methods):
 
     @property
     def load(self) -> Any:
-        """P, N/m: as given, or m g."""
+        """Force P that presses the cylinder on the base, N/m, a number or (n,): as given, or the weight m g."""
         return self.m * self.g if self.pressed is None else self.pressed
 
     @property
     def E_prime(self) -> Any:
-        """E' = pi E/(1 - nu^2) in plane strain, pi E in plane stress, Pa (Sect. 3.1).
+        """Contact modulus E' at long times, Pa, a number or (n,): pi E/(1 - nu^2) in plane strain, pi E in plane
+        stress (Sect. 3.1 of the paper).
 
-        Of two bodies 2/(1/E'_1 + 1/E'_2).
+        Of two bodies 2/(1/E'_1 + 1/E'_2), on a rigid base twice that of the cylinder alone.
         """
         return effective_modulus(self.E, self.nu, self.plane) if self._sls_parameters else self.pair.E_prime
 
     @property
     def l0(self) -> Any:
-        """Contact length at rest, sqrt(32 R P/E'), m."""
+        """Contact length at rest, sqrt(32 R P/E'), m, a number or (n,); of a layer that of half-spaces in its place."""
         return contact_length(self.R, self.load, self.E_prime)
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        """1 of each quantity of the scene, in SI units: ``scale["V"]`` in m/s."""
+        """:class:`.Scale`: the SI value of 1 of each quantity of the scene, by name, as ``scale["V"]`` in m/s."""
         return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
 
     def scene(self) -> Scene:
-        """Return the dimensionless scene: alpha or the series of the materials, kappa, gamma of Sect. 3.1 and Eq. (4).
+        """Return the dimensionless scene of this cylinder: alpha or material, kappa, mu, gamma and j.
+
+        Returns
+        -------
+        Scene
+            Its kappa is that of Sect. 3.1 and its gamma that of Eq. (4) of the paper, in units of ``T_ref``.  With an
+            array T_epsilon it has a series for each cylinder.
+
+        Raises
+        ------
+        ParameterError
+            The law of a layer that was computed for another load or radius, a layer too thin, a scene out of range.
 
         Examples
         --------
@@ -272,8 +301,9 @@ class Cylinder(Methods):
     def _scene(self) -> Scene:
         """The dimensionless :class:`viscoroll.Scene`, computed once.
 
-        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  With an array T_epsilon its material is a
-        series for each cylinder.
+        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  E, nu, T_epsilon and T_sigma give the number
+        alpha = T_epsilon/T_sigma, an array where T_sigma is one; an array T_epsilon gives a series for each cylinder.
+        Materials give a series, :class:`Bodies` or a :class:`Cover`; a law that was given stays.
         Raises ParameterError for the law of a layer that was computed for another load, and for a scene out of range.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
@@ -291,9 +321,10 @@ class Cylinder(Methods):
         return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
 
     def _refuse_other_load(self, law: LawTable) -> None:
-        """Raise ParameterError where the law of a layer is that of another load or radius.
+        """Raise ParameterError where the law of a layer is that of another load or radius, and for several cylinders.
 
-        law: law of a layer; it holds for one thickness divided by l0, and l0 follows from load and R.
+        law: :class:`LawTable` of a layer; it holds for one thickness divided by l0, and l0 follows from load and R.
+            Thicknesses divided by l0 that agree to 1e-9, relative, count as the same.
         """
         cover: Any = law.material
         own = self.pair.cover(self.l0)
@@ -304,23 +335,26 @@ class Cylinder(Methods):
 
     @cached_property
     def body_data(self) -> BodyData:
-        """Data of the bodies in SI units, from which validity and warnings are computed."""
+        """Data of the bodies in SI units, from which validity and warnings are computed, a :class:`.BodyData`."""
         pair, G = (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
         return BodyData(pair, G, self.R, self.l0, self.T_ref, self.plane, self._scene)
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]
-        """Attributes of datasets: the speeds between which the materials were measured, m/s."""
+        """Attributes that datasets of results get, by name: the list of the lowest and the highest speed at which the
+        materials were measured, m/s; none without measured data, and for an array of l0.
+        """
         rates = self.body_data.measured_rates
         return {} if rates is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in rates]}
 
 
 def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
-    """Return l0, the contact length at rest, Sect. 3.1, m, in the broadcast shape of the arguments.
+    """Return the contact length at rest of half-spaces, l0 = sqrt(32 R P/E') of Sect. 3.1 of the paper.
 
-    R: radius, m.
-    load: force per length that presses the cylinder on the base, N/m.
-    E_prime: contact modulus, Pa.
+    R: radius, m, > 0.
+    load: force per length P that presses the cylinder on the base, N/m, > 0.
+    E_prime: contact modulus E' = pi E/(1 - nu^2), Pa, > 0.
+    Returns l0, m, in the broadcast shape of the arguments, which are numbers or arrays.
     """
     return np.sqrt(32.0 * R * load / E_prime)
 
@@ -333,10 +367,11 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
     load: force per length that presses the cylinder on the base, N/m.
     E_prime: contact modulus, Pa.
     T_ref: unit of time, s.
-    law: alpha, a float or an array (n,), or a material of a scene, with times divided by ``T_ref``.
-    mu, j: coefficient of friction, and moment of inertia divided by m R^2.
-    Raises ParameterError by the names of the scene's parameters, where these are out of range.
-    Returns the dimensionless :class:`viscoroll.Scene`.
+    law: alpha, a float or an array (n,), or a material of a scene (series, bodies, cover or :class:`LawTable`), with
+        times divided by ``T_ref``.
+    mu, j: coefficient of friction, and moment of inertia divided by m R^2, dimensionless.
+    Returns the dimensionless :class:`viscoroll.Scene`, whose kappa is R/l0 and whose gamma is P T_ref^2/(m R).
+    Raises ParameterError, by the names of the scene's parameters, where these are out of range or overflow.
     """
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name

@@ -27,15 +27,18 @@ class Methods(Roller):
     validity = validity
 
     def humps(self) -> ResistanceExtrema:
-        """Old name of ``resistance_extrema``."""
+        """Old name of ``resistance_extrema``: gives a DeprecationWarning, and its result."""
         warn_renamed("humps", "resistance_extrema")
         return self.resistance_extrema()
 
 
 class Scene(Methods, Parameters):
-    """Dimensionless parameters of the rolling cylinder (Eqs. (4) and Sect. 3.1).
+    """Dimensionless parameters of a cylinder that rolls on a half-space, as in Sect. 3.1 and Eq. (4) of the paper
+    (Zobova and Goryacheva, 2020).
 
-    Each number may be an array; they broadcast against each other and against speeds.
+    Each number may be an array; they broadcast against each other and against speeds.  The functions of the package
+    are its methods too.  The unit of time, T_ref, is T_epsilon where ``alpha`` is given, else that of the material; the
+    unit of length in the contact is l0, the contact length at rest of half-spaces, and that of forces the load P.
 
     Parameters
     ----------
@@ -44,8 +47,9 @@ class Scene(Methods, Parameters):
     kappa : R/l0 = sqrt(E' R/(32 P)), radius divided by contact length at rest, > 0;
         the half-space theory requires kappa >> 1.
     mu : coefficient of friction, > 0.
-    gamma : P T_epsilon^2/(m R), > 0; it sets the time scale of motions, and roll and ensemble need it.
-    j : moment of inertia divided by m R^2, > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
+    gamma : P T_ref^2/(m R), > 0; it sets the time scale of motions, and roll and ensemble need it; None (default): not
+        known.
+    j : moment of inertia divided by m R^2, > 0; 1/2 (default) for a solid cylinder.  Not used by contact or stress.
     material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
         counts its times.  A law of :func:`viscoroll.load_law` stands for its material, or its alpha.  A
@@ -54,8 +58,8 @@ class Scene(Methods, Parameters):
     Raises
     ------
     ParameterError
-        Where a value is not finite or out of range, the shapes do not broadcast, or both or neither of
-        ``alpha`` and ``material`` are given.
+        Where a value is not finite or out of range, kappa or mu is missing, mu/kappa is outside 1e-290 to 1e290, the
+        shapes do not broadcast, or both or neither of ``alpha`` and ``material`` are given.
 
     Examples
     --------

@@ -12,11 +12,12 @@ _FOLDER = Path(__file__).parent
 
 
 def path(name: str) -> Path:
-    """Return the path of a sample file.
+    """Return the path of a sample file that is installed with the package, for examples and trials.
 
     Parameters
     ----------
-    name : ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5 % noise.
+    name : name of the file, one of these three.
+        ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5 % noise.
         ``"dma_export.csv"``: storage modulus and tan delta as an instrument writes them, with semicolons and decimal
         commas, 0.1 to 100 Hz.
         ``"run.toml"``: a run file of 16 motions with uncertain speed and friction.
@@ -29,7 +30,7 @@ def path(name: str) -> Path:
     Raises
     ------
     ParameterError
-        An unknown name.
+        An unknown name; the message lists the names.
 
     Examples
     --------
