@@ -15,7 +15,9 @@ from .motion.roll import roll
 
 
 class Methods(Roller):
-    """The functions of the package as methods: ``vr.contact(roller, V, ...)`` is ``roller.contact(V, ...)``."""
+    """The functions of the package as methods of a scene and a cylinder: ``vr.contact(roller, V, ...)`` is
+    ``roller.contact(V, ...)``, with the same arguments and results.
+    """
 
     contact = contact
     stress = stress

@@ -49,8 +49,9 @@ class Law:
     def __init__(self, roller: Roller) -> None:
         """Check that ``roller`` is one scene or cylinder of one material, and compile its law.
 
-        roller: a scene or a cylinder whose alpha or material, kappa and mu are single.
-        Raises ParameterError for what is neither, for arrays in alpha, kappa or mu, and for several materials.
+        roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j are not used.
+        Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape (1,)), for an array
+        of materials, and for a layer beside a body that relaxes too.
         """
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted
@@ -189,7 +190,12 @@ class Law:
 
 
 class _LawOfGrid(Law):
-    """The law of a grid, which is its ``roller``: a :class:`Law` whose numbers are those of splines."""
+    """The law of a grid of loads over V and delta, as read from a file: a :class:`Law` whose numbers are those of
+    splines.
+
+    Its ``roller`` is the :class:`LawGrid`; it has no ``scene``, and never warns.  Slopes of Q are 0 also where the grid
+    gives |Q| = mu P.
+    """
 
     def __init__(self, grid: LawGrid) -> None:
         """Compile the splines of a ``grid`` of loads over V and delta; V and omega then have the units of the grid."""

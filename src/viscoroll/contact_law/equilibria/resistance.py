@@ -270,11 +270,13 @@ def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
 def _refine_near_double_roots(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
     """Find points that separate two zeros between the neighbours of a node, where the nodes show no change of sign.
 
-    Candidates are the nodes with a local minimum of |function| near which a parabola through three nodes passes 0; the
-    interval around each is divided again, :data:`_REFINEMENTS` times at most.
+    Candidates are the nodes with a local minimum of |function| near which a parabola through three nodes passes 0, the
+    first and the last node excepted.  The interval around each is divided into 32 and narrowed around the point nearest
+    to the other sign, four times at most.
     function : takes points (m,) and returns its values there, (m,).
-    x, y : nodes, ascending, and values of the function there, (n,).
-    Returns a list of (points, values), (33,) each, one for each pair of zeros that was separated; empty if none was.
+    x, y : nodes, ascending, and values of the function there, none of them 0, (n,); n may be 0.
+    Returns a list of (points, values), (33,) each, one for each pair of zeros that was separated: the values have one
+    sign at both ends and the other one between them.  Empty if none was; zeros that only touch 0 are not found.
     """
     size, sign = np.abs(y), np.sign(y)
     minimum = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])

@@ -201,9 +201,11 @@ class Steady(Values):
     message = reason
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return the title and the rows of the printed report: of one load its equilibria one after another, or the
-        reason why there is none; of several loads the number of all equilibria and of the stable ones, and their
-        speeds.
+        """Return the title and the rows of the printed report.
+
+        Returns (title; list of :class:`SummaryRow`).  Of one load the rows are its equilibria one after another, each
+        with "stable" or "not stable" and nine quantities to six digits, or the reason why there is none; of an array
+        of loads the number of all equilibria and of the stable ones, and their speeds.
         """
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"

@@ -59,8 +59,9 @@ class _FreeRolling(NamedTuple):
 class _ScanProblem(NamedTuple):
     """One load in the frame of the motion, in which V > 0; all is dimensionless.
 
-    law : rows of the material.
-    load_rows : (2, 3): the row of the force and the row of the torque, each (value at rest, gain on V, gain on omega).
+    law : table of the material.
+    load_rows : (2, 3): the row of the force and the row of the torque, each (value at rest, gain on V, gain on omega);
+    the values at rest are those of the load, with the other sign for a motion with V < 0.
     kappa, mu : slenderness R/l0 and coefficient of friction.
     """
 

@@ -36,10 +36,11 @@ _SMALL_LOSS = 1e-7
 
 
 class ContactLengths(NamedTuple):
-    """Lengths of the contact at a speed, dimensionless.
+    """Lengths of the contact at a speed, dimensionless, numbers or arrays of one shape.
 
-    reach : distance from the axis to the far end of the contact divided by R, lam (1 + epsilon)/(2 kappa).
-    epsilon : shift towards the leading edge in half contact lengths.
+    reach : distance from the axis to the leading edge, the far end of the contact, divided by R:
+    lam (1 + epsilon)/(2 kappa).
+    epsilon : shift towards the leading edge in half contact lengths, 0 at rest and for elastic bodies.
     lam : contact length divided by l0.
     """
 
@@ -101,11 +102,11 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FreeRolling:
-    """Initial states of free rolling, each with one of several materials.
+    """Initial states of free rolling, each with one of several materials; its methods say how each of them goes on.
 
     Attributes
     ----------
-    materials : alphas or series, each in its own unit of time, in which its slow time is near 1.
+    materials : alphas or series, each in its own unit of time, in which its slow time is near 1; 1.0 if elastic.
     index : index of the material of each state, in the shape of u.
     u : kappa |V| in the material's own time, dimensionless, any shape.
     g : gamma/(1 + j) in the material's own time, dimensionless, broadcasts with u; NaN without gamma.
@@ -166,10 +167,11 @@ class FreeRolling:
         return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays})
 
     def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
-        """Yield each material that occurs, and which states it has.
+        """Yield each material that occurs, and which states it has, so that a curve is evaluated once for all of them.
 
         Yields (alpha or series in its own time; index of numpy that selects its states in the flattened arrays: a
-        slice of all for a single material, else integers).
+        slice of all for a single material, else integers (states of this material,)).  A material without states is
+        left out, unless it is the only one.
         """
         if len(self.materials) == 1:
             yield self.materials[0], slice(None)
