@@ -49,8 +49,8 @@ class Scene(Methods, Parameters):
     kappa : R/l0 = sqrt(E' R/(32 P)), radius divided by contact length at rest, > 0;
         the half-space theory requires kappa >> 1.
     mu : coefficient of friction, > 0.
-    gamma : P T_ref^2/(m R), > 0; it sets the time scale of motions, and roll and ensemble need it; None (default): not
-        known.
+    gamma : P T_ref^2/(m R), > 0; it sets the time scale of motions.  roll and ensemble need it, contact, stress and
+        steady do not; validity without it does not check the quasi-steady assumption.
     j : moment of inertia divided by m R^2, > 0; 1/2 (default) for a solid cylinder.  Not used by contact or stress.
     material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
