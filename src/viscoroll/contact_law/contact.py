@@ -80,8 +80,8 @@ def contact(
         ``beta``: length of the stick zone divided by the contact length, 0 in full slip, 1 where Q = 0.
         Those with a unit of their own, by which those of a Scene are divided:
         ``zeta``: half the transit time, T_ref or s; infinite at V = 0;
-        ``Q``: force on the cylinder by friction, in the direction of +V, of the sign of delta V (of a layer of
-        (delta - delta_0) V); P or N/m; in full slip |Q| = mu P;
+        ``Q``: force on the cylinder by friction, positive in the direction of a positive V, of the sign of delta V, at
+        V = 0 of delta (of a layer with delta - delta_0 for delta); P or N/m; in full slip |Q| = mu P;
         ``M``: rolling resistance moment, of the sign of V, 0 at V = 0 and of elastic bodies; P R or N m/m.
         These nine are the default.  Bodies that differ, and every Cylinder, add ``M_half_space`` and ``M_cylinder``,
         the parts of M by the losses in either body; a Cylinder adds ``length``, the contact length in m, and ``C_rr`` =

@@ -1,4 +1,8 @@
-"""The contact law of one scene as a function for integrators: :func:`law`."""
+"""The contact law of one scene as a function for integrators: :func:`law`.
+
+Numbers of equations are those of A. A. Zobova and I. G. Goryacheva, Acta Mechanica (2020),
+doi:10.1007/s00707-020-02643-5.
+"""
 
 from __future__ import annotations
 
@@ -95,7 +99,7 @@ class Law:
     def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
         """Compute friction force Q and rolling moment M of the cylinder on its base at speed V and spin omega.
 
-        These are Eqs. (15)-(18) of the paper named in :mod:`.contact_law.contact`.
+        These are Eqs. (15)-(18) of Zobova and Goryacheva (2020).
 
         Parameters
         ----------
@@ -224,7 +228,7 @@ def law(roller: Roller | LawGrid) -> Law:
     """Return the contact law of one cylinder on its base as a fast function of V and omega, for your own integrator.
 
     ``law(V, omega)`` gives the friction force and the rolling moment that :func:`contact` gives at a given omega,
-    Eqs. (6)-(10) and (15)-(18) of the paper named there; the parameters of the roller are checked once, here.
+    Eqs. (6)-(10) and (15)-(18) of Zobova and Goryacheva (2020); the parameters of the roller are checked once, here.
     ``law.jitted`` and ``law.address`` are the same function for numba and C.
 
     Parameters

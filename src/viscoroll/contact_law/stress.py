@@ -1,4 +1,8 @@
-"""Pressure and shear stress along the contact: :func:`stress`."""
+"""Pressure and shear stress along the contact: :func:`stress`.
+
+Numbers of equations are those of A. A. Zobova and I. G. Goryacheva, Acta Mechanica (2020),
+doi:10.1007/s00707-020-02643-5.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +40,8 @@ def stress(
 ) -> Values:
     """Compute pressure and shear stress along the contact of a rolling cylinder and its base, Eqs. (11)-(14).
 
-    The equations are those of Zobova and Goryacheva (2020), see :func:`contact`.
+    The equations are those of Zobova and Goryacheva (2020), with the functions of the bodies at hand (docs/theory.md).
+    The contact is that of steady rolling at a given speed and creepage, whose lengths and slip :func:`contact` gives.
 
     Parameters
     ----------

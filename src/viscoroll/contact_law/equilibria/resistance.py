@@ -135,7 +135,8 @@ class Branches:
 def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     """Find every local maximum and minimum of the rolling resistance moment M of a cylinder over its speed.
 
-    They bound the loads under which it can roll steadily: M rises with the speed from 0 and falls to 0 again.  A rubber
+    They bound the loads under which it can roll steadily: M, Eq. (16) of Zobova and Goryacheva (2020) for one
+    relaxation time, rises with the speed from 0 and falls to 0 again.  A rubber
     with widely separated relaxation times has several maxima; one relaxation time has a single one.
 
     Parameters

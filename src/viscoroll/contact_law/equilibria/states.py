@@ -254,7 +254,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     less_star, less_lam = contact_fields_at(law, kappa, mu, V / root, 0.0, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
     rows = state_rows(law, kappa, mu, V, np.copysign(size, Q) + delta_0)
-    # the answers do not see this
+    # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows do not change by it
     rows[Field.DELTA] -= np.divide(
         rows[Field.Q] - Q, V * rows[Field.DQ_DOMEGA], out=0.0 * V, where=part < _CORRECTED_TRACTION
     )
