@@ -1,9 +1,9 @@
 """Steady rolling under force, torque or slope: :func:`steady`, all equilibria with their stability.
 
 The equations are V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0 (over gamma t).
-Their sum M(V) = force + torque determines V; Q = torque - M_cylinder then determines the creepage.  They are Eqs. (20)
-and (21) of Zobova and Goryacheva, Acta Mechanica (2020), with a force and a torque, divided by P and P R; Q and M are
-those of Eqs. (15)-(18).
+Their sum M(V) = force + torque determines V; Q = torque - M_cylinder then determines the creepage.  They are Eq. (22)
+of Zobova and Goryacheva, Acta Mechanica (2020), with a force and a torque, divided by P and P R, and with the moment M
+split between the two bodies.
 """
 
 from __future__ import annotations
