@@ -12,7 +12,9 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
   the next step.
 - Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
-- Load: force, torque, largest torque of the brake and prescribed slopes at one time, in the direction of the Regime.
+- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
+  torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
+  prescribed or held by the brake) and the gains of the feedback.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
