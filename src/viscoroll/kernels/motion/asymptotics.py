@@ -79,8 +79,8 @@ def may_be_at_equilibrium(noise, work):
     """Return whether p at node 0 may be near its equilibrium, a bool: a check that costs no evaluation of the law.
 
     p is estimated to be p'/(dp'/dp) away from the equilibrium, and the noise may explain a part of p'; this distance is
-    compared with twice the tolerance of an equilibrium times |p|.  Where dp'/dp is 0 or above, only a p' within the
-    noise passes, at p = 0 or dp'/dp = 0.  If True, :func:`find_equilibrium` decides.
+    compared with twice the tolerance of an equilibrium times |p|.  Where dp'/dp >= 0 there is no stable equilibrium,
+    and the result is True only for a p' within the noise.  If True, :func:`find_equilibrium` decides.
 
     noise: float, rounding error of p', at least 0, dimensionless.
     work: Workspace, with p, p' and dp'/dp at node 0.
@@ -236,15 +236,15 @@ def coast_to_end(state, regime, step_state, work):
 
     The rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit V -> 0 and
     inertia = 1 + j (1 + delta_0) + gamma N.  With a rest threshold the motion ends when the larger speed has fallen to
-    it: from then on V, omega, forces and the code AT_REST are written, and the kinetic energy that is left counts as
-    lost.
+    it: from then on V = omega = 0, forces of 0, delta = delta_0 and the code AT_REST are written, and the kinetic
+    energy that is left counts as lost.
 
     state: State, the present one, in partial slip; its V is the start of the decay, its d is replaced by that of the
     decay.
     regime: Regime, at that state; ``direction`` is read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; all outputs from ``next_output`` on are written, and REST_TIME where the motion
-    comes to rest.
+    comes to rest.  The change of regime to AT_REST is not recorded among the switches.
     Returns (status, StepState): CAME_TO_REST if the threshold is reached at or before the last output time, else
     COMPLETED; the StepState at the last output time, with the numbers of steps unchanged.
     """

@@ -230,7 +230,7 @@ def _come_to_rest(code, state, regime, step_state, work):
     """Write the outputs of a motion whose speeds fall below the rest threshold now, up to its last output time.
 
     The kinetic energy that is left is added to the loss in rolling, and the time is recorded as that of coming to rest.
-    The change of regime to AT_REST is recorded unless the motion starts at rest or was at rest before.
+    The change of regime to AT_REST is recorded unless ``code`` is -1 or AT_REST.
 
     code: int, regime in the outputs before; -1 before the first one.
     state, regime: State and Regime, the present ones.

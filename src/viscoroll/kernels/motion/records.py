@@ -100,9 +100,9 @@ class Load(NamedTuple):
     V' = inverse_mass (Q - M_half_space + force) + prescribed_V_rate
     omega' = inverse_inertia (-Q - M_cylinder + torque) + prescribed_omega_rate
 
-    force, torque : force on the axis and torque of the motor, without feedback
+    force, torque : force on the axis and torque of the motor, without feedback, which depends on V and omega
     prescribed_V_rate, prescribed_omega_rate : slope in tau of a prescribed speed; 0 where the speed is free
-    brake : largest torque of the brake, at least 0; it enters ``torque`` with the sign against omega
+    brake : largest torque of the brake, at least 0, not signed; it is added to ``torque`` with the sign against omega
     inverse_mass : 1, or 0 where V is prescribed
     inverse_inertia : 1/j, or 0 where omega is prescribed or held at 0 by the brake
     gains : Gains, the feedback
@@ -123,8 +123,9 @@ class Regime(NamedTuple):
 
     full_slip : whether the whole contact slips
     direction : 1 or -1; speeds, forces and torques times this are those of the regime, with V >= 0
-    sigma : 1 or -1, sign of omega - V in full slip, sign of d of the branch of the law in partial slip
-    spin_sign : sign of omega where a brake acts, 0 where none does
+    sigma : 1 or -1; in full slip the sign of the slip omega - V, of a cover less delta_0 V of free rolling; in partial
+        slip the sign of d of the branch of the law
+    spin_sign : sign of omega where a brake acts, 0 where none does; without effect while ``locked``
     locked : whether a brake holds omega at 0
     """
 
