@@ -93,7 +93,7 @@ def _d_at_zero_omega(scene):
 
 @kernel
 def _spin_against_brake(load, scene):
-    """Return the sign with which omega grows from 0 under a brake, or that the brake holds it, as V grows from 0.
+    """Return what omega does under a brake while V grows from 0: the sign with which it grows, and whether it stays 0.
 
     The brake can hold omega in partial slip only where friction is so strong that d at omega = 0 is above -1
     (:func:`_d_at_zero_omega`); it holds it where the torque that the traction there leaves is at most its own.
@@ -139,12 +139,13 @@ def _local_maximum_of_residual(load, scene):
 
         -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
 
-    where C = inverse_mass f + V_rate, so that the larger zero of the slope is the maximum.  Of a half-space at rest
-    L = 1 and delta_0 = 0.
+    where C = inverse_mass f + V_rate, so that the larger zero of the slope is the maximum.  Of a half-space at rest L =
+    1 and delta_0 = 0.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum is
+    returned.
 
-    load: Load, at V = 0, with brake and added mass in it.
+    load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
     scene: Scene, parameters of Eq. (22).
-    Returns d there, dimensionless; -inf where the cubic decreases for all d.
+    Returns d there, a float, dimensionless, which may lie outside [-1, 0]; -inf where the cubic decreases for all d.
     """
     L, delta_0 = rest_limits(scene)
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
@@ -266,19 +267,20 @@ def find_departure_time(tau, segment, work):
 
 @kernel
 def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
-    """Decide whether the cylinder departs in full slip, in a direction of slip that its accelerations keep up.
+    """Decide whether the cylinder departs in full slip: under full slip its accelerations must increase the slip.
 
-    Slip in the direction sigma = 1 is tried first, then sigma = -1; the first that is kept up is returned.
+    The sign sigma = 1 of the slip is tried first, then -1; the first is returned for which sigma (omega' - V' (1 +
+    delta_0)) exceeds ``stick_zone_slip`` times L |V'|.
 
     tau: float, time at which the drive is evaluated.
     segment: int, index of the segment of the drive that contains the time.
     braked: bool, whether a brake acts on the segment.
-    stick_zone_slip: float, the excess slip |omega - V - delta_0 V|/(L V) that full slip must exceed in the limit V ->
-    0, dimensionless.
+    stick_zone_slip: float, limit of the excess slip divided by L V, dimensionless: mu/(2 kappa), or 0 where no
+    departure in partial slip was found.
     work: Workspace, of the motion.
     Returns (kind, Regime, 0.0) in the form of :func:`depart_from_rest`: SLIDES_OFF with the Regime of full slip, in the
-    direction in which V grows, with sigma, spin_sign and locked as the brake leaves them; or STAYS_AT_REST with
-    REGIME_AT_REST.  The third entry, 0.0, is omega.
+    direction in which V grows, with the sign of the slip in that direction as ``sigma`` and the ``spin_sign`` and
+    ``locked`` that the brake causes; or STAYS_AT_REST with REGIME_AT_REST.  The third entry, 0.0, is omega.
     """
     scene = work.scene
     L, free_creep = rest_limits(scene)

@@ -80,7 +80,7 @@ def _d_weight(d):
     d acts on the motion through omega - V and V', whose error is that of V, and its errors decay.  An error of d is
     measured by the critical creepage, as an error of Q/mu, and less strictly relative to d itself.
 
-    d: float, delta/delta_star.
+    d: float, delta/delta_star, |d| <= 1; the weight is then in [1/6, 1].
     """
     return max(_D_WEIGHT_FLOOR, d * d) / (abs(d) + _D_WEIGHT_FLOOR)
 

@@ -98,8 +98,7 @@ def is_event_active(event, step, regime, work):
 
 @inline_kernel
 def evaluate_event_functions(step, regime, work):
-    """Store the event functions at nodes 0 ... N of a solved step: positive within the regime, 0 at its end,
-    dimensionless.
+    """Store the event functions at nodes 0 ... N of a solved step: positive within the regime, 0 at its end.
 
     - V_ZERO: V.
     - STICK_EDGE: :func:`stick_edge_function`.
@@ -267,7 +266,7 @@ def find_first_event(step, regime, work):
 
 @inline_kernel
 def find_missed_event(step, regime, work):
-    """Return the event whose function begins at 0 and is negative behind it; NO_EVENT for none.
+    """Return the event whose function is 0 at the left end of the step and negative from there on; NO_EVENT for none.
 
     The regime has then ended before the first node.  The function must exceed 1e-14 of its scale at no node and be
     below 0 by more than the tolerance of events at the last one.  The scale of V = 0 contains the larger speed too,

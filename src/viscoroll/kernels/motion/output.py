@@ -234,10 +234,12 @@ def _evaluate_integrands(regime, work):
 
 @kernel
 def _integral_over_step(row, step, nodes):
-    """Return the integral over tau of a row along a whole step, by Radau quadrature; dimensionless.
+    """Return the integral over tau of a row along a whole step, by Radau quadrature; a float, dimensionless.
+
+    Its N nodes are 1 ... N: the value at node 0 is not read.
 
     row: int, index in ``nodes`` of the values.
-    step: Step, the accepted one.
+    step: Step, the accepted one, whose length is read.
     nodes: Workspace.nodes.
     """
     total = 0.0

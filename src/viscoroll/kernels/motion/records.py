@@ -52,7 +52,7 @@ ZERO_SPEED = 1e-200
 class Scene(NamedTuple):
     """Parameters of Eq. (22) of one motion, dimensionless.
 
-    law : rows of polynomials of the contact law of one material (:mod:`..rows.evaluate`)
+    law : :class:`..rows.record.Law`, rows of polynomials of the contact law of one material
     moments_differ : whether half-space and cylinder take unequal parts of the rolling moment M
     kappa : R/l0, radius of the cylinder divided by the length of the contact at rest
     mu : coefficient of friction
@@ -205,10 +205,11 @@ class Workspace(NamedTuple):
 
     scene, drive, options : Scene, Drive and Options, the problem
     output_tau : (k,), times tau of the outputs, increasing
-    outputs : [quantity, time], filled; rows as in :mod:`output`
+    outputs : (13, k), [quantity, time], filled as far as the motion goes, NaN behind it; rows as in :mod:`output`
     with_quadratures : whether distance, angle and energies are requested
     with_forces : whether force and torque are requested
-    switches : (m, 2), filled with t and the code of the regime behind each regime change
+    switches : (m, 2), filled with t and the code of the regime behind each regime change, or DIRECTION_REVERSED, as far
+        as it has room
     step_ends : filled with the end t of each accepted step, as far as it has room
     nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`workspace`)
     p_matrix, d_matrix : pointers to the inverse Newton matrices of p and of the second unknown, column by column

@@ -54,8 +54,7 @@ _START_ON_EDGE = 2e-14
 
 @kernel
 def _torque_at_locked_wheel(state, regime, step_state, work):
-    """Return the torque that would accelerate a wheel with omega = 0 without its brake, and the largest one of the
-    brake.
+    """Return the torque that would accelerate a wheel with omega = 0, and the largest torque of the brake against it.
 
     state: State, with omega = 0.
     regime: Regime, at that state.
@@ -83,10 +82,9 @@ def change_brake(regime, spin_sign, locked):
 
 @kernel
 def brake_holds_omega(state, regime, step_state, work):
-    """Return whether the brake can hold omega at 0, a bool: whether it resists the torque that would accelerate the
-    wheel.
+    """Return whether the brake can hold omega at 0 against the torque that would accelerate the wheel; a bool.
 
-    A torque equal to the largest one of the brake is resisted too.  Without a brake only a torque of exactly 0 is.
+    It can if that torque is at most the largest one of the brake; without a brake, only if it is exactly 0.
 
     state: State, with omega = 0.
     regime: Regime, at that state.
@@ -122,7 +120,7 @@ def comes_to_rest(state, regime, step_state, work):
 
     - omega is 0, as the brake holds it or it is prescribed to be 0 at this time: V is at most max(1e-14, 10 rtol) times
       the largest V at the nodes of the step, as the event is located with the error of the step.
-    - omega is not 0 or is free: V is at most 1e-14 times V at the left end of the step, as rounding leaves it.
+    - in all other cases: V is at most 1e-14 times V at the left end of the step, as rounding leaves it.
 
     state: State, at the event.
     regime: Regime, of full slip.
@@ -197,7 +195,8 @@ def apply_event(event, state, regime, step_state, work):
     - DELTA_ZERO: sigma changes its sign, d stays.
     - V_ZERO: the cylinder comes to rest in partial slip, or if omega is 0; else V becomes exactly 0, omega changes its
       sign, and the direction is reversed.
-    - OMEGA_ZERO: omega is set to 0 in full slip; the brake then holds it, or ``spin_sign`` becomes its new sign.
+    - OMEGA_ZERO: omega is set to 0 in full slip, V and d stay in partial slip; then the brake holds omega, ``locked``
+      is True, or ``spin_sign`` becomes the sign of the torque that accelerates it (:func:`release_brake`).
     - BRAKE_RELEASE: the brake lets go, :func:`release_brake`.
 
     BELOW_REST_SPEED does not occur here: it ends the motion.
