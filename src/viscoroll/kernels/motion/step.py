@@ -200,7 +200,8 @@ def solve_step(step, relaxation, dense_step, regime, work):
     """Solve a trial step from node 0 on by a simplified Newton iteration and store its dense output.
 
     The iteration has converged when the last update times the ratio of the last two updates, an estimate of the error
-    that is left, is at most 0.016 times the tolerance of the step, max(0.25 rtol, 1e-14), or at most 1e-14.
+    that is left, is at most 0.016 times the tolerance of the step, max(0.25 rtol, 1e-14), or at most 1e-14.  At the
+    first iteration the ratio is taken to be at most 0.1, less for a small update.
 
     step: Step, the trial step.
     relaxation: float, derivative of the slope of the second unknown in itself at node 0, per unit of tau; only the

@@ -103,8 +103,8 @@ def _time_to_reach_V(V_change, step_state, regime, work):
     step_state: StepState, at V = 0.
     regime: Regime, at that state.
     work: Workspace, with node 0.
-    Returns a float above 0: the time at which V has its maximum if V does not reach V_change; a very large number or
-    inf if V' and its slope are 0.
+    Returns a float, at least 0: the time at which V has its maximum if V does not reach V_change, which is 0 if V'
+    falls from 0; a very large number or inf if V' and its slope are 0.
     """
     lookahead, V_rate = _LOOKAHEAD * (segment_end(step_state.segment, work) - step_state.tau), work.nodes[ROW_V_RATE]
     load = evaluate_load(step_state.tau + lookahead, step_state.segment, regime, work)
@@ -132,7 +132,8 @@ def first_step_length(stick_formed, step_state, regime, work):
     step_state: StepState, at the start of the regime.
     regime: Regime, the new one.
     work: Workspace, with node 0.
-    Returns a float above 0; inf in full slip at rest or without any rate.
+    Returns a float, at least 0; it is 0 where the stick zone has just formed and d' is exactly 0, and inf in full slip
+    at rest or without any rate.
     """
     nodes, scene = work.nodes, work.scene
     V, V_rate, rate = nodes[ROW_V], abs(nodes[ROW_V_RATE]), abs(nodes[ROW_WEIGHTED_RATE])
@@ -187,7 +188,8 @@ def time_to_V_zero(step, state, regime, work):
 def step_length_after_relaxation(step, regime, work):
     """Return the length in tau of the step after one along which d has relaxed.
 
-    Behind it d follows V, which changes slowly: V may change by 4 rtol^(1/8) of itself.
+    Behind it d follows V, which changes slowly: V may change by 4 rtol^(1/8) of itself, at the rate p' dV/dp or, if
+    that is larger, at the rate V dp'/dp.
 
     step: Step, the accepted one.
     regime: Regime, that of the step.
