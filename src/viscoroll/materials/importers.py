@@ -97,21 +97,24 @@ class FromPrograms:
         Parameters
         ----------
         E0 : instantaneous Young's modulus EX, Pa.
-        nu : Poisson's ratio PRXY.  Without ``k`` it is taken constant in time, as a bulk table equal to that of shear
-            makes it.
-        alpha, tau : the pairs alpha_i (>= 0, of a sum below 1) and tau_i (s, > 0) of the table ``SHEAR``.
-        k : alpha_i of the table ``BULK`` at the same times; of a table with times of its own list all times, and zeros
-            where one of the two has none.  As of :meth:`abaqus`.
+        nu : instantaneous Poisson's ratio PRXY.  Without ``k`` it is taken constant in time, as a bulk table equal to
+            that of shear makes it.
+        alpha, tau : the pairs alpha_i (dimensionless, >= 0, of a sum below 1) and tau_i (s, > 0) of the table
+            ``SHEAR``, (n,) each.
+        k : alpha_i of the table ``BULK`` at the same times, (n,).  If that table has other times, give all times of
+            both as ``tau``, and 0 in ``alpha`` or ``k`` where a table has no term.  Its effect is as in :meth:`abaqus`.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
+            With its long-time modulus, and T_ref = 1 s.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword.
+            A value out of range, lists of different lengths, an unknown keyword; where k differs from alpha, more than
+            64 creep modes of shear and bulk together.
         """
         return cls._from_fractions(E0, nu, "alpha", alpha, tau, k, False, more)
 
@@ -121,27 +124,30 @@ class FromPrograms:
     ) -> Any:
         """Make the material of a generalized Maxwell node under Linear Elastic Material.
 
-        G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural Mechanics
-        Module User's Guide, "Linear Viscoelasticity" (doc.comsol.com, sme_ug_theory).
+        G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural Mechanics Module User's
+        Guide, "Linear Viscoelasticity" (doc.comsol.com, sme_ug_theory).
 
         Parameters
         ----------
         E, nu : Young's modulus, Pa, and Poisson's ratio of the elastic node: the long-time values (static stiffness
             "Long-term").  Without ``K`` nu is taken constant in time.
-        G : shear moduli G_m of the branches, Pa, >= 0.
-        tau : their relaxation times tau_m, s, > 0.
-        K : bulk moduli of the branches, Pa, >= 0, at the same times; zeros where only deviatoric strains are
-            viscoelastic.
+        G : shear moduli G_m of the branches, Pa, >= 0, (n,).
+        tau : their relaxation times tau_m, s, > 0, (n,).
+        K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only deviatoric strains are
+            viscoelastic.  Where they are not in proportion to G, the series is that of E/(1 - nu^2) in plane strain;
+            without effect for nu = 0.5.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
+            With T_ref = 1 s.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword.
+            A value out of range, lists of different lengths, an unknown keyword; where K is not in proportion to G,
+            more than 64 creep modes of shear and bulk together.
         """
         E, nu = check_number("E", E, unit=SI, above=0.0), check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
@@ -163,32 +169,36 @@ class FromPrograms:
     ) -> Any:
         """Make the material of ``*MAT_GENERAL_VISCOELASTIC`` (076), or of ``*MAT_VISCOELASTIC`` (006) as one pair.
 
-        G(t) = sum G_i exp(-beta_i t), G_i absolute and beta_i = 1/tau_i; a pair with beta = 0 is the
-        long-time modulus: LS-DYNA Keyword Manual, Vol. II.  In 006 G(t) = G_inf + (G0 - G_inf) exp(-beta t)
-        (help.altair.com, mat_006_viscoelastic): give G = [G0 - G_inf] and G_inf.
+        G(t) = sum G_i exp(-beta_i t), G_i absolute and beta_i = 1/tau_i; a pair with beta = 0 is the long-time modulus:
+        LS-DYNA Keyword Manual, Vol. II.  In 006 G(t) = G_inf + (G0 - G_inf) exp(-beta t) (help.altair.com,
+        mat_006_viscoelastic): give G = [G0 - G_inf] and G_inf.
 
         Parameters
         ----------
-        G : G_i, Pa, >= 0.
-        beta : beta_i, 1/s, >= 0.
-        nu : Poisson's ratio, constant in time, with ``K`` that of long times; this or ``bulk``.
+        G : G_i, Pa, >= 0, (n,).
+        beta : beta_i, 1/s, >= 0, (n,).
+        nu : Poisson's ratio, constant in time, with ``K`` that of long times; this, ``bulk`` or a K_i with beta = 0.
         bulk : constant bulk modulus, Pa, with ``K`` that of long times.  Then nu(t) is not constant; what the contact
-            feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` is the long-time one.
-        G0 : instantaneous shear modulus, Pa, from which the G_i take away; this, ``G_inf`` or a pair
-            with beta = 0.
+            feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` of the material is the long-time
+            one.
+        G0 : instantaneous shear modulus, Pa, from which the G_i take away; this, ``G_inf`` or a pair with beta = 0.
         G_inf : long-time shear modulus, Pa.
-        K : K_i, Pa, >= 0, at the same beta; that with beta = 0 is the long-time one, in place of ``nu`` and ``bulk``.
+        K : K_i, Pa, >= 0, at the same beta, (n,); that with beta = 0, if it is not 0, is the long-time one, in place of
+            ``nu`` and ``bulk``.  None: the bulk modulus is constant if ``bulk`` is given, else relaxes in proportion to
+            G.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
+            With its long-time modulus, and T_ref = 1 s.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, no long-time modulus or several, both or
-            neither of nu and bulk, an unknown keyword.
+            A value out of range, lists of different lengths, no long-time modulus or several, both or neither of nu and
+            bulk, an unknown keyword; more than 64 creep modes of shear and bulk together where these do not relax in
+            proportion.
         """
         strengths, rates = check_pairs("G", G, "beta", beta, above=-math.inf)
         resting = rates == 0.0

@@ -207,8 +207,10 @@ class Pair:
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:
-        """Dundurs' constant beta_D, (of the long-time moduli, of the instantaneous moduli), dimensionless, any sign;
-        body 1 is the cylinder.
+        """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous moduli), dimensionless,
+        any sign.
+
+        Body 1 is the cylinder.  Both bodies must be a :class:`Material`; a :class:`Solid` has no shear modulus.
         """
         one, other = self.cylinder, self.half_space
         instant = one.G * one.prony.alpha, other.G * other.prony.alpha

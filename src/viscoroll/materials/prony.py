@@ -409,8 +409,8 @@ def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floa
 
     strengths, times: strengths and times of the modes, (..., modes), any unit; not changed.
     parts: parts of the strengths, (..., modes) each, which are sorted and added like them.
-    Returns a list of new arrays [strengths, times, *parts], each (..., modes).  Of modes of equal times the last one
-    has the sum, the others strength 0.
+    Returns a list of new arrays [strengths, times, *parts], each (..., modes).  Of modes of equal times one has the sum
+    of the strengths; the others have strength 0 and stand behind.
     """
     order = np.argsort(-times, axis=-1, kind="stable")
     values, each, *rest = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts))

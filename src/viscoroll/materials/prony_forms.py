@@ -182,12 +182,13 @@ def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
     """Return the strengths of both forms of a series from the differences between the rates of the two forms.
 
     A strength times its rate is a product of gaps between rates of the two forms, divided by differences of rates of
-    one form.  The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits
-    cancel.  Factors are paired so that nothing overflows.
+    one form.  The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.
+    Factors are paired so that nothing overflows.
 
-    gap: a_i - b_j, rates of relaxation minus rates of creep, (..., modes, modes), [..., j, i].
+    gap: a_i - b_j, rates of relaxation minus rates of creep, in any unit, (..., modes, modes), [..., j, i].
     alpha: instantaneous divided by long-time modulus, a number or (...).
-    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, (..., modes).
+    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, in the unit of the gaps, (..., modes)
+    each, > 0.
     """
     size, own = np.abs(gap), np.eye(gap.shape[-1], dtype=bool)
     nearest, alpha = np.diagonal(size, 0, -2, -1), np.asarray(alpha)[..., None]

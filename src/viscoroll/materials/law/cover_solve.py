@@ -63,11 +63,13 @@ _LARGE_BETA = 1e12
 class LayerNodes(NamedTuple):
     """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on Poisson's ratio alone.
 
-    u : nodes, wave number times thickness, (n,).
+    All are dimensionless, (n,) each but ``local``; "the weights" are those of the integral over u.
+
+    u : nodes, wave number times thickness, > 0, ascending.
     L : (L - 1)/u times the weights.
     shear : (T - L)/u times the weights.
     C : C less its limit for short waves, times the weights.
-    local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu).
+    local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu), a float.
     """
 
     u: Floats

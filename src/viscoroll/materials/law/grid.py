@@ -41,14 +41,14 @@ class LawGrid:
     Attributes
     ----------
     splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline, as
-        :func:`viscoroll.materials.law.splines.pack_spline` writes it; Q divided by the load and M divided by load
-        times radius, or Q in N/m and M/R in N/m.
+        :func:`viscoroll.materials.law.splines.pack_spline` writes it; Q divided by the load and M divided by load times
+        radius, or Q in N/m and M in N (N m per m of length).
     V : slowest and fastest speed, > 0; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
-    slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond
-        them.
+    slips : whether the contact slips fully at both ends of delta, at every speed: abs(Q) is at least 1 - 1e-5 of its
+        limit there, and so is known beyond the ends.  False without a mu.
     R : radius in m; 1 for a dimensionless grid.
-    title : title of the file.
+    title : title of the file; "of another program" without one.
     """
 
     splines: dict[str, Floats]

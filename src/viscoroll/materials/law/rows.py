@@ -42,10 +42,10 @@ class Rows:
     """Octaves of a variable x >= 0 with a polynomial of 24 powers on each.
 
     Row 0 is the interval [0, 2^e0), with t = x 2^-e0 in [0, 1).  Row n > 0 is the octave [2^(e0+n-1), 2^(e0+n)), with t
-    in [-1, 1).
+    = 4 x 2^-(e0+n) - 3 in [-1, 1).
 
-    e0 : exponent of the end of the first row.
-    count : number of rows.
+    e0 : exponent of the end of the first row, an integer of any sign.
+    count : number of rows, row 0 included.
     """
 
     e0: int
