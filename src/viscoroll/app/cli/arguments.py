@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from argparse import ArgumentTypeError, Namespace
 from collections.abc import Callable
+from operator import methodcaller
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import viscoroll as vr
 
@@ -17,34 +18,11 @@ FIGURES = (".png", ".pdf", ".svg")
 CommandFunction = Callable[[Namespace], int | None]
 
 
-class Option(NamedTuple):
-    """An argument of a command.
-
-    Attributes
-    ----------
-    names : positional name, or names of the option.
-    settings : keywords of ``ArgumentParser.add_argument``.
-    """
-
-    names: tuple[str, ...]
-    settings: dict[str, Any]
-
-
-class Command(NamedTuple):
-    """A command.
-
-    Attributes
-    ----------
-    run : function that runs it.
-    options : its arguments; of a list of arguments a command line may have one only.
-    """
-
-    run: CommandFunction
-    options: tuple[Option | list[Option], ...]
-
-
-#: Words of a command -> the command, in the order of ``--help``.
-COMMANDS: dict[str, Command] = {}
+#: Argument of a command: a function that adds it to a parser of argparse, or to a group of one.
+Option = Callable[[Any], Any]
+#: Words of a command -> (function that runs it, its arguments; of a list of arguments a command line may have one
+#: only), in the order of ``--help``.
+COMMANDS: dict[str, tuple[CommandFunction, tuple[Option | list[Option], ...]]] = {}
 
 
 def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFunction], CommandFunction]:
@@ -57,7 +35,7 @@ def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFun
     """
 
     def add(run: CommandFunction) -> CommandFunction:
-        COMMANDS[words] = Command(run, options)
+        COMMANDS[words] = run, options
         return run
 
     return add
@@ -69,7 +47,7 @@ def option(*names: str, **settings: Any) -> Option:
     names: positional name, or names of the option with dashes, as of ``ArgumentParser.add_argument``.
     settings: keywords of ``ArgumentParser.add_argument``, as type and help.
     """
-    return Option(names, settings)
+    return methodcaller("add_argument", *names, **settings)
 
 
 def numbers(text: str) -> Any:

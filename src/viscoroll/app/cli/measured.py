@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from dataclasses import replace
 from typing import Any
 
@@ -40,12 +40,24 @@ def show(arguments: Namespace) -> None:
             print(pd.DataFrame(columns).to_string(index=False, float_format="{:.10g}".format), end="\n\n")
 
 
+def _named_heading(text: str) -> tuple[str, str]:
+    """Convert an argument NAME=HEADING to (quantity, heading); :func:`viscoroll.read_dma` checks the quantity.
+
+    text: the argument, for example "storage=Module 1"; the heading may have further equals signs.
+    Raises ArgumentTypeError for another form.
+    """
+    name, _, heading = map(str.strip, text.partition("="))
+    if not heading:
+        raise ArgumentTypeError(f"{text!r} must be NAME=HEADING, for example storage=Module 1")
+    return name, heading
+
+
 @command(
     "material fit",
     option("data", metavar="DATA", help="text file with columns"),
     option("--units", metavar="F,M", help="units of frequency and moduli, if the file states none; for example Hz,MPa"),
     option(
-        "--column", metavar="NAME=HEADING", action="append",
+        "--column", type=_named_heading, metavar="NAME=HEADING", action="append", default=[],
         help="quantity and heading of a column, for example storage=Module 1; may be repeated"
     ),
     option("--decimal", choices=(".", ","), help="decimal mark (default: as the numbers have it)"),
@@ -72,7 +84,7 @@ def fit(arguments: Namespace) -> int:
 
     arguments: parsed command line with
         data, path of the text file; decimal, "." or ",", and encoding, each None for the default;
-        units, "F,M", and column, a list of "NAME=HEADING", each None without;
+        units, "F,M" or None; column, a list of (quantity, heading), perhaps empty;
         mode, "tension", "shear" or None; temperature and reference, degrees Celsius, or None; wlf, "C1,C2,T0" or None;
         on, "both" or "storage"; modes, largest number or None; misfit, root mean square of relative errors;
         nu, Poisson's ratio, and name of the material;
@@ -85,9 +97,13 @@ def fit(arguments: Namespace) -> int:
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
 
-    columns, units = _columns(arguments.column), arguments.units and tuple(arguments.units.split(","))
+    units = arguments.units and tuple(arguments.units.split(","))
     record = vr.read_dma(
-        arguments.data, columns=columns, decimal=arguments.decimal, encoding=arguments.encoding, units=units
+        arguments.data,
+        columns=dict(arguments.column),
+        decimal=arguments.decimal,
+        encoding=arguments.encoding,
+        units=units,
     )
     if arguments.mode is not None:
         record = replace(record, mode=arguments.mode)
@@ -111,20 +127,6 @@ def fit(arguments: Namespace) -> int:
     elif path is not None:
         write_text(path, material_as_toml(material))
     return 0
-
-
-def _columns(texts: list[str] | None) -> dict[str, str]:
-    """Return the options --column as a dict, quantity -> heading.
-
-    texts: the options, each "NAME=HEADING"; None without.
-    Returns {} for None.
-    Raises ParameterError for another form; whether NAME is a quantity is checked by :func:`viscoroll.read_dma`.
-    """
-    pairs = [text.partition("=") for text in texts or ()]
-    for name, sign, heading in pairs:
-        if not (sign and heading):
-            raise vr.ParameterError("--column", repr(name), "NAME=HEADING, for example storage=Module 1")
-    return {name.strip(): heading.strip() for name, _, heading in pairs}
 
 
 def _wlf(text: str) -> vr.WLF:

@@ -122,8 +122,8 @@ def parser() -> Parser:
         for option in options:
             alternatives = option if isinstance(option, list) else [option]
             target = subparser.add_mutually_exclusive_group() if alternatives is option else subparser
-            for names, settings in alternatives:
-                target.add_argument(*names, **settings)
+            for add_to in alternatives:
+                add_to(target)
         subparser.set_defaults(run=run)
     return program
 

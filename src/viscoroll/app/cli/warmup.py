@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from argparse import Namespace
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import viscoroll as vr
@@ -25,17 +25,16 @@ def warm_up(arguments: Namespace) -> None:
 
     notice.announced = True  # the bar takes the place of the notice
     start = time.perf_counter()
-    calls = dict(_calls())
-    with tqdm(total=len(calls), leave=False) as bar:
-        for name, call in calls.items():
-            bar.set_description(name)
-            call()
-            bar.update()
+    calls = _calls()
+    bar = tqdm(calls.items(), leave=False)
+    for name, call in bar:
+        bar.set_description(name)
+        call()
     print(f"{len(calls)} entry points are ready in {cache_root()}, {time.perf_counter() - start:.1f} s")
 
 
-def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
-    """Yield (name, call) of small calls that together use all kernels.
+def _calls() -> dict[str, Callable[[], Any]]:
+    """Return small calls that together use all kernels: name -> call.
 
     Motions use the kernels of contacts, and all motions have one integrator.  A call takes no arguments; its result is
     not used.
@@ -46,19 +45,21 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     modes = vr.Prony([1.0, 2.0], [1.0, 0.1])
     series = vr.Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     many = series.replace(material=vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
-    # build_map computes a map; ensemble might find one on disk
-    yield "motions and flow maps", lambda: flow.build_map((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
-    yield "contact by root solves", lambda: vr.contact(scene, 0.5, delta=0.01, method="direct")
-    yield "contact with an array of alpha", lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
-    yield "contact with an array of Prony series", lambda: vr.contact(many, 0.5, delta=0.01)
-    yield "unsteady rolling", lambda: vr.contact(series, 0.5, delta=0.01, fields="N")
-    yield "bound law", lambda: vr.law(scene)
     covered = series.replace(material=vr.Cover(modes, nu=0.5, thickness=1.0))
-    yield "motions on a cover", lambda: vr.roll(covered, 0.5, 0.5, 0.1)
-    yield "contact on a cover", lambda: vr.contact(covered, 0.5, delta=0.01)
-    yield "steady rolling on a cover", lambda: vr.steady(covered, force=0.01)
-    yield "bound law of a cover", lambda: vr.law(covered)
     thick = covered.replace(material=vr.Cover(1.0, nu=0.5, thickness=[1.0, 1.5]))
-    yield "contact with an array of thicknesses", lambda: vr.contact(thick, 0.5, delta=0.01)
-    yield "steady rolling", lambda: vr.steady(scene, force=0.01)
-    yield "stress", lambda: vr.stress(scene, 0.5, 0.5, delta=0.01)
+    return {
+        # build_map computes a map; ensemble might find one on disk
+        "motions and flow maps": lambda: flow.build_map((scene.alpha, scene.kappa, scene.mu, scene.j), 1),
+        "contact by root solves": lambda: vr.contact(scene, 0.5, delta=0.01, method="direct"),
+        "contact with an array of alpha": lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01),
+        "contact with an array of Prony series": lambda: vr.contact(many, 0.5, delta=0.01),
+        "unsteady rolling": lambda: vr.contact(series, 0.5, delta=0.01, fields="N"),
+        "bound law": lambda: vr.law(scene),
+        "motions on a cover": lambda: vr.roll(covered, 0.5, 0.5, 0.1),
+        "contact on a cover": lambda: vr.contact(covered, 0.5, delta=0.01),
+        "steady rolling on a cover": lambda: vr.steady(covered, force=0.01),
+        "bound law of a cover": lambda: vr.law(covered),
+        "contact with an array of thicknesses": lambda: vr.contact(thick, 0.5, delta=0.01),
+        "steady rolling": lambda: vr.steady(scene, force=0.01),
+        "stress": lambda: vr.stress(scene, 0.5, 0.5, delta=0.01),
+    }

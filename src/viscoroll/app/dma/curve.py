@@ -6,15 +6,14 @@ A series is fitted to a :class:`Curve` or a :class:`Relaxation`; both have the r
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.array_types import Floats
 from ...core.checks import check_array
-from ...core.errors import ParameterError, described_error, shape_error
+from ...core.errors import ParameterError, shape_error
 
 #: least number of points of a curve: a series of one mode has three constants
 FEWEST_POINTS = 3
@@ -59,13 +58,8 @@ class Curve(NamedTuple):
         return 0.0
 
     @property
-    def values(self) -> Floats:
-        """The measured moduli, in the unit of the data, shape (2, n): row 0 is the storage, row 1 the loss modulus."""
-        return np.array(self[1:])
-
-    @property
     def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1 in each row of ``values``: 1 in the storage, 0 in the loss modulus."""
+        """Response of a long-time modulus of 1 in each modulus: 1 in the storage, 0 in the loss modulus."""
         return 1.0, 0.0
 
     def responses(self, tau: Floats) -> Floats:
@@ -88,12 +82,6 @@ class Curve(NamedTuple):
         """
         storage, loss = responses
         return np.array([2.0 * loss * loss, loss * (1.0 - 2.0 * storage)])
-
-    @property
-    def fluid(self) -> ParameterError:
-        """The ParameterError, not raised here, for data of which no fit has a long-time modulus."""
-        found = f"has no plateau at low frequencies ({self.storage[0]:g} at omega = {self.omega[0]:g})"
-        return described_error("storage", found, "that of a solid, whose long-time modulus is positive")
 
 
 class Relaxation(NamedTuple):
@@ -124,13 +112,8 @@ class Relaxation(NamedTuple):
         return 0.5 * float(self.t[0])
 
     @property
-    def values(self) -> Floats:
-        """The relaxation modulus, in the unit of the data, shape (1, n)."""
-        return np.array(self[1:])
-
-    @property
     def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1 in the row of ``values``: 1."""
+        """Response of a long-time modulus of 1: 1."""
         return (1.0,)
 
     def responses(self, tau: Floats) -> Floats:
@@ -149,12 +132,6 @@ class Relaxation(NamedTuple):
         Returns the derivatives, dimensionless, shape (1, n, modes).
         """
         return (self.t[:, None] / tau) * responses
-
-    @property
-    def fluid(self) -> ParameterError:
-        """The ParameterError, not raised here, for data of which no fit has a long-time modulus."""
-        found = f"has no plateau at long times ({self.relaxation[-1]:g} at t = {self.t[-1]:g})"
-        return described_error("relaxation", found, "that of a solid, whose long-time modulus is positive")
 
 
 _Data = TypeVar("_Data", Curve, Relaxation)
@@ -175,11 +152,11 @@ class KramersKronig(NamedTuple):
     median: float
 
 
-def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_POINTS) -> _Data:
+def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS) -> _Data:
     """Check measured columns and return them as a curve, sorted by frequency or time.
 
     kind : :class:`Curve` or :class:`Relaxation`.
-    columns : name -> numbers, (n,) or with units, in the order of the fields of ``kind``.  The names are keys of
+    columns : the fields of ``kind`` in any order of points, (n,), each without a unit or of the dimension in
         :data:`UNITS`: omega in rad/s, t in s; moduli without a unit may be in any, as long as it is the same.
     fewest : least number of points.
     Returns the curve, of the class ``kind``, points of one frequency or time in the order in which they were given.
@@ -189,27 +166,15 @@ def data_of(kind: type[_Data], columns: Mapping[str, Any], fewest: int = FEWEST_
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    values = [check_array(name, given, unit=UNITS[name], above=0.0) for name, given in columns.items()]
-    first = next(iter(columns))
-    for name, column in zip(columns, values, strict=True):
+    names = kind._fields
+    values = [check_array(name, given, unit=UNITS[name], above=0.0) for name, given in zip(names, columns, strict=True)]
+    for name, column in zip(names, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:
-            raise shape_error(name, column.shape, f"one column, with the shape of {first}")
+            raise shape_error(name, column.shape, f"one column, with the shape of {names[0]}")
     if values[0].size < fewest:
-        raise ParameterError(first, f"{values[0].size} points", f"at least {fewest} points")
+        raise ParameterError(names[0], f"{values[0].size} points", f"at least {fewest} points")
     order = np.argsort(values[0], kind="stable")
     return kind(*(column[order] for column in values))
-
-
-def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int = FEWEST_POINTS) -> Curve:
-    """Check storage and loss modulus and return them as a curve, sorted by frequency.
-
-    omega : angular frequencies, rad/s, shape (n,), in any order.
-    storage, loss : moduli in one unit, shape (n,).
-    fewest : least number of points.
-    Returns the :class:`Curve`.
-    Raises ParameterError for values that are not positive or not finite, other shapes, and too few points.
-    """
-    return data_of(Curve, {"omega": omega, "storage": storage, "loss": loss}, fewest)
 
 
 def thinned(data: _Data) -> _Data:
@@ -223,14 +188,13 @@ def thinned(data: _Data) -> _Data:
     Returns a curve of the same class with one point for each of the 500 bins that has points; ``data`` itself if it has
     no more than :data:`MOST_POINTS` points.
     """
-    x = np.log(data[0])
-    if x.size <= MOST_POINTS:
+    if data[0].size <= MOST_POINTS:
         return data
-    position = (x - x[0]) * (_BINS / (x[-1] - x[0] or 1.0))
-    _, bins, count = np.unique(
-        np.minimum(position.astype(np.int64), _BINS - 1), return_inverse=True, return_counts=True
-    )
-    first, *others = (np.bincount(bins, column) / count for column in (x, *data[1:]))
+    from scipy import stats
+
+    x = np.log(data[0])
+    means = stats.binned_statistic(x, [x, *data[1:]], bins=_BINS).statistic
+    first, *others = means[:, ~np.isnan(means[0])]
     return type(data)(np.exp(first), *others)
 
 

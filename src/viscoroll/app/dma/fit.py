@@ -11,7 +11,7 @@ from ...core.errors import ParameterError, described_error
 from ...materials.prony import Prony
 from ...materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
 from ...materials.shift import check_celsius
-from .curve import Curve, Relaxation, curve_of, data_of, kramers_kronig, thinned
+from .curve import Curve, Relaxation, data_of, kramers_kronig, thinned
 from .dynamic_moduli import DynamicModuli
 from .fit_results import Fit, Misfit, Mode, RelaxationFit
 from .master_curve import master_curve
@@ -135,7 +135,7 @@ def fit_prony(
         for name, value in (("reference", reference), ("shift", shift)):
             if value is not None:
                 raise ParameterError(name, f"{value!r:.60}", "given with temperature only")
-        curve, shifts = curve_of(omega, storage, loss), None
+        curve, shifts = data_of(Curve, omega, storage, loss), None
     else:
         curve, shifts = master_curve(omega, storage, loss, temperature, reference, shift, on)
     data, fields, errors = _fit_series(curve, modes, misfit)
@@ -194,7 +194,7 @@ def fit_relaxation(
     >>> round(fit.T_ref, 6), fit.material(nu=0.49).measured.high
     (0.5, 100.0)
     """
-    curve = data_of(Relaxation, {"t": t, "relaxation": relaxation})
+    curve = data_of(Relaxation, t, relaxation)
     first, *_, last = curve.relaxation.tolist()
     if last > _RISES * first:
         found = f"rises with time from {first:g} to {last:g}"

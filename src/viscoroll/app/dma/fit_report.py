@@ -26,11 +26,12 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
     span = f"t = {1.0 / high:.3g} to {1.0 / low:.3g} s" if of_time else f"omega = {low:.3g} to {high:.3g} rad/s"
-    return f"Prony series of {fit.prony.E.size} modes for {fit.points} points, {span}", [*_rows(fit)]
+    rows = [SummaryRow(*row) for row in _rows(fit)]
+    return f"Prony series of {fit.prony.E.size} modes for {fit.points} points, {span}", rows
 
 
-def _rows(fit: Any) -> Iterator[SummaryRow]:
-    """Yield the lines of the report below its title, each a :class:`SummaryRow`.
+def _rows(fit: Any) -> Iterator[tuple[str, str]]:
+    """Yield the lines of the report below its title, each as (name, text).
 
     They are: constants, thinning, misfit, the lines of this kind of fit, modes outside the data, fits on wider grids,
     and the table of modes with strengths divided by the long-time modulus and times in s.
@@ -39,30 +40,28 @@ def _rows(fit: Any) -> Iterator[SummaryRow]:
     """
     prony, symbol = fit.prony, symbol_of(fit)
     floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
-    yield SummaryRow(symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}")
+    yield symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}"
     if fit.mode == "shear":
         factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
-        yield SummaryRow("shear", f"shear data: material(nu=) uses E = 2 (1 + nu) G, {factor}")
-    yield SummaryRow("alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)")
-    yield SummaryRow("T_ref", f"{fit.T_ref:.6g} s (the longest time)")
+        yield "shear", f"shear data: material(nu=) uses E = 2 (1 + nu) G, {factor}"
+    yield "alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)"
+    yield "T_ref", f"{fit.T_ref:.6g} s (the longest time)"
     if fit.temperature is not None:
-        yield SummaryRow("temperature", f"{fit.temperature:g} C, the temperature of these times")
+        yield "temperature", f"{fit.temperature:g} C, the temperature of these times"
     if fit.points > fit.data[0].size:
-        yield SummaryRow(
-            "thinned", f"the means of {fit.data[0].size} logarithmic bins replace the points, here and below"
-        )
+        yield "thinned", f"the means of {fit.data[0].size} logarithmic bins replace the points, here and below"
     target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
-    yield SummaryRow("misfit", f"{fit.misfit_text(2)} (rms, relative); {target}")
-    yield from fit._rows()
-    yield SummaryRow("outside", _outside(fit))
-    yield SummaryRow("wider", "fits with a wider range of times, two times per decade:")
+    yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
+    yield from _of_relaxation(symbol) if fit.data._fields[0] == "t" else _of_dynamic(fit, symbol)
+    yield "outside", _outside(fit)
+    yield "wider", "fits with a wider range of times, two times per decade:"
     for other in fit.wider:
         ratios = f"{symbol} changes by a factor of {other.E / fit.E:.4g}, alpha by {other.alpha / prony.alpha:.4g}"
         change = f"M changes by up to {other.M_change:.2%} at speeds inside the measured band"
-        yield SummaryRow("", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}")
-    yield SummaryRow("modes", f"{symbol}_i/{symbol}      tau_i, s")
+        yield "", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}"
+    yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
-        yield SummaryRow("", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}")
+        yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"
 
 
 def symbol_of(fit: Any) -> str:
@@ -70,44 +69,37 @@ def symbol_of(fit: Any) -> str:
     return "G" if fit.mode == "shear" else "E"
 
 
-def of_dynamic(fit: Any) -> list[SummaryRow]:
-    """Return the lines of the report on the consistency of storage and loss modulus, and on the shifts of a master
-    curve.
+def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
+    """Yield the lines of the report on the consistency of storage and loss modulus, and on the shifts of a master
+    curve, each as (name, text).
+
+    They are one on Kramers-Kronig; of curves at two or more temperatures also the shift factors, combined temperatures,
+    the mismatch of neighbours where shifts were found by their overlap, and each shift that the overlap leaves open.
 
     fit : a :class:`viscoroll.Fit`.
-    Returns a list of :class:`SummaryRow`: one on Kramers-Kronig; of curves at two or more temperatures also the shift
-    factors, combined temperatures, the mismatch of neighbours where shifts were found by their overlap, and each shift
-    that the overlap leaves open.
+    symbol : "E" or "G".
     """
-    symbol = symbol_of(fit)
-    rows = [SummaryRow(f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol))]
+    yield f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)
     if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
-        return rows
+        return
     factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
-    rows.append(SummaryRow("shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"))
-    if shifts.distinct > shifts.temperature.size:
-        text = (
-            f"{shifts.distinct} temperatures, within 0.5 K of one another, were combined into {shifts.temperature.size}"
-        )
-        rows.append(SummaryRow("", text))
+    yield "shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"
+    count = shifts.temperature.size
+    if shifts.distinct > count:
+        yield "", f"{shifts.distinct} temperatures, within 0.5 K of one another, were combined into {count}"
     if np.isfinite(shifts.mismatch).any():
         most = np.nanmax(shifts.mismatch)
-        rows.append(SummaryRow("", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"))
-    open_ones = (
-        f"the overlap does not determine the shift {pair}: the curves are flat there"
-        for pair in undetermined_shifts(shifts)
-    )
-    return rows + [SummaryRow("", text) for text in open_ones]
+        yield "", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"
+    for pair in undetermined_shifts(shifts):
+        yield "", f"the overlap does not determine the shift {pair}: the curves are flat there"
 
 
-def of_relaxation(fit: Any) -> list[SummaryRow]:
-    """Return the line of the report on the error of the loss modulus, in a list of one :class:`SummaryRow`.
+def _of_relaxation(symbol: str) -> Iterator[tuple[str, str]]:
+    """Yield the line of the report on the error of the loss modulus of a fit of relaxation, as (name, text).
 
-    fit : a :class:`viscoroll.RelaxationFit`.
+    symbol : "E" or "G".
     """
-    symbol = symbol_of(fit)
-    text = f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more"
-    return [SummaryRow("", text)]
+    yield "", f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more"
 
 
 def _kramers_kronig(median: float, symbol: str) -> str:
@@ -129,7 +121,7 @@ def _outside(fit: Any) -> str:
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """
-    range_of = "the data's range of times" if fit.data._fields[0] == "t" else "the data's range of 1/omega"
+    range_of = f"the data's range of {'times' if fit.data._fields[0] == 't' else '1/omega'}"
     if not (count := int(fit.outside.sum())):
         return f"no mode lies outside {range_of}"
     share = float(fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0))

@@ -15,15 +15,15 @@ from ...core.array_types import Booleans, Floats, Numbers
 from ...core.checks import check_array
 from ...core.errors import described_error
 from ...core.plots.measurements import series_fit
-from ...core.results import Result, SummaryRow
+from ...core.results import Result
 from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 from .curve import UNITS, Curve, KramersKronig, Relaxation
-from .fit_report import of_dynamic, of_relaxation, summarize_fit, symbol_of
+from .fit_report import summarize_fit, symbol_of
 from .master_curve import Shifts
-from .spectrum import FLOOR, Data, spectrum_of
+from .spectrum import Data, has_plateau, spectrum_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -111,7 +111,7 @@ class SeriesFit(Result):
     @property
     def plateau(self) -> bool:
         """Whether the data determine E, which is then above the least that is allowed (1 % of the lowest modulus)."""
-        return self.E > 1.001 * FLOOR * float(self.data.values[0].min())
+        return has_plateau(self.data, self.E)
 
     @cached_property
     def wider(self) -> tuple[Any, ...]:
@@ -246,12 +246,6 @@ class SeriesFit(Result):
 
     _summary, _figure = summarize_fit, series_fit
 
-    def _rows(self) -> list[SummaryRow]:
-        """Return the lines of the report on misfit and data that only this kind of fit has, as a list of
-        :class:`SummaryRow`.
-        """
-        raise NotImplementedError
-
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Fit(SeriesFit):
@@ -307,8 +301,6 @@ class Fit(SeriesFit):
         storage, loss = self._moduli(omega)
         return storage, loss
 
-    _rows = of_dynamic
-
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RelaxationFit(SeriesFit):
@@ -356,5 +348,3 @@ class RelaxationFit(SeriesFit):
         1000000
         """
         return self._moduli(t)[0]
-
-    _rows = of_relaxation

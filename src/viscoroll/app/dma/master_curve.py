@@ -15,7 +15,7 @@ from ...core.array_types import Floats
 from ...core.checks import check_array
 from ...core.errors import ModelWarning, ParameterError, caller_level, described_error
 from ...materials.shift import USUAL_RANGE, check_celsius, relative_shift
-from .curve import Curve, curve_of, thinned
+from .curve import Curve, data_of, thinned
 from .temperature_sets import default_reference, listed_factors, nearest, points_of, sets_of
 
 #: least number of points of both curves in their overlap
@@ -109,9 +109,9 @@ def master_curve(
         factor, base = listed_factors(shift, sets, base)
     else:
         base = default_reference(temperatures, []) if base is None else base
-        nearest(base, temperatures, "reference")
+        nearest(base, temperatures)
         parts = (Curve(*(column[sets.of_point == n] for column in whole)) for n in range(temperatures.size))
-        curves = (thinned(curve_of(*part, fewest=2)) for part in parts)
+        curves = (thinned(data_of(Curve, *part, fewest=2)) for part in parts)
         logs, mismatch, freedom = _shifts_by_overlap([_LogCurve(curve, on) for curve in curves], temperatures)
         factor = np.exp(logs - np.interp(base, temperatures, logs))
     if shift is not None and factor[-1] > factor[0]:
@@ -127,7 +127,7 @@ def master_curve(
             f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the curves are flat: give shift="
         )
         warnings.warn(text + (', or try on="storage"' if on == "both" else ""), ModelWarning, stacklevel=caller_level())
-    return curve_of(whole[0] * factor[sets.of_point], whole[1], whole[2]), shifts
+    return data_of(Curve, whole[0] * factor[sets.of_point], *whole[1:]), shifts
 
 
 def undetermined_shifts(shifts: Shifts) -> list[str]:

@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 
 from ...core.array_types import Floats
+from ...core.errors import described_error
 from .spectrum import Data, Spectrum, has_plateau, misfits, on_times, refined
 
 #: decades that the grid of times reaches beyond the data, in the order in which they are tried
@@ -43,7 +44,10 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
     """
     starts = _fit_wider_grids(data, None if modes else target)
     if not starts:
-        raise data.fluid
+        x, name, *_ = data._fields
+        side, n = ("long times", -1) if x == "t" else ("low frequencies", 0)
+        found = f"has no plateau at {side} ({data[1][n]:g} at {x} = {data[0][n]:g})"
+        raise described_error(name, found, "that of a solid, whose long-time modulus is positive")
     limit = _NEAR_BEST * min(_size(data, spectrum) for spectrum, _ in starts)
     reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)
 
@@ -78,7 +82,7 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, t
     for margin, density in product(MARGINS, DENSITIES):
         for slow in np.arange(margin, _LEAST_MARGIN - 0.1, -0.25):
             ends = max(10.0**-margin / high, data.shortest), 10.0**slow / low
-            if ends[1] > ends[0] and has_plateau(data, found := on_times(data, grid_of_times(ends, density))):
+            if ends[1] > ends[0] and has_plateau(data, (found := on_times(data, grid_of_times(ends, density))).E):
                 starts.append((refined(data, found, ends, _CALLS), ends))
                 break
         if target is not None and starts and _reaches_target(data, starts[-1][0], target):

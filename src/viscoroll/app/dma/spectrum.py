@@ -39,7 +39,7 @@ class Spectrum(NamedTuple):
         """Return the moduli of the spectrum at the frequencies or times of the data, in the unit of E.
 
         data : measured moduli at n points; only their frequencies or times are used.
-        Returns the shape of ``data.values``: (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of
+        Returns shape (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of
         relaxation.
         """
         return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
@@ -65,7 +65,7 @@ def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
     """
     found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
     found[..., 0], found[..., 1:] = np.multiply(constant, data.constant)[:, None], modes
-    found /= data.values[..., None]
+    found /= np.array(data[1:])[..., None]
     return found.reshape(-1, found.shape[2])
 
 
@@ -110,13 +110,13 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
     return Spectrum(floor + float(found[0]), found[1:][order], tau[order])
 
 
-def has_plateau(data: Data, spectrum: Spectrum) -> bool:
+def has_plateau(data: Data, E: float) -> bool:
     """Return whether the data determine the long-time modulus of a fit, which is then above the least that is allowed.
 
     data : measured moduli.
-    spectrum : fit of the data, as of :func:`on_times`.
+    E : long-time modulus of a fit of the data, in their unit, as of :func:`on_times`.
     """
-    return spectrum.E > 1.0001 * _least_modulus(data)
+    return E > 1.0001 * _least_modulus(data)
 
 
 def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
@@ -216,4 +216,4 @@ def _least_modulus(data: Data) -> float:
 
     It is :data:`FLOOR` of the lowest storage or relaxation modulus of the ``data``.
     """
-    return FLOOR * float(data.values[0].min())
+    return FLOOR * float(data[1].min())

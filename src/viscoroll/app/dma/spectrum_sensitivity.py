@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +20,7 @@ _TIMES = 2.0
 _SPEEDS = 4
 
 
-@dataclass(frozen=True, eq=False)
-class ExtendedGridFit:
+class ExtendedGridFit(NamedTuple):
     """A fit by non-negative least squares on the times of another fit and on a wider grid, beside that other fit.
 
     decades : by which the grid is wider on either side.

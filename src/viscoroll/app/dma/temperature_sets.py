@@ -106,18 +106,17 @@ def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
     return next((T for T in unshifted if low <= T <= high), float(temperatures[temperatures.size // 2]))
 
 
-def nearest(base: float, temperatures: Floats, name: str) -> int:
+def nearest(base: float, temperatures: Floats) -> int:
     """Return the index of the set nearest to a temperature, which must not lie outside of all sets.
 
     base : the temperature, degrees Celsius.
     temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
-    name : name of the argument in the error message.
     Returns an index of ``temperatures``.
     Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE` below the first set or above the last.
     """
     low, high = temperatures[0], temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
-        raise ParameterError(name, base, f"within [{low:g}, {high:g}]")
+        raise ParameterError("reference", base, f"within [{low:g}, {high:g}]")
     return int(np.argmin(np.abs(temperatures - base)))
 
 
@@ -143,7 +142,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
         raise described_error("shift", "has several factors for one temperature", "one factor for each temperature")
     if base is None:
         base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
-    index = nearest(base, temperatures, "reference")
+    index = nearest(base, temperatures)
     if abs(temperatures[index] - base) > LEAST_DISTANCE:
         listed = ", ".join(f"{T:g}" for T in temperatures)
         allowed = f"one of {listed}, where a factor is given; or give shift as a function of the temperature"

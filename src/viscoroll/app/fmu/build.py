@@ -24,7 +24,7 @@ from ...materials.law.netcdf import parse_law
 from ...materials.law.table import LawTable
 from ...materials.law_file import dataset_content
 from .description import build_description, model_description
-from .variables import MODELS, RADIUS, Variable
+from .variables import MODELS, Variable
 
 #: Versions of the FMI standard that can be written.
 VERSIONS = (2, 3)
@@ -130,18 +130,19 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
     Returns name -> value in the unit of the variable, of the variables whose default start is not None.
     Raises ParameterError for a Cylinder with arrays.
     """
+    starts = {variable.name: variable.start for variable in variables if variable.start is not None}
     values: dict[str, Any] = {"T_ref": table.T_ref}
     if table.pair is not None:
         values["E_prime"] = table.pair.E_prime
         if l0:
-            values["load"] = l0**2 * table.pair.E_prime / (32.0 * RADIUS)
+            values["load"] = l0**2 * table.pair.E_prime / (32.0 * starts["R"])
     if isinstance(given, Cylinder):
         values |= {name: getattr(given, name) for name in ("R", "E_prime", "mu", "load")}
         values |= {"mass": given.m, "inertia": given.j}
     for name, value in values.items():
         if np.ndim(value):
             raise shape_error(name, np.shape(value), "one number: an FMU contains one cylinder")
-    return {v.name: float(values.get(v.name, v.start)) for v in variables if v.start is not None}
+    return {name: float(values.get(name, start)) for name, start in starts.items()}
 
 
 def _write_sources(folder: Path, headers: Path, model: str, version: int, constants: str) -> str:

@@ -97,7 +97,7 @@ class Identification(Result):
         self.values = problem.values(u)
         self.minima = [(minimum.chi2, problem.values(minimum.u)) for minimum in found]
         self.dof, self.records = problem.points - u.size, problem.records
-        self.planned = not any(record.measured for record in self.records.values())
+        self.planned = problem.planned
         self.sigma = {str(column): problem.sigma[column.at].copy() for column in problem.columns}
         self.noise = problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
@@ -297,9 +297,8 @@ class Identification(Result):
         check_names("values", values, self.values, "an unknown")
         found = []
         for unknown in self._problem.unknowns:
-            name = unknown.name
-            value = check_number(name, values.get(name, unknown.start), **unknown.bounds(name))
-            found.append(unknown.to_u(value))
+            value = values.get(unknown.name, unknown.start)
+            found.append(unknown.to_u(check_number(unknown.name, value, **unknown.bounds(unknown.name))))
         return np.array(found)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:

@@ -111,9 +111,8 @@ def identify(
     if len(unknowns) > most:
         allowed = f"at most {most}, since the number of points is {problem.points}: give more points, or sigma"
         raise ParameterError("number of unknowns", len(unknowns), allowed)
-    planned = not any(record.measured for record in records.values())
     return Identification(
-        problem, _find_minima(problem, 1 if planned else count, seed, check_bool("progress", progress))
+        problem, _find_minima(problem, 1 if problem.planned else count, seed, check_bool("progress", progress))
     )
 
 

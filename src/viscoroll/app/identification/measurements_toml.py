@@ -78,8 +78,7 @@ def _record(path: Path, content: Any) -> Record:
     Returns a :class:`Resistance`, :class:`Traction` or :class:`Coastdown`.
     Raises FileError for unknown keys, wrong types, values that make no record, and as :func:`_columns` does.
     """
-    named = content.get("kind") if isinstance(content, dict) else None
-    kind = next((kind for name, kind in _KINDS.items() if name == named), None)
+    kind = _KINDS.get(str(content.get("kind"))) if isinstance(content, dict) else None
     if kind is None:
         raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
     columns = (*kind.COORDINATES, *kind.QUANTITIES)
@@ -88,8 +87,7 @@ def _record(path: Path, content: Any) -> Record:
     section: Any = as_struct(path, "data", content, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
         check_keys(path, f"data.{name}", getattr(section, name), columns)
-    values = {name: getattr(section, name) for name, *_ in own}
-    more: Any = {name: None if value == _UNKNOWN else value for name, value in values.items()}
+    more: Any = {name: None if (value := getattr(section, name)) == _UNKNOWN else value for name, *_ in own}
     try:
         return kind(**more, **_columns(path.parent / section.file, kind, section))
     except ParameterError as error:

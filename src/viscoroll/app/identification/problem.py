@@ -94,6 +94,7 @@ class Problem:
     (:class:`.unknowns.Unknown`).
 
     cylinder, unknowns, records, robust, shifts : as given.
+    planned : whether the records have no values.
     names : names of the unknowns.
     start, low, high : coordinates of start and bounds, shape (unknowns,).
     y, sigma : all data and their standard deviations, SI, one column after the other, shape (n,); those of a plan are
@@ -117,6 +118,7 @@ class Problem:
         """
         self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
         self.robust, self.names = robust, [unknown.name for unknown in unknowns]
+        self.planned = not any(record.measured for record in records.values())
         self.start, self.low, self.high = np.array([unknown.to_u(np.array(unknown[1:4])) for unknown in unknowns]).T
         self._mean, self._sd = np.array([(unknown.mean, unknown.sd) for unknown in unknowns]).T
         self._has_prior, self._model = np.isfinite(self._sd), lru_cache(16)(self._predict_all)

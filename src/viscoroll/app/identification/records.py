@@ -294,9 +294,9 @@ class Coastdown(Record):
         t: Any = self.t
         if t.ndim > 1:
             raise shape_error(self.label("t"), t.shape, "a vector, in ascending order")
-        if (np.diff(t) < 0.0).any():
-            n = int(np.argmax(np.diff(t.ravel()) < 0.0))
-            at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"
+        if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
+            n = falls[0]
+            at = f"{t[n]:g}, {t[n + 1]:g} at rows {n}, {n + 1}"
             raise ParameterError(self.label("t"), at, "a vector, in ascending order")
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
