@@ -303,11 +303,10 @@ class Prony(OneOrMany):
         """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref, a float or (n,): slow rolling is kappa V below
         its inverse.
 
-        1.0 of an elastic material, and of n that all are elastic; NaN of an elastic one among others.
+        1.0 of an elastic material, also of one among others.
         """
-        if not self.E.size:
-            return 1.0
-        return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2)) / self.T_mean
+        elastic = self.T_mean == 0.0
+        return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2) + elastic) / (self.T_mean + elastic)
 
     def slower(self, factor: ArrayLike) -> Prony:
         """Return the material with all times multiplied by a factor, as of a colder rubber.

@@ -95,8 +95,8 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         for none); all over alpha too where there is an axis of that name.  In place of M there may be M_half_space and
         M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q has no bound), and
         where V has a unit R in m and the load in N/m.
-    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.  Ignored for a
-        grid without that axis.  None: not given.
+    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.  It must be
+        left out, or None, for a grid without that axis.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         A file that cannot be read or differs from its seal; a variable that is missing, has other dimensions or other
         units, is not finite or does not increase; no R beside speeds with a unit.
     ParameterError
-        An alpha outside the grid, or none for a grid with that axis.
+        An alpha outside the grid, or none for a grid with that axis; an alpha for a grid without it.
     """
     import xarray as xr
 
@@ -130,15 +130,16 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
     """Return a grid at one alpha.
 
-    table: dataset of a grid, with or without an axis alpha; without it the grid is returned as it is, whatever
-        ``alpha`` is.
+    table: dataset of a grid, with or without an axis alpha; without it the grid is returned as it is.
     path: path of the file, for errors.
     alpha: wanted value; None: not given.
     Returns the dataset without that axis: of a single node as it is, else interpolated in ln alpha, linear between two
     nodes, quadratic between three, cubic from four on.
-    Raises ParameterError for an alpha outside the axis, or none for a grid that has one.
+    Raises ParameterError for an alpha outside the axis, none for a grid that has one, and one for a grid without.
     """
     if "alpha" not in table.dims:
+        if alpha is not None:
+            raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} has no axis alpha")
         return table
     low, high = table["alpha"].values[[0, -1]]
     if alpha is None or not low <= check_number("alpha", alpha) <= high:

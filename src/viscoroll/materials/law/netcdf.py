@@ -105,7 +105,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
         delta, of ``viscoroll tables build`` or of another program (``viscoroll.materials.law.grid.load_grid``).
     alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
-        T_epsilon for the unit of time.  Ignored for a grid without an axis alpha.
+        T_epsilon for the unit of time.  It must be left out for any other file.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     FileError
         A file that is missing, cut or damaged in any byte, no law, or of another schema; a grid that is incomplete.
     ParameterError
-        An alpha beside the file of one material; for the file of every alpha, or a grid over alpha, none, or one beyond
+        An alpha beside the file of one material or a grid without an axis alpha; for the file of every alpha, or a grid over alpha, none, or one beyond
         the range of the file.
 
     Examples

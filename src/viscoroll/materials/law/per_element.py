@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...core.array_types import Floats, Integers
+from ...core.errors import ParameterError
 from ..bodies import Bodies
 from ..cover import Cover
 from ..prony import Prony, lock_array
@@ -205,8 +206,8 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     covers: :class:`..cover.Cover` of n covers, which may differ in Poisson's ratio too.
     index: index of the cover of each element, (elements,), or (1,) for all.
     Returns :class:`...kernels.rows.record.Law`, which holds the law of one element at a time.
-    Raises ParameterError where the thinnest cover of an octave of thickness that is used, which may be thinner than any
-    of ``covers``, is so thin that the half contact at rest is longer than six thicknesses.
+    Raises ParameterError for a cover in an octave of thickness whose thinnest cover, which may be thinner than any of
+    ``covers``, is so thin that the half contact at rest is longer than six thicknesses.
     """
     from ...kernels.rows import thickness_axis
     from ...kernels.rows.record import E0, ROW_COUNT
@@ -218,7 +219,12 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
         weights = (of_nu[:, :, None] * weights[:, None]).reshape(len(weights), -1)
     for exponent in np.unique(octave).tolist():
         with _lock:
-            laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent, np.max(covers.nu)), many_nu)
+            try:
+                laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent, np.max(covers.nu)), many_nu)
+            except ParameterError as error:
+                thin, allowed = covers.thickness.min(), 2.0 ** (exponent + 1.0)
+                reason = f"at least {allowed:g} where covers differ: the laws of thinner ones are not interpolated"
+                raise ParameterError("thickness/l0", f"{thin:.3g}", reason) from error
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
     rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
