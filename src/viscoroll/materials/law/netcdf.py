@@ -119,8 +119,8 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     FileError
         A file that is missing, cut or damaged in any byte, no law, or of another schema; a grid that is incomplete.
     ParameterError
-        An alpha beside the file of one material or a grid without an axis alpha; for the file of every alpha, or a grid over alpha, none, or one beyond
-        the range of the file.
+        An alpha beside the file of one material or a grid without an axis alpha; for the file of every alpha, or a grid
+        over alpha, none, or one beyond the range of the file.
 
     Examples
     --------
