@@ -1,4 +1,8 @@
-"""Solution of many motions, by the flow map of their scene or by integration: :func:`solve_batch`."""
+"""Solution of many motions, by the flow map of their scene or by integration: :func:`solve_batch`.
+
+All is dimensionless.  T_ref is the unit of time of the motions: T_epsilon of a material that is an alpha, the ``T_ref``
+of any other material.  Speeds are divided by R/T_ref.  gamma = P T_ref^2/(m R).
+"""
 
 from __future__ import annotations
 
@@ -35,12 +39,14 @@ FLOW_PAYS = 4096
 class Batch(NamedTuple):
     """Motions to be solved; dimensionless.
 
-    problem : the checked motions.
-    inputs : name -> vector of one or n values, in the order alpha, kappa, mu, gamma, j, V0, omega0.
-    immobile : whether a motion is too slow to leave the indentation of a standstill, (n,).
+    problem : :class:`MotionProblem`, the checked motions.
+    inputs : name -> vector, (1,) where one value holds for all motions, else (n,), in the order alpha, kappa, mu,
+    gamma, j, V0, omega0.
+    immobile : whether a motion is too slow to leave the indentation of a standstill, (n,); its size is the number of
+    motions.
     times : output times, (times,), ascending, in T_ref.
     rows : names, out of :data:`.drive.ROWS`, of the quantities to compute.
-    threads : number of threads.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     progress : title of a progress bar, None for none.
     """
 
@@ -56,9 +62,11 @@ class Batch(NamedTuple):
 class Solution(NamedTuple):
     """Solved motions, dimensionless, and their source.
 
-    motions : quantities (rows, n, times), status, onset and rest times, number of switches.
-    about : "steps" and "flow" (whether from the flow map), (n,); "flow_error", the stated error of the map, NaN without
-    one; "flow_problem", why a map that was tried could not be used, or "".
+    motions : :class:`.flow.FlowResult`: quantities (rows, n, times), in the order of :attr:`Batch.rows`; status, onset
+    and rest times in T_ref, number of switches, (n,) each.
+    about : "steps", integration steps of each motion, (n,) int, 0 of motions that were not integrated; "flow", whether
+    a motion was looked up in the flow map, (n,) bool; "flow_error", a float, the stated error of the map, NaN if none
+    was tried, infinite if the scene has none; "flow_problem", why the scene has no map, or "".
     """
 
     motions: FlowResult
@@ -68,31 +76,41 @@ class Solution(NamedTuple):
 def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     """Solve motions: look up those that the flow map of their scene contains, and integrate all others.
 
-    A flow map is a table of all motions of one scene (:mod:`.flow`).
+    A flow map is a table of all free motions of one scene (:mod:`.flow`).  It is tried only for free motions (no drive,
+    no added mass) of one scene whose bodies are alike.  Where its stated error exceeds rtol, as the infinite one of a
+    scene without a map does, the map is not used, and all motions are integrated; "flow_error" and "flow_problem" of
+    the result say so.  All are integrated too where all start at rest.  Nothing is raised in these cases, with method
+    "flow" neither.
 
-    batch: the motions.
-    method: "auto" (a map from :data:`FLOW_PAYS` motions on), "flow" or "integrate", as of :func:`viscoroll.ensemble`.
-    speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
-    Raises ParameterError for method "flow" where no map applies: different scenes, driven or unsteady motions, bodies
-    that differ; and for a ``speed`` above the largest start speed allowed.
-    Returns the :class:`Solution`.
+    Motions that stay in the indentation of a standstill (``immobile``) are not integrated: they have status CAUGHT and
+    NaN in all quantities, onset and rest times, no switches, and ``flow`` is False.
+
+    batch: :class:`Batch`, the motions.
+    method: "auto" (a map is tried from :data:`FLOW_PAYS` motions on), "flow" (for any number) or "integrate" (never),
+    as of :func:`viscoroll.ensemble`.
+    speed: highest speed, > 0, for which the flow map is made, dimensionless; None: the largest |V0| or |omega0|.  It is
+    ignored, and not checked, where no map is tried.
+    Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady motions, or with
+    bodies that differ (covers included); where a map is tried, also for a ``speed`` above 1e100.
+    Returns the :class:`Solution`; a motion that could not be integrated to its end has a status above RESTED, and NaN
+    at the times that it did not reach.
     """
-    scene = batch.problem.scene
+    scene, immobile = batch.problem.scene, batch.immobile
     free = not batch.problem.driven and scene.like_bodies
     if method == "flow" and (scene.shape or not free):
         which = "motions have different scenes" if free else "motions are driven or unsteady, or bodies differ"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
-    mapped = method == "flow" or (method == "auto" and batch.immobile.size >= FLOW_PAYS)
+    mapped = method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)
     if free and not scene.shape and mapped:
         found = _solve_by_flow_map(batch, speed, about)
     if found is None:
-        found = FlowResult.empty(len(batch.rows), batch.immobile.size, batch.times.size)
-    about["flow"] = found.status >= 0
-    if (immobile := batch.immobile).any():
+        found = FlowResult.empty(len(batch.rows), immobile.size, batch.times.size)
+    about["flow"] = (found.status >= 0) & ~immobile
+    if immobile.any():
         found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
-        found.status[immobile] = MotionStatus.CAUGHT
+        found.status[immobile], found.switches[immobile] = MotionStatus.CAUGHT, 0
     about["steps"] = _integrate_others(found, batch)
     return Solution(found, about)
 
@@ -100,14 +118,18 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
 def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any]) -> FlowResult | None:
     """Look motions up in the flow map of their scene, which is built if there is none yet.
 
-    The map counts time in the material's own unit, to which the motions are converted and from which their results are.
+    The map counts time in the material's own unit.  Speeds and times are converted to that unit for the look-up, and
+    the results are converted back to T_ref.
 
-    batch: motions of one scene.
-    speed: highest speed of the flow map, dimensionless; None: the largest of the starts.
-    about: dict that receives "flow_error" and "flow_problem" of the map.
-    Raises ParameterError for a ``speed`` above the largest start speed allowed.
-    Returns the result, in which motions outside the map have a status below 0; None, with nothing looked up, where all
-    motions are at rest, or the stated error exceeds rtol.
+    batch: :class:`Batch`, free motions of one scene.
+    speed: highest speed for which the flow map is made, > 0, dimensionless; None: the largest |V0| or |omega0|.
+    about: dict that receives "flow_error" and "flow_problem" of the map; it stays as it is where all motions are at
+    rest.
+    Raises ParameterError for a ``speed`` that, in the material's own unit of time, is above 1e100.
+    Returns the :class:`.flow.FlowResult` of all n motions; those that the map does not contain have a status below 0,
+    and their other entries are undefined.  Returns None, with nothing looked up, where all motions are at rest and
+    ``speed`` is None, or where the stated error of the map exceeds rtol, as the infinite one of a scene without a map
+    does.
     """
     scene, rows = batch.problem.scene, batch.rows
     rtol, threshold, _ = batch.problem.limits
@@ -135,18 +157,19 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
 
 
 def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
-    """Integrate the motions that have no result yet, status < 0.
+    """Integrate the motions that have no result yet: those with status < 0.
 
-    found: results, into which theirs are written: quantities, status, switches, onset and rest times.
-    batch: all motions.
-    Returns the number of integration steps of each motion, (n,); 0 for those that had a result.
+    found: :class:`.flow.FlowResult`, into which quantities, status, number of switches, onset and rest times of these
+    motions are written, dimensionless, times in T_ref; entries of the other motions stay.
+    batch: :class:`Batch`, all n motions.
+    Returns the number of integration steps of each motion, (n,), int; 0 for those that had a result.
     """
     problem = batch.problem
     law, rows = _law_of(problem.scene, problem.unsteady), np.array([ROWS.index(name) for name in batch.rows], np.int64)
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
-        """Integrate those motions of a block that have no result, and write their results.
+        """Integrate those motions of a block that have no result, and write their results into ``found`` and ``steps``.
 
         start, stop: index of the first motion of the block, and of the one behind the last.
         """
@@ -170,10 +193,12 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """Return the function that gives the kernel's law of some motions.
 
-    scene: parameters of the motions, of one material or of several.
-    unsteady: whether the added mass acts; then several materials are requested for one motion at a time.
-    Returns a function (alphas of the motions, (k,); their indices, (k,)) -> (record of the law or laws as the kernels
-    take it; whether the two bodies take unequal parts of M).
+    scene: :class:`Parameters` of the motions, of one material or of several.
+    unsteady: whether the added mass acts.  The function must then be called for one motion at a time if the materials
+    differ, since the law with N belongs to one material.
+    Returns a function of the alphas of the motions, (k,), and of their indices, (k,).  It returns (the record of the
+    law, or of the k laws, as the kernels take it; whether half-space and cylinder may take unequal parts of M, which is
+    True for any list of two bodies).  Where all motions have one material the function ignores its arguments.
     """
     several: Any = scene.material_array
     if several is None and not np.ndim(scene.alpha):
@@ -184,9 +209,11 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
     def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
         """Return the law of some motions as the kernel takes it.
 
-        alpha: alphas of the motions, (k,).
-        index: indices of the motions, (k,).
-        Returns (record of the law or laws, whether the bodies differ).
+        alpha: alphas of the motions, (k,); (1,) if all have the same, and with the added mass.  Ignored where the scene
+        has several materials.
+        index: indices of the motions, (k,), from which their materials are taken; ignored where each motion has only an
+        alpha.
+        Returns (record of the law or laws; whether the bodies may take unequal parts of M).
         """
         if several is not None:
             index = np.minimum(index, len(several) - 1)

@@ -26,8 +26,9 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     """Check output times.
 
     t: one time or a vector (n,), in ``units``; numbers that carry a unit are converted.
-    units: unit of time, or a roller's units, of which that of time is taken; "1": dimensionless.
-    Returns a new vector (n,) in ``units``; of one time (1,).
+    units: unit of time as "s", or the units of a roller (a :class:`Scale`), of which that of time is taken; "1":
+    dimensionless.
+    Returns a new vector (n,), float64, in ``units``; of one time (1,).
     Raises ParameterError unless they are finite, >= 0, ascending (equal times are allowed), and at least one.
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
@@ -42,10 +43,10 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
 
 
 def refuse_end(end: float, T: float) -> None:
-    """Raise ParameterError for a last output time that is infinite in T_ref.
+    """Raise ParameterError where the last output time becomes infinite when it is divided by T_ref.
 
     end: last output time, in s, or of a scene in T_ref.
-    T: T_ref, s; 1 for a scene.
+    T: T_ref, the unit of time of the dimensionless motion, s; 1 for a scene.
     """
     if end / T == math.inf:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
@@ -54,7 +55,8 @@ def refuse_end(end: float, T: float) -> None:
 def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number.
 
-    arguments: name of an argument of ``roll`` -> its value, a number or an array.
+    arguments: name of an argument of ``roll`` -> its value.  Numbers and None pass, and so does what is no array, which
+    is checked elsewhere.
     """
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
@@ -63,9 +65,9 @@ def require_single(**arguments: Any) -> None:
 
 
 def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument; () of what is no array.
+    """Return the shape of an argument; () of what is no array, as None.
 
-    value: what a caller gave; a ragged list counts as an array of objects.
+    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.
     """
     try:
         return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
@@ -77,12 +79,13 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
     """Check the limits of an integration.
 
     rtol: relative tolerance.
-    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: none.
+    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: a motion does not
+    end at rest.
     max_steps: largest number of steps of a motion.
-    scale: scale of the roller.
-    Returns (rtol; threshold of rest, dimensionless, 0 for none; largest number of steps).
-    Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7] or no whole
-    number.
+    scale: :class:`Scale` of the roller.
+    Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps, an int).
+    Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive and finite, max_steps outside [1, 10^7] or
+    no whole number.
     """
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:
@@ -92,10 +95,12 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
-    """Return start speeds, checked: two floats, not both 0, as they are, else both as arrays in their shapes.
+    """Return start speeds, checked; they are not broadcast.
 
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
-    Raises ParameterError unless both are finite and at most 1e100 in size, the larger of |V0| and |omega0| of each
+    Returns (V0, omega0): as they are where both are of type float and not both 0; else both as float64 arrays in their
+    own shapes, () for a number.
+    Raises ParameterError unless both are finite and at most 1e100 in magnitude, the larger of |V0| and |omega0| of each
     motion is 0 or at least 1e-300, and the shapes broadcast.
     """
     low, high = SPEED_RANGE
@@ -121,10 +126,10 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
 def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
     """Return an error whose message also says by which units the dimensionless numbers in it were divided.
 
-    error: the error.
-    scale: scale of the roller, which gives these units in s, m/s and N/m.
-    Returns a new ParameterError; the same one for a scene, or where its message states no dimensionless numbers.  Units
-    that differ between motions are not listed.
+    error: the :class:`ParameterError`.
+    scale: :class:`Scale` of the roller, which gives these units in s, m/s and N/m.
+    Returns a new ParameterError; ``error`` itself for a scene, or where its message states no dimensionless numbers.
+    Units that differ between motions are not listed: the message then ends with "(dimensionless)".
     """
     if not (scale.si and error.is_dimensionless):
         return error

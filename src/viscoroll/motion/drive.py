@@ -48,7 +48,8 @@ class Drive(NamedTuple):
     def numbers(self) -> dict[str, Floats]:
         """Return name -> array, () or (n,), of each load or speed that is given as a number or as one for each motion.
 
-        Schedules, callables and feedbacks are left out.  Raises ParameterError for what is not numeric or not finite.
+        The angle of a slope and the drag are among them.  Schedules, callables and feedbacks are left out.  Raises
+        ParameterError for what is not numeric or not finite.
         """
         others = Feedback | Schedule
         return {n: check_array(n, x) for n, x in self.given.items() if not (callable(x) or isinstance(x, others))}
@@ -64,14 +65,21 @@ class Drive(NamedTuple):
         return not (self.force is self.torque is self.slope is self.brake is self.drag is self.omega is self.V is None)
 
     def without_zeros(self) -> Drive:
-        """Return the same without a force, torque, slope, brake or drag that is 0 at all times."""
+        """Return the same without a force, torque, slope, brake or drag that is 0 at all times; prescribed speeds of 0
+        stay.
+
+        Raises ParameterError for a load that is no number and no function of time.
+        """
         loads = {name: value for name, value in self.given.items() if name not in ("omega", "V")}
         return self._replace(**{name: None for name, value in loads.items() if _is_zero(name, value)})
 
     def over(self, scale: Scale) -> Drive:
-        """Return the same drive made dimensionless.
+        """Return the same drive made dimensionless; for a scene, and where nothing is given, it is this drive itself.
 
-        scale: units of the roller: the SI values of 1 of each quantity.
+        scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the result take the time
+        in T_ref, the unit of time of that scale.
+        Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, and a callable for many
+        cylinders.
         """
         return (
             Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
@@ -84,7 +92,8 @@ def _is_zero(name: str, value: Any) -> bool:
     """Return whether a load is 0 at all times; a callable never counts as 0.
 
     name: name of the argument, for refusals.
-    value: what the caller gave: a number, an array, a Schedule, a callable or a Feedback, whose gains must be 0 too.
+    value: what the caller gave: a number, an array, of which all must be 0, a Schedule, of which all values must be, a
+    callable or a Feedback, whose gains must be 0 too.
     Raises ParameterError for what is no number and no function of time.
     """
     if isinstance(value, Feedback):
@@ -109,10 +118,11 @@ def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainA
     """Return start speeds and drive in the units of a roller, as plain numbers, and the labels that they had.
 
     start: V0 and omega0, as the caller gave them.
-    drive: loads and prescribed speeds, as the caller gave them.
-    units: units of the roller.
-    Raises ParameterError for a unit of another dimension.
-    Returns :class:`PlainArguments`.
+    drive: :class:`Drive`, loads and prescribed speeds, as the caller gave them.
+    units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
+    Raises ParameterError for a unit of another dimension, and for arrays with labels beside arrays without, or with
+    other labels.
+    Returns :class:`PlainArguments`; what had neither a unit nor labels is unchanged, and callables are.
     """
     plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)

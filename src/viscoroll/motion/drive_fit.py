@@ -9,6 +9,9 @@ the fit is 0, since an error of the wrong sign would start a motion from rest in
 
 Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined they are one to the left and one to the
 right, which meet in it.  A jump is located between two neighbouring doubles.
+
+All is dimensionless.  T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref`` of any other
+material.
 """
 
 from __future__ import annotations
@@ -101,11 +104,11 @@ class _Sampled:
         """Take the samples of a callable.
 
         name: name of the argument, for refusals.
-        function: takes t in T_ref, returns a number.
+        function: takes t in T_ref, returns a number, dimensionless.
         end: last time, in T_ref.
-        rtol: relative tolerance of the motion.
+        rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the largest magnitude so far.
         low: smallest value allowed.
-        samples: number of samples.
+        samples: number of samples, which are taken at the middle of as many equal parts of the time from 0 to ``end``.
         Raises ParameterError for values that are no finite numbers or below ``low``.
         """
         self.name, self.function, self.low, self.taken = name, function, low, 0
@@ -118,7 +121,8 @@ class _Sampled:
         """Return the values of the callable, dimensionless, in the shape of ``t``; they count in ``taken``.
 
         t: times, (n,), in T_ref.
-        Raises ParameterError for what is no finite number or below the smallest value allowed.
+        Raises ParameterError for a value that is no finite number, no single number, or below the smallest value
+        allowed.
         """
         self.taken += t.size
         values = check_array(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
@@ -135,8 +139,11 @@ class _Sampled:
 
         start, stop: ends of the piece, in T_ref.
         so_far: largest magnitude of the callable before the piece, dimensionless; 0: it has not risen yet.
-        Returns (the :class:`Piece`, None if its fit is not good; where to cut it, two neighbouring doubles in T_ref,
-        None to halve it or if the fit is good).
+        Returns (piece, cut).  ``piece`` is the :class:`Piece` if the fit is good, and None if it is not; its polynomial
+        is 0 where no value exceeds the error allowed, or, before the callable has risen, a thousand times the least
+        error allowed.  ``cut`` says where to divide the interval if the fit is not good: between two neighbouring
+        doubles, in T_ref, where the callable first rises from 0 or where it jumps; None: in the middle.  With a piece
+        it is None.
         Raises ParameterError for values that are no finite numbers or below the smallest one allowed.
         """
         middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
@@ -172,10 +179,11 @@ class _Sampled:
     def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
         """Return the neighbouring doubles between which the callable jumps.
 
-        t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,).
-        allowed: absolute error allowed to a fit at its end, dimensionless; a smaller jump is none.
-        Returns (last time before the jump, first time behind it), in T_ref; None unless one jump is most of the
-        variation.
+        t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,), n >= 2.
+        allowed: absolute error allowed to a fit at its end, dimensionless; a change up to it is no jump.
+        Returns (last time before the jump, first time behind it), in T_ref.  Returns None unless the largest change
+        between two neighbouring times exceeds ``allowed`` and half of the sum of all changes, and more than half of it
+        is left where the interval has shrunk to two neighbouring doubles.
         """
         change = np.abs(np.diff(values))
         n = int(change.argmax())
@@ -195,12 +203,12 @@ class _Sampled:
 
 
 def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
-    """Return the neighbouring doubles between which a condition of time becomes false.
+    """Return the neighbouring doubles between which a condition of time becomes false, found by halving the interval.
 
-    low, high: times between which it does, in T_ref.
-    is_before: function of a time, in T_ref; True before the change, False behind it.  It is not called at ``low`` and
-    ``high``.
-    Returns (last time before, first time behind), in T_ref.
+    low, high: times, low < high, in T_ref: the condition is true at ``low`` and false at ``high``.
+    is_before: function of a time, in T_ref, that returns whether the change comes behind it.  It is not called at
+    ``low`` and ``high``.
+    Returns (last time before the change, first time behind it), in T_ref; (low, high) if these are neighbours already.
     """
     low, high = float(low), float(high)
     while low < (middle := 0.5 * (low + high)) < high:
@@ -216,11 +224,14 @@ def fit_callable(
     name: name of the argument, for errors.
     function: takes the time in T_ref, returns a dimensionless number.
     end: last time, in T_ref.
-    rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the largest value so far.
+    rtol: relative tolerance of the motion.  The fit may differ by a tenth of it times the largest magnitude so far;
+    below 1e-9 of the largest magnitude of all it is not compared with values so far, and it is 0 there until the
+    callable has risen.
     low: smallest value allowed.
-    resolve: largest spacing of the samples, in T_ref; None, and at most: ``end`` divided by :data:`SAMPLES`.
-    Returns (starts of the pieces in T_ref, (k,); coefficients of powers of x in [-1, 1] on each piece, (k, TERMS);
-    largest absolute difference seen).
+    resolve: largest spacing of the samples, > 0, in T_ref; None, and at most: ``end`` divided by :data:`SAMPLES`.
+    Returns (starts of the k pieces in T_ref, (k,), ascending, the first 0; coefficients of powers of x, ascending, (k,
+    TERMS), dimensionless, where x runs from -1 to 1 over a piece, and the last piece ends at ``end``; largest absolute
+    difference seen between callable and fit, a float).
     Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that requires more than
     :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough, or that is not smooth
     within the shortest piece.
@@ -241,10 +252,12 @@ def fit_callable(
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
     """Fit a callable by pieces as long as the tolerance allows: no two neighbours could be one.
 
-    sampled: the callable.
+    sampled: the callable, a :class:`_Sampled`; more values of it are taken.
     end: last time, in T_ref.
-    Returns the pieces in the order of time, without gaps but for the two doubles of a jump.
-    Raises ParameterError where polynomials do not follow the callable.
+    Returns the pieces from 0 to ``end``, at least one, in the order of time.  Each starts where the one before it
+    stops, or, at a jump, at the next double; the first starts at 0, or, where the callable jumps there, at the smallest
+    double above 0.
+    Raises ParameterError where a piece of the shortest length is not fitted, or too many values were taken.
     """
     pieces: list[Piece] = []
     failed: set[tuple[float, float]] = set()
@@ -277,9 +290,11 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     """Return the pieces without the short ones that contain a corner; their neighbours are extended to the corner.
 
+    A piece is short if both of its neighbours are more than 50 times longer; the first and the last piece stay.
+
     pieces: consecutive pieces of the fit, in the order of time.
-    sampled: the callable, of which more values are taken.
-    Returns new pieces; a short piece stays where its extended neighbours would not fit.
+    sampled: the callable, a :class:`_Sampled`; more values of it are taken.
+    Returns a new list; a short piece stays where its extended neighbours would not fit.
     """
     merged: list[Piece] = []
     rest = pieces[::-1]
@@ -301,9 +316,9 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
 def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
     """Return the time, within a piece, at which the polynomials of its neighbours are equal: where a corner lies.
 
-    before, behind: the piece before it and the piece behind it, whose polynomials are extended.
+    before, behind: the piece before it and the piece behind it, whose polynomials are extended over it.
     between: the piece.
-    Returns the time, in T_ref; the middle of the piece where neither end has another sign of the difference.
+    Returns the time, in T_ref; the middle of the piece where the same polynomial is the larger one at both of its ends.
     """
 
     def is_above(t: float) -> bool:

@@ -1,4 +1,7 @@
-"""A drive as checked functions of time without dimension, and its layout for the kernels: :class:`DriveFunctions`."""
+"""A drive as checked functions of time without dimension, and its layout for the kernels: :class:`DriveFunctions`.
+
+T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref`` of any other material.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +83,7 @@ class DriveFunctions:
     def _function_motions(self) -> int:
         """Number of motions that have functions or slopes of their own; 1 if all are alike.
 
-        Raises ParameterError if functions are of different numbers of motions.
+        Raises ParameterError if two of the functions have values for different numbers of motions, both other than 1.
         """
         counts = {name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()}
         shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
@@ -104,8 +107,8 @@ class DriveFunctions:
     def block(self, most: int) -> int:
         """Return how many motions to pack at a time, so that their pieces take some :data:`_BLOCK_BYTES`.
 
-        most: largest number to return; it is returned where all motions have the same functions.
-        Returns a number in 1 ... ``most``.
+        most: largest number to return, >= 1; it is returned where all motions have the same functions.
+        Returns an int in 1 ... ``most``.
         """
         if self._function_motions == 1:
             return most
@@ -118,11 +121,12 @@ class DriveFunctions:
         return [slice(first, first + step) for first in range(0, max(count, 1), step)]
 
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
-        """Return the value of a prescribed speed at t = 0, and its largest size.
+        """Return the value of a prescribed speed at t = 0, and a bound of its largest magnitude.
 
         name: name of the speed, "omega" or "V".
         Raises ParameterError where it jumps.
-        Returns (values; bounds of the largest magnitude over all times), (1,) or (m,) each, dimensionless.
+        Returns (values at t = 0; upper bounds of the magnitude over all times: the largest sum of the magnitudes of the
+        coefficients of a piece), dimensionless, (1,) each where the speed is the same for all motions, else (m,).
         """
         speed, firsts, sizes = self.functions[name], [], []
         for part in self._blocks(count_motions(speed)):
@@ -136,9 +140,10 @@ class DriveFunctions:
     def pieces(self) -> Floats:
         """Return all functions over common pieces of time, dimensionless, in the layout of the kernels.
 
-        Columns of the result, (1 or m, k, columns): start of the piece in T_ref; 2 divided by its length; then as many
-        coefficients of powers of x in [-1, 1] for each of force (with the pull of the slope), torque, derivative of the
-        prescribed speed, brake, prescribed speed.
+        Columns of the result, (1 or m, k, columns): start of the piece in T_ref; 2 divided by its length, 0 where it
+        has no length or no end; then as many coefficients of powers of x in [-1, 1] for each of force (with the pull of
+        the slope), torque, derivative of the prescribed speed, brake, prescribed speed.  The coefficients of what is
+        not given are 0.
         Raises ParameterError where a prescribed speed jumps.
         """
         zero, name = piecewise(np.zeros(())), self.prescribed
@@ -153,18 +158,21 @@ class DriveFunctions:
     def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
         """Return the drive of some motions as the kernels take it, :data:`KernelDrive`.
 
-        index: index of numpy that selects the motions; default: all.
-        Returns (pieces, (1 or m, k, columns), see :attr:`pieces`; gains, (4, 1 or m); code of the prescribed speed:
-        NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V).
+        index: index of numpy, a slice or a vector of integers, that selects the motions; default: all.
+        Returns (pieces, (1 or m, k, columns), see :attr:`pieces`, where m is the number of selected motions, and 1 if
+        all have the same functions, which are returned for any ``index``; gains, (4, 1 or m); code of the prescribed
+        speed, an int: NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V).
+        Raises ParameterError where a prescribed speed jumps.
         """
         pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
         return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
     def _take(self, index: Any) -> DriveFunctions:
-        """Return the functions of some motions, without their gains, which stay those of all.
+        """Return the :class:`DriveFunctions` of some motions; their gains stay those of all motions.
 
-        index: index of numpy that selects the motions.
+        index: index of numpy, a slice or a vector of integers, that selects the motions; what is the same for all
+        motions stays.
         """
         functions = {name: take_motions(f, index) for name, f in self.functions.items()}
         return replace(
@@ -173,7 +181,10 @@ class DriveFunctions:
 
     @property
     def acts_at_end(self) -> bool:
-        """Whether anything still acts at the end, on any motion."""
+        """Whether a load, a prescribed speed or a gain still acts on any motion at the end: in the last piece of time.
+
+        A prescribed speed counts even where it is 0, and a brake and a drag do too.
+        """
         if self.prescribed or self.gains.any():
             return True
         return any(self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self._function_motions))
@@ -202,7 +213,7 @@ def prepare_drive(
 ) -> DrivenStart:
     """Check a drive and the start speeds, and fit its callables.
 
-    drive: drive, dimensionless.
+    drive: :class:`Drive`, dimensionless.
     V0, omega0: start speeds, dimensionless, numbers or (n,); None where they are prescribed.
     end: last time, in T_ref.
     rtol: relative tolerance of the motion.
@@ -210,7 +221,8 @@ def prepare_drive(
     Raises ParameterError for a load or speed that :func:`viscoroll.roll` refuses; for V and omega both prescribed, or a
     load beside the prescribed speed from which it follows; for a start that is missing, out of range, or not the
     prescribed one.
-    Returns the :class:`DrivenStart`.
+    Returns the :class:`DrivenStart`; its ``functions`` are None where the drive is empty, in which case ``end``,
+    ``rtol`` and ``resolve`` are ignored.
     """
     if not drive.acts:
         return DrivenStart(None, *start_speeds(V0, omega0))
@@ -238,7 +250,9 @@ def prepare_drive(
 def _refuse_both(drive: Drive) -> None:
     """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given beside it.
 
-    drive: drive; None where nothing is given.
+    Beside omega these loads are the torque, the brake and the drag, beside V the force.
+
+    drive: :class:`Drive`; a field is None where nothing is given.
     """
     if drive.V is not None and drive.omega is not None:
         raise exactly_one_error("V", "omega", both=True)
@@ -254,12 +268,13 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
 
     name: "V" or "omega".
     stated: the start that the caller gave, a number or (n,), dimensionless; None without.
-    functions: functions of the drive, with the prescribed speed.
+    functions: :class:`DriveFunctions` of the drive, with the prescribed speed.
     speed: the prescribed speed as in the drive: a number, an array, a Schedule or a callable.
-    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest size, where the speed jumps
-    or is an empty array.
-    Returns a number where the speed is the same for all motions, in the shape of ``stated`` if that is an array; else
-    (m,).
+    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude, where the speed
+    jumps or is an empty array.
+    Returns (m,) where the speed has values for m > 1 motions.  Where it is the same for all motions: a float if
+    ``stated`` is a number or None, else an array in the shape of ``stated``.  Of a callable it is the value of the
+    callable itself, not of its fit.
     """
     if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
         raise described_error(name, "is empty", "a number, an array with one for each motion, or a function of t")
@@ -276,12 +291,13 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
 
 
 def _gains(drive: Drive) -> Floats:
-    """Return the gains of a drive, dimensionless, (4, 1 or m): of force on V and omega, of torque on V and omega.
+    """Return the gains of a drive: of force on V and omega, of torque on V and omega.
 
     The drag, a torque against omega, is subtracted from the last.
 
-    drive: drive, dimensionless.
+    drive: :class:`Drive`, dimensionless.
     Raises ParameterError for a drag below 0, and for gains whose numbers of motions differ.
+    Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where nothing is given.
     """
     pairs = [(x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0) for x in (drive.force, drive.torque)]
     rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
@@ -293,8 +309,10 @@ def _gains(drive: Drive) -> Floats:
 def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: rest threshold, the speed below which the motion ends, in the unit of the roller; only quoted in the message.
-    functions: functions of the drive, or None of free motions, which may end at rest.
+    rest: rest threshold, the speed below which the motion ends, in the unit of the roller; it is only quoted in the
+    message.
+    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`; None of free motions, which
+    may end at rest.
     """
     if functions is not None and functions.acts_at_end:
         sentence = f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of the motion: "

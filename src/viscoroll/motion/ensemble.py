@@ -69,8 +69,8 @@ def ensemble(
         motions up in the flow map of their one scene, which is built if it is not on disk
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map is used only
         where its stated error is at most ``rtol``, and only for the motions that it contains;
-        all others are integrated.  The result says which, and the map's error.  Driven motions, and
-        those of bodies that differ, are integrated: "flow" is refused.
+        all others are integrated, with "flow" too.  The result says which, and the map's error.  Driven and unsteady
+        motions, and those of bodies that differ, are integrated: "flow" is refused.
     rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of the result are
         those after the cost of a standstill.  With a material each an unsteady motion takes some milliseconds more,
         for its N.
@@ -79,7 +79,7 @@ def ensemble(
         some rtol of the energy that moves.
     speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the largest of the starts.
         Where a large ensemble is computed in several calls, one number for all makes the
-        bits independent of how it is divided.
+        bits independent of how it is divided.  Ignored where no flow map is used.
     threads : threads to use; default ``$VISCOROLL_THREADS`` or the cores available.
     progress : draw a progress bar if the call takes longer than a second.
 
@@ -146,9 +146,11 @@ def ensemble(
 def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
     """Return the parameters and start speeds of an ensemble, and the number of its motions.
 
-    problem: checked motions of the ensemble.
-    drives: name -> loads or prescribed speeds that are numbers or arrays, as the caller gave them, for their shapes.
-    Returns (name -> vector of one or n values: alpha, kappa, mu, gamma, j, V0, omega0, dimensionless; n).
+    problem: :class:`MotionProblem`, checked motions of the ensemble.
+    drives: name -> loads or prescribed speeds that are numbers or arrays, as the caller gave them; only their shapes
+    matter.
+    Returns (name -> read-only vector, (1,) where one value holds for all motions, else (n,): alpha, kappa, mu, gamma,
+    j, V0, omega0, dimensionless; n, which is 1 if all are numbers).
     Raises ParameterError where they, the functions of the drive included, do not broadcast to (n,).
     """
     arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
@@ -165,10 +167,10 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
 def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its roller.
 
-    batch: motions of the ensemble.
-    solution: motions, dimensionless; of a cylinder its arrays are overwritten by those in SI units.
-    Returns name -> field: quantities (n, times); onset_time, rest_time, V0, omega0, status, switches, steps, flow,
-    (n,); drive_error, flow_error, flow_problem.
+    batch: :class:`Batch`, motions of the ensemble.
+    solution: :class:`Solution`, dimensionless; of a cylinder its quantities are overwritten by those in SI units.
+    Returns name -> field: quantities (n, times), which are views of those of ``solution``; onset_time, rest_time, V0,
+    omega0, status, switches, steps, flow, (n,); drive_error, flow_error, floats; flow_problem, a text.
     """
     found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))

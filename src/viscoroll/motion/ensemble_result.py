@@ -27,9 +27,9 @@ _EXAMINED = 256
 class Fastest(NamedTuple):
     """Motions of an ensemble and their highest speeds, in the unit of the roller.
 
-    motion : indices of the motions, (m,).
-    V, omega : largest magnitudes of the speeds that each starts with or reaches at an output time, (m,); omega < 0
-    where the start speeds have opposite signs.
+    motion : indices of the motions, (m,), int.
+    V, omega : largest magnitudes of the speeds that each starts with or reaches at an output time, (m,); omega has the
+    sign of the product V0 omega0, which is negative also for -0, the product of 0 and a negative start speed.
     """
 
     motion: Integers
@@ -53,8 +53,8 @@ class Ensemble(RollResult):
     force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
     rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
-    success, status : (n,), whether each came to its end, and its :class:`MotionStatus`; outputs a motion did not reach
-        are NaN.
+    success, status : (n,), whether each reached the last output time or rest, and the code of its
+        :class:`MotionStatus`; outputs that a motion did not reach are NaN.
     switches, steps : (n,), changes of regime, and integration steps taken.
     flow : (n,), whether the motion is from the flow map; the others were integrated.
     flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
@@ -90,6 +90,11 @@ class Ensemble(RollResult):
 
     def messages(self) -> dict[str, int]:
         """Return the number of motions that ended in each way, by the way in words.
+
+        Returns
+        -------
+        dict
+            Message of a :class:`MotionStatus` -> number of motions, > 0; empty without motions.
 
         Examples
         --------
@@ -139,9 +144,14 @@ class Ensemble(RollResult):
     def validity(self) -> Validity:
         """Report which assumptions of the model the motions violate, at the highest speeds of each.
 
-        ``steady`` examines all speeds of a motion.  See :func:`viscoroll.validity`.  Returns the report
-        :class:`Validity` with arrays over the motions, (n,); for more than 256 over that many of them, evenly spaced
-        (:meth:`fastest`).
+        See :func:`viscoroll.validity`.  ``steady`` examines the start speed and all output times of a motion; without V
+        among the fields its highest speed alone, and of a cover it is not decided.
+
+        Returns
+        -------
+        Validity
+            The report, with arrays over the motions, (n,); for more than 256 over that many of them, evenly spaced
+            (:meth:`fastest`).
 
         Examples
         --------
@@ -161,19 +171,28 @@ class Ensemble(RollResult):
         return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
 
     def fastest(self) -> Fastest:
-        """Return the motions that :meth:`validity` examines, at most 256 evenly spaced ones, with their highest speeds.
+        """Return the motions that :meth:`validity` examines, with their highest speeds.
 
-        Speeds that the ensemble does not keep count at the start alone.
+        These are all motions, or, of more than 256, as many as that, evenly spaced.  The highest speed is the largest
+        magnitude of the start and of the output times that the motion reached; of a speed that is not among the fields,
+        that of the start.
+        Returns :class:`Fastest`, arrays (m,), m <= 256, in the unit of the roller; V is >= 0.
         """
         speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, start in speeds.items():
             if (values := getattr(self, name)) is not None:
                 speeds[name] = np.fmax(start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
         index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
-        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
+        sense = self.V0 * self.omega0 + 0.0  # +0 from rest: friction moves the axis in the sense of the rotation
+        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report: times, quantiles of the last values, onsets, ends."""
+        """Return title and rows of the printed report, a list of :class:`SummaryRow`.
+
+        The rows are: output times; median, 5 % and 95 % quantile of the last V, omega and x, of those that are fields,
+        over the motions that reached the last time, NaN if none did; number of motions with an onset of partial slip;
+        number of motions from the flow map, if any; how many motions ended in which way.
+        """
         ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
@@ -188,7 +207,9 @@ class Ensemble(RollResult):
         return f"Ensemble of {len(self)} motions", rows + ends
 
     def to_xarray(self) -> xr.Dataset:
-        """Return the dataset over (motion, t) with starts, outputs, onset and status.
+        """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status, drive and scene.
+
+        Fields that were not requested are left out; labels of the starts become coordinates of the axis "motion".
 
         Examples
         --------

@@ -40,10 +40,12 @@ _FLAGS = {
 
 
 def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
-    """Return the attributes of a column of a dataset: long_name and units, of codes their values and meanings.
+    """Return the attributes of a column of a dataset.
 
     name: name of a field of a motion, of a start ("V0", "omega0"), or "t", "status", "flow".
     si: whether it is in the units of a cylinder, else of a scene.
+    Returns a dict: long_name and units; of the codes "regime", "status" and "flow" long_name, flag_values (int8,
+    (codes,)) and flag_meanings, one word for each code, and no units.
     """
     if name not in _FLAGS:
         return dict(attributes(name, si))
@@ -62,13 +64,15 @@ def _dataset(
 ) -> xr.Dataset:
     """Return the dataset of a motion or an ensemble.
 
-    result: motion or ensemble, whose quantities, drive and roller are put into the dataset.
+    result: :class:`Motion` or :class:`Ensemble`, whose quantities, drive and roller are put into the dataset.
     title: title of the dataset.
     dims: names of the dimensions of the quantities, ("t",) or ("motion", "t").
     variables: further variables: name -> (dimensions, values, attributes).
     about: further attributes by name.
     Returns the dataset over ``dims``, in the units of the roller; without loads, works and losses for a free single
-    motion.  A regime that was not reached is -1.
+    motion, and without quantities that an ensemble does not keep.  The regime is int8, -1 where it was not reached.
+    Its attributes are ``about``, the modes of a series, the numbers of a cover, and of a cylinder its radius, mass,
+    moment of inertia, g, load and T_ref.
     """
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims
@@ -96,11 +100,12 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     """Describe the drive of a result by variables and attributes of its dataset.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
-    motions have times of their own (motion, drive_force_corner); gains of a feedback are attributes.
+    motions have times of their own (motion, drive_force_corner).  Gains of a feedback are attributes of its variable.
 
-    result: motion or ensemble.
+    result: :class:`Motion` or :class:`Ensemble`.
     Returns (name -> (dimensions, values, attributes) of variables as ``drive_force`` and ``drive_force_time``, in the
-    units of the roller; name -> text of attributes that describe callables with their gains).
+    units of the roller; name -> text of attributes that describe callables with their gains).  Both are empty without a
+    drive.
     """
     variables: dict[str, Any] = {}
     texts: dict[str, Any] = {}
@@ -128,10 +133,13 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
 def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     """Return strengths and times of several materials as they were given, and share or thickness, as variables.
 
-    materials: series, bodies or covers of several motions; for one material, or None, the result is empty.
+    materials: :class:`Prony`, :class:`Bodies` or :class:`Cover` of several motions; for one material, or None, the
+    result is empty.
     count: number of motions.
-    Returns name -> (dimensions, values, attributes), over (motion) or (motion, mode); of covers the layer's strengths
-    and times, divided by E and T_ref, are attributes of the thickness.
+    Returns name -> (dimensions, values, attributes), dimensionless.  Of series: strengths and times over (motion,
+    mode).  Of two bodies: the same of each, over (motion, cylinder_mode) and (motion, base_mode), and ``share`` over
+    (motion).  Of covers: ``cover_thickness`` over (motion); the layer's strengths and times, divided by E and T_ref,
+    are its attributes.
     """
     if materials is None or not materials.shape:
         return {}
@@ -139,7 +147,7 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
         return _mode_variables(materials, count, "", "")
 
     def along(name: str, values: Any, long_name: str, **more: Any) -> dict[str, Any]:
-        """Return name -> variable over the motions.
+        """Return one variable over the motions, as a dict name -> (dimensions, values, attributes).
 
         name: name of the variable.
         values: a number, or (n,), dimensionless.
@@ -162,11 +170,13 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
     """Return the strengths and times of the modes of one body, over (motion, mode), as variables.
 
-    series: the series of each motion, or one for all.
+    series: :class:`Prony`, the series of each motion, or one for all.
     count: number of motions.
-    prefix, title: first letters of the names ("", "cylinder_", "base_") and of the long_names.
-    Returns name -> (dimensions, values, attributes), dimensionless: strengths divided by the long-time modulus or
-    compliance, times divided by T_ref.
+    prefix, title: first letters of the names ("", "cylinder_", "base_") and of the long_names ("", "cylinder: ", "base:
+    ").
+    Returns name -> (dimensions, values (count, modes), attributes), dimensionless: PREFIXrelaxation_strengths, divided
+    by the long-time modulus, and PREFIXrelaxation_times, divided by T_ref; of a series in creep form
+    PREFIXcreep_strengths, divided by the long-time compliance, and PREFIXcreep_times.
     """
     form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
     parts = {
@@ -186,11 +196,13 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
 
 
 def motion_dataset(motion: Any) -> xr.Dataset:
-    """Return the dataset over t of one motion; of a driven one with loads, works and losses.
+    """Return the dataset over t of one motion; of a driven one with loads, works, losses and the times at which V
+    reverses.
 
     motion: a :class:`Motion`.
-    Its attributes are the numbers of the scene, onset_time, rest_time, the changes of regime as text, status in words,
-    steps.
+    Returns the dataset, in the units of the roller.  Its attributes are the numbers of the scene, onset_time and
+    rest_time (NaN where there is none), the changes of regime as text, the status in words, the number of steps, and
+    those of every dataset (:func:`provenance`).
     """
     about_reversals = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {
@@ -207,9 +219,10 @@ def motion_dataset(motion: Any) -> xr.Dataset:
 def ensemble_dataset(result: Any) -> xr.Dataset:
     """Return the dataset over (motion, t) of an ensemble.
 
-    It has the quantities, starts, parameters, materials, drive, onset and rest times, status and flow.
-
-    result: an :class:`Ensemble`; labels of its starts of length n become coordinates.
+    result: an :class:`Ensemble`; labels of its starts of length n become coordinates, unless a variable has their name.
+    Returns the dataset, in the units of the roller: quantities that the ensemble keeps; starts, onset and rest times,
+    status and flow over motion; parameters, materials and drive over motion, or without dimension where all motions
+    have the same.
     """
     si, variables = result.scale.si, _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:

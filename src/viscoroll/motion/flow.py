@@ -2,8 +2,11 @@
 
 A flow map is a set of tables from which the state of a free motion of the scene at any time follows without
 integration. The tables are described in :mod:`viscoroll.kernels.flow.layout`.  They depend on alpha, kappa, mu and j;
-gamma only scales time.  A map covers onsets of partial slip at speeds down to 2**-20 of a highest speed, which is the
-next power of 16 (times a constant) above the speeds of the call.
+gamma only scales time.  A map covers onsets of partial slip at kappa V from 2**(octave - 20) to 2**octave.  2**octave
+is the next power of 16 above kappa times the highest speed of the call, but at least 2**-16 and at most 2**14.
+
+All is dimensionless.  The unit of time T is the material's own: T_epsilon of a material that is an alpha, of a series
+one near its slow time (``Parameters.in_own_time``).  Speeds are divided by R/T, and gamma is P T^2/(m R).
 """
 
 from __future__ import annotations
@@ -47,11 +50,12 @@ _OCTAVE_STEP = 4
 def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
     """Return by what a flow map is found: the parameters that it depends on, and the speeds that it covers.
 
-    scene : parameters of one scene.
+    scene : :class:`Parameters` of one scene, numbers; gamma is ignored.
     speed : highest speed, > 0, divided by R/T in the material's own unit of time T.
     Returns ((material, kappa, mu, j); octave): the map covers kappa V < 2**octave at the onset of partial slip.  The
-    material is alpha, or the series in its own unit of time.  The octave is a multiple of 4, limited to what the tables
-    allow.
+    material is alpha, or the :class:`Prony` series in its own unit of time.  The octave is the least multiple of 4 with
+    kappa ``speed`` <= 2**octave, but at least -16 and at most 14, the limits of the tables; a scene with faster motions
+    has no map for those.
     """
     from ..kernels.flow.layout import OCTAVE_RANGE
 
@@ -63,24 +67,28 @@ def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
 def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:
     """Return the flow map of a scene: from memory, from disk, or built, which takes as long as some thousand motions.
 
-    scene : parameters of one scene.
-    speed : highest speed that the map must cover, > 0, dimensionless, in the material's own unit of time.
-    threads : number of threads; None: all cores available.
-    Returns the :class:`FlowMap`; its ``problem`` says why, if the scene has none.
+    scene : :class:`Parameters` of one scene, numbers; gamma is ignored.
+    speed : highest speed for which the map is made, > 0, dimensionless, in the material's own unit of time.  Beyond the
+    limits of :func:`map_key` the map covers slower motions only.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    Returns the :class:`FlowMap`.  Nothing is raised if the scene has none: its ``problem`` then says why, and its
+    stated errors are infinite.
 
-    A damaged map on disk is built again, with a RuntimeWarning.  A new map is written to disk; if that fails it is kept
-    in memory alone.
+    A damaged map on disk is built again, with a RuntimeWarning.  A new map is written to disk, that of a scene without
+    one too; if that fails it is kept in memory alone.
     """
     return _map(*map_key(scene, speed), threads)
 
 
 @lru_cache(_MAPS_IN_MEMORY)
 def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
-    """Return a flow map from memory, from disk, or built and written to disk; the last few stay in memory.
+    """Return a flow map from memory, from disk, or built and written to disk; the last four stay in memory.
 
-    parameters : (material, kappa, mu, j), numbers; the material is alpha or a series.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
+    time.
     octave : the map covers kappa V < 2**octave at the onset of partial slip.
-    threads : number of threads; None: all cores available.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    Returns the :class:`FlowMap`, as :func:`build_map` does.
     """
     path = path_of(parameters, octave)
     found = load(path, parameters)
@@ -93,10 +101,12 @@ def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowM
 def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
     """Build the flow map of a scene and measure its error; nothing is written to disk.
 
-    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a series in its own unit of time.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
+    time.
     octave : the map covers kappa V < 2**octave at the onset of partial slip.
-    threads : number of threads; None: all cores available.
-    Returns a :class:`FlowMap`; if the scene has none, its ``problem`` says why, and its errors are infinite.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    Returns a :class:`FlowMap`.  If the scene has none, as an elastic one (alpha = 1), its ``problem`` says why, its
+    errors are infinite, and its table is incomplete.
     """
     from ..kernels.flow.layout import OCTAVES, SIZE
     from .flow_fill import fill_tables
@@ -109,13 +119,15 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
 
 
 def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
-    """Measure the errors of a new map on 100 random motions, which are integrated at rtol 1e-12 for comparison.
+    """Measure the errors of a new map on 100 random motions, the same for every map, against the integrator at rtol
+    1e-12.
 
-    new_map : the map.
-    octave : the map covers kappa V < 2**octave at the onset of partial slip.
-    threads : number of threads; None: all cores available.
+    new_map : the :class:`FlowMap`, with all tables.
+    octave : the map covers kappa V < 2**octave at the onset of partial slip; the starts lie in the ten octaves below.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     Returns four times the largest relative errors: (of speeds and onset time; of distance and angle; of slip and
-    rolling loss), at least 1e-10, 5e-10, 1e-10; relative to what :class:`FlowMap` says.
+    rolling loss), floats, at least 1e-10, 5e-10, 1e-10, infinite if a number is not finite; relative to what
+    :class:`FlowMap` says. Motions that the map does not contain count as exact.
     """
     _, kappa, mu, _ = new_map.parameters
     rng = np.random.default_rng(20)
@@ -136,19 +148,28 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
 
 
 def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
-    """Return the largest relative errors of one motion of a new map, against the integrator, from start to rest.
+    """Return the largest relative errors of one motion of a new map, against the integrator, at times from its onset
+    on.
 
-    new_map : the map.
-    V0, omega0 : start speeds, dimensionless.
-    Returns (error of V and omega, divided by the larger, or of the onset time; error of distance and angle, divided by
-    the larger so far and a part of the whole; error of both losses, divided by the energy at the start); infinite for
-    what is not finite, 0 for a motion outside the map.
+    Most of the times lie in the boundary layer behind the onset of partial slip, two before the onset, and the last
+    ones at four times the time in which V falls by e at low speeds.
+
+    new_map : the :class:`FlowMap`, with all tables.
+    V0, omega0 : start speeds, not both 0, dimensionless.
+    Returns (error of V and omega divided by the larger of the two, or error of the onset time divided by that time and
+    the relaxation time there, if larger; error of distance and angle, divided by the larger so far and 1e-5 of that at
+    rest; error of both losses, divided by the energy at the start), floats.  An error that is not finite is infinite;
+    all are 0 for a motion outside the map.
     """
     _, _, _, j = new_map.parameters
     decay, start = 1.0 / new_map.slow_rate, (np.array([V0]), np.array([omega0]))
 
     def flow(times: NDArray) -> FlowResult:
-        """Look the motion up at ``times``, (times,), dimensionless; returns a :class:`FlowResult` of one motion."""
+        """Look the motion up in the new map with gamma = 1.
+
+        times : output times, (times,), dimensionless, ascending.
+        Returns a :class:`FlowResult` of one motion with the rows V, omega, x, angle, slip_loss, rolling_loss.
+        """
         return look_up_ensemble(new_map, Motions(1.0, 0.0, *start, times, _MEASURED_ROWS))
 
     at_rest = flow(np.array([0.0, 800.0 * decay]))
@@ -175,9 +196,11 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
 def _stiff_time(new_map: FlowMap, speed: float) -> float:
     """Return the time 1/k0 in which omega - V relaxes after the onset of partial slip near a speed.
 
-    new_map : the map, from whose tables it is read.
+    It is taken at the middle of the octave in which the speed lies, so that it is off by a factor of up to about 1.5.
+
+    new_map : the :class:`FlowMap`, from whose tables it is read.
     speed : magnitude of the speed at onset, > 0, dimensionless; beyond the tables their first or last octave counts.
-    Returns the time gamma t, dimensionless, to the width of an octave of the speed.
+    Returns the time gamma t, a float > 0, dimensionless.
     """
     from ..kernels.flow.layout import PLUS, views
 
@@ -190,11 +213,12 @@ def _stiff_time(new_map: FlowMap, speed: float) -> float:
 class FlowResult(NamedTuple):
     """Motions as arrays, dimensionless.
 
-    out : quantities, (rows, motions, times).
-    status : :class:`MotionStatus` of each motion, (motions,); below 0 for a motion without a result, as it is outside
-    the map or was not computed yet, whose other entries are undefined.
-    onset, rest : times of the onset of partial slip and of rest, (motions,); NaN where there is none.
-    switches : number of changes of regime, (motions,).
+    out : quantities, (rows, motions, times), float64.
+    status : code of the :class:`MotionStatus` of each motion, (motions,), int8; below 0 for a motion without a result,
+    as it is outside the map or was not computed yet, whose other entries are undefined.
+    onset, rest : times of the onset of partial slip and of rest, (motions,); NaN where there is none up to the last
+    output time.
+    switches : number of changes of regime, (motions,), int64.
     """
 
     out: Floats
@@ -210,6 +234,7 @@ class FlowResult(NamedTuple):
         rows : number of quantities.
         count : number of motions.
         times : number of output times.
+        Returns a :class:`FlowResult` of new arrays.
         """
         return cls(
             np.empty((rows, count, times)), np.full(count, -1, np.int8), np.empty(count), np.empty(count),
@@ -222,13 +247,14 @@ def look_up_ensemble(
 ) -> FlowResult:
     """Compute motions from the tables of a flow map.
 
-    chosen : the map.
-    motions : (gamma; threshold of rest, 0 for none; V0; omega0, (1,) or (n,); output times, (times,); indices of the
-    quantities in V, omega, x, angle, delta, regime, slip_loss, rolling_loss), dimensionless, in the unit of time of the
-    map's material.
-    threads : number of threads; None: all cores available.
+    chosen : the :class:`FlowMap`, with all tables (its ``problem`` is "").
+    motions : :class:`Motions`: (gamma; threshold of rest, 0 for none; V0; omega0, (1,) or (n,); output times, (times,),
+    ascending; a tuple of the indices of the quantities in V, omega, x, angle, delta, regime, slip_loss, rolling_loss),
+    dimensionless, in the unit of time of the map's material.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     progress : title of a progress bar, None for none.
-    Returns the motions as a :class:`FlowResult`; those outside the map have a status below 0.
+    Returns the n motions as a :class:`FlowResult`, whose quantities are in the order of the indices, dimensionless, in
+    the same unit of time; those outside the map have a status below 0, and their other entries are undefined.
     """
     from ..kernels.flow.loop import look_up_motions
     from ..kernels.flow.records import Flow

@@ -26,9 +26,10 @@ from .flow_store import FlowMap
 def fill_tables(new_map: FlowMap, threads: int | None) -> str:
     """Fill the tables of a new flow map.
 
-    new_map : the map, whose ``table`` is written.
-    threads : number of threads; None: all cores available.
-    Returns "", or the reason why the scene has no map; the table is then incomplete.
+    new_map : the :class:`FlowMap`, whose ``table`` is written.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    Returns "", or the reason why the scene has no map, a sentence; the table is then incomplete.  Of an elastic scene,
+    which never slows down, nothing is written.
     """
     if new_map.slow_rate == 0.0:
         return "an elastic cylinder never slows down"
@@ -46,11 +47,13 @@ def fill_tables(new_map: FlowMap, threads: int | None) -> str:
 
 
 def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
-    """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2.
+    """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2 in time gamma t.
 
-    problem : the scene.
+    problem : the :class:`FlowProblem`.
     parts : views of the tables, of which ``slide``, ``after`` and ``onset`` are written.
-    Raises :class:`NoFlowMap` where the rolling resistance can hold the sliding cylinder, or numbers leave the range of
+    Raises :class:`NoFlowMap`, with the tables incomplete: for the reason STOPS where at some speed the rolling
+    resistance can hold the sliding cylinder, or nearly can, and where the speed at the onset of partial slip is no
+    unique function of the quantity that is constant while sliding; for OUT_OF_RANGE where numbers leave the range of
     doubles.
     """
     _, kappa, mu, j = problem.parameters

@@ -1,10 +1,11 @@
 """The boundary layers of a flow map behind the onset of partial slip: :func:`fill_layers`.
 
-Behind the onset omega - V relaxes at the rate k0, until the motion follows the slow manifold (:mod:`.flow_manifold`). E
-= k0 (tau - tau_onset), tau = gamma t, is the time since the onset in units of 1/k0.  Where delta passes 0 the law has a
-kink; the split, the value of E there, or 1, divides the layer.  The layer coordinate u grows with E, linearly on either
-side of the split, from 2^LAYER_LOW at the onset over 1 at the split to 2^LAYER_HIGH at the end.  The two families are
-the motions with omega > V and with omega < V at the onset.  All is dimensionless.
+Behind the onset omega - V relaxes at the rate k0, until the motion follows the slow manifold (:mod:`.flow_manifold`).
+E = k0 (tau - tau_onset), tau = gamma t, is the time since the onset in units of 1/k0.  The law has a kink at delta = 0.
+Each layer is therefore divided at a value of E, its split: that at which delta passes 0, or 1 where delta does not.
+The layer coordinate u grows with E, linearly on either side of the split, from 2^LAYER_LOW at the onset over 1 at the
+split to 2^LAYER_HIGH at the end.  The two families are the motions with omega > V and with omega < V at the onset.  V0
+is the speed at the onset.  All is dimensionless.
 """
 
 from __future__ import annotations
@@ -44,14 +45,15 @@ def fill_layers(
 ) -> None:
     """Fill the tables of the boundary layers, and of the motions on the slow manifold that follow them, of one family.
 
-    problem : the scene.
+    problem : the :class:`FlowProblem`.
     sign : sign of omega - V at onset, 1.0 or -1.0.
     first : binary exponent of the lowest kappa V at onset.
-    slow : the slow manifold.
+    slow : the :class:`SlowManifold`.
     asymptote : (octave of kappa V at onset, numbers of a row), written.
     layer : (octave of kappa V at onset, octave of u, column, powers of u and kappa V), written; columns: ln(V/V0),
     delta, distance and angle beyond those at constant speed V0, slip loss.
-    Raises :class:`NoFlowMap` where a motion of the layer leaves partial slip.
+    Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS where a motion of the layer leaves
+    partial slip, and for OUT_OF_RANGE where its start is not finite.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
@@ -95,21 +97,24 @@ def fill_layers(
 def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     """Return k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes in time gamma t.
 
-    problem : the scene.
+    problem : the :class:`FlowProblem`.
     V : speeds, > 0, dimensionless, of any shape.
-    Returns the rates, dimensionless, in the shape of V.
+    Returns the rates, > 0, dimensionless, in the shape of V.
     """
     return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V, np.zeros(V.shape))[STIFFNESS] / V
 
 
 def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Floats) -> tuple[Floats, Floats]:
-    """Return the state in full slip a short time, :data:`_LEAD` gamma, before the onset of partial slip.
+    """Return the state in full slip a short time, gamma t = :data:`_LEAD` times ``gamma``, before the onset of partial
+    slip.
 
-    problem : the scene.
+    A motion of the layer starts there, so that the integrator finds the onset itself.
+
+    problem : the :class:`FlowProblem`.
     sign : sign of omega - V, 1.0 or -1.0.
     V : speeds at onset, > 0, (n,).
-    gamma : factor of the times of each motion, (n,), dimensionless.
-    Returns (V, delta), (n,) each, dimensionless; to first order in that time.
+    gamma : time from onset to split of each motion, in gamma t, which is the unit of its times, (n,), dimensionless.
+    Returns (V, delta), (n,) each, dimensionless, to first order in that time.
     """
     _, _, mu, j = problem.parameters
     state = problem.contact_states(V, np.zeros(V.shape))
@@ -123,13 +128,13 @@ def _layer_motions(
 ) -> tuple[Floats, Floats, Floats]:
     """Integrate the motions of a boundary layer, and return them at the nodes of its tables.
 
-    problem : the scene.
+    problem : the :class:`FlowProblem`.
     sign : sign of omega - V at onset, 1.0 or -1.0.
     V0 : speeds at onset, (octaves, nodes), dimensionless.
     k0 : relaxation rates of omega - V at these onsets, (octaves, nodes).
-    split : values of E at which the table is split, where delta passes 0 or 1 (:func:`_split_powers`), (octaves,
-    nodes).
-    Raises :class:`NoFlowMap` where a motion leaves partial slip.
+    split : E, the time since the onset in units of 1/k0, at which the table is divided, from :func:`_split_powers`,
+    (octaves, nodes).
+    Raises :class:`NoFlowMap` where a motion leaves partial slip, or its numbers are not finite.
     Returns (V; delta, both (octave, node of V, octave of u, node of u); V at the end of the layer, (octave, node of
     V)).
     """
@@ -148,11 +153,15 @@ def _layer_motions(
 
 
 def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
-    """Fit the value of E near which delta passes 0 by polynomials of kappa V at onset; it is 1 where delta does not.
+    """Fit the value of E at which delta passes 0 by polynomials of kappa V at onset, one for each octave.
 
-    problem : the scene.
-    sign : sign of omega - V at onset, 1.0 or -1.0; delta passes 0 only in motions of the sign of 1 - j.
-    onsets : octaves of kappa V at onset.
+    In an octave in which delta does not pass 0 up to E = 14 at every node, the value is 1.
+
+    problem : the :class:`FlowProblem`.
+    sign : sign of omega - V at onset, 1.0 or -1.0.  delta passes 0 only in motions of the sign of 1 - j, so that for
+    the other sign, and for j = 1, all values are 1.
+    onsets : :class:`Rows`, octaves of kappa V at onset.
+    Raises :class:`NoFlowMap` where a motion leaves partial slip, or its numbers are not finite.
     Returns coefficients of powers of t in [-1, 1] on each octave, ascending, (octaves, powers), for E, dimensionless.
     """
     powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))

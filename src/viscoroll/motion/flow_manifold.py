@@ -29,7 +29,7 @@ _SLOW_LOG_EDGES = np.concatenate(
 )
 #: Octaves of V above the tables at which the motion along the slow manifold starts, to approach the manifold.
 _RUN_IN_OCTAVES = 3
-#: kappa V, dimensionless, below whose first step of the slow motion the slow logarithm is 0.
+#: kappa V, dimensionless: the slow logarithm is 0 at the first state of the slow motion that is at or below it.
 _SLOW_LOG_ORIGIN = 0.25
 
 
@@ -54,12 +54,15 @@ class SlowManifold(NamedTuple):
     def path_between(self, start: Floats, span: Floats, rate: float) -> tuple[Floats, Floats]:
         """Return distance and angle of a motion along the slow manifold, while its slow logarithm decreases.
 
-        Over a short span they are integrals of the speeds, else differences of the remaining path.
+        They are differences of the remaining path to rest.  Over a short span, at most a quarter of max(1 + end, 1)
+        with the slow logarithm at its end, these would cancel, and they are integrals of the speeds by a 5-point Gauss
+        rule.
 
         start : slow logarithms at the beginning, of any shape.
         span : decreases of the slow logarithms, >= 0, in the shape of ``start``.
-        rate : decrease of the slow logarithm in unit time.
-        Returns (distance, angle), of the shape of ``start``, dimensionless.
+        rate : decrease of the slow logarithm in unit time gamma t, > 0.
+        Returns (distance, angle), integrals over gamma t of V and omega, >= 0, of the shape of ``start``,
+        dimensionless.
         """
         end, value = start - span, self.rows.value
         x, angle = (value(powers, start) - value(powers, end) for powers in self.path)
@@ -72,13 +75,14 @@ class SlowManifold(NamedTuple):
 def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     """Fill the tables of the slow manifold.
 
-    problem : the scene.
-    parts : views of the tables, of which ``slow`` and ``manifold`` are written.
-
     One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and loss are integrals
     from V -> 0 upward.
+
+    problem : the :class:`FlowProblem`.
+    parts : views of the tables, of which ``slow`` and ``manifold`` are written; rows of ``slow`` above the highest
+    speed of the tables stay as they are.
     Raises :class:`NoFlowMap` where that motion leaves partial slip or its numbers the range of doubles.
-    Returns the :class:`SlowManifold`.
+    Returns the :class:`SlowManifold`, the same functions as coefficients.
     """
     rows, V, delta = _integrate_manifold(problem)
     slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]
@@ -95,14 +99,16 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
 
 
 def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
-    """Integrate the motion along the slow manifold.
+    """Integrate the motion along the slow manifold, from three octaves above the tables down to their lowest node.
 
-    The motion is integrated from one state to the next of half its speed: the remaining time to the last state then
-    keeps its digits.  The slow logarithm is 0 at the last state.
+    It is integrated in steps, each of about the time in which V halves, until kappa V is at most 1/4, and each step
+    anew from the state before it: the remaining time to the last of these states then keeps its digits.  The slow
+    logarithm is 0 at that state, and increases with the time that a state precedes it.
 
-    problem : the scene.
-    Raises :class:`NoFlowMap` where the motion leaves partial slip or its numbers the range of doubles.
-    Returns (rows over the slow logarithm; V; delta at their nodes, (rows, nodes) each, dimensionless).
+    problem : the :class:`FlowProblem`.
+    Raises :class:`NoFlowMap` for FULL_SLIP_RETURNS where the motion leaves partial slip, and for OUT_OF_RANGE where its
+    numbers are not finite or V does not fall.
+    Returns (:class:`Rows` over the slow logarithm; V; delta at their nodes, (rows, nodes) each, dimensionless).
     """
     kappa, j, rate = problem.parameters[1], problem.parameters[3], problem.slow_rate
     V, delta, gamma = np.array([2.0 ** (layout.HIGH + _RUN_IN_OCTAVES) / kappa]), np.zeros(1), np.ones(1)

@@ -36,10 +36,11 @@ class NoFlowMap(Exception):
 class FlowProblem(NamedTuple):
     """A scene for which a map is made.
 
-    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a series in its own unit of time.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
+    time.
     law : the kernels' record of the contact law of the material.
-    slow_rate : rate at which ln V falls at low speeds, in units of gamma.
-    threads : number of threads; None: all cores available.
+    slow_rate : rate at which ln V falls at low speeds, in units of gamma, > 0.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     """
 
     parameters: tuple[Any, ...]
@@ -51,7 +52,8 @@ class FlowProblem(NamedTuple):
         """Return critical creepage, moment, traction and its slope at speeds and creepages inside the stick zone.
 
         V, delta : speeds, > 0, and creepages, |delta| < delta_star, dimensionless, of one shape.
-        Returns delta_star, M, Q, dQ/d delta in this order, (4, ...), each in the shape of V, dimensionless.
+        Returns (4, ...), dimensionless, in this order, each in the shape of V: delta_star, M, Q with the sign of delta
+        (0 at delta = 0), dQ/d delta at fixed V; :mod:`..kernels.flow.states` names the indices.
         """
         _, kappa, mu, _ = self.parameters
         out = np.empty((4, V.size))
@@ -62,11 +64,12 @@ class FlowProblem(NamedTuple):
         """Integrate motions that start and stay in partial slip, or start just before its onset.
 
         V, delta : start speeds, > 0, and creepages, (n,), dimensionless.
-        gamma : ratio of the load to inertia, which sets the time scale, of each motion, > 0, (n,).
+        gamma : ratio of the load to inertia, which sets the time scale, of each motion, > 0, (n,) or (1,).
         t : output times, (times,), ascending, common to all, dimensionless.
         reason : message of :class:`NoFlowMap` if a motion is not in partial slip with V > 0 at an output time.
-        Raises :class:`NoFlowMap` for this reason, or for input that is not finite.
-        Returns (V, delta), each (n, times).
+        Raises :class:`NoFlowMap` for this reason, which includes motions that could not be integrated to the end; and
+        for OUT_OF_RANGE if the input is not finite or gamma is not positive.
+        Returns (V, delta), each (n, times), dimensionless.
         """
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):
             raise NoFlowMap(OUT_OF_RANGE)

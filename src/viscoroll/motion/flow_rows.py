@@ -34,7 +34,7 @@ class Nodes:
     def powers(self, values: Floats) -> Floats:
         """Return the coefficients of the powers of t in [-1, 1] of the polynomials through values at the nodes.
 
-        Chebyshev coefficients are computed between, which limits the rounding errors.
+        They are computed by way of Chebyshev coefficients, which limits the rounding errors.
 
         values : values at the nodes, (..., nodes).
         Returns the coefficients, ascending, (..., nodes).
@@ -45,16 +45,16 @@ class Nodes:
         """Return the integral of a piecewise polynomial at the nodes, continuous over all rows.
 
         slopes : values of the integrand at the nodes, (..., rows, nodes).
-        half : half the length of each row, a number or (rows,).
-        start : value of the integral at the left end of the first row.
-        Returns the integral at the nodes, in the shape of ``slopes``.
+        half : half the length of each row, a number, (rows,) or (..., rows).
+        start : value of the integral at the left end of the first row, a number.
+        Returns the integral from that end to each node plus ``start``, in the shape of ``slopes``.
         """
         whole = _multiply(self._integrals, slopes) * np.asarray(half)[..., None]
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
         return whole[..., :-1] + (start + rises)[..., None]
 
     def end(self, slopes: Floats, half: Any) -> Floats:
-        """Return the integral over all rows.
+        """Return the integral over all rows together.
 
         slopes : values of the integrand at the nodes, (..., rows, nodes).
         half : half the length of each row, (rows,) or (..., rows).
@@ -69,8 +69,8 @@ def _multiply(matrix: Floats, values: Floats) -> Floats:
     BLAS is not used, as its last bits differ between machines.
 
     matrix : (m, n).
-    values : (..., n).
-    Returns (..., m).
+    values : vectors, (..., n).
+    Returns the products, (..., m).
     """
     return np.einsum("...n,mn->...m", values, matrix)
 
@@ -98,7 +98,8 @@ class Rows:
         """Evaluate a piecewise polynomial.
 
         powers : coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers).
-        x : arguments, of any shape; beyond the ends the polynomial of the first or last row is continued.
+        x : arguments, an array of any shape; beyond the ends the polynomial of the first or last row is continued, and
+        an inner edge belongs to the row on its right.
         Returns the values, of the shape of x.
         """
         row = np.searchsorted(self.edges[1:-1], x, side="right")
@@ -110,12 +111,13 @@ class Rows:
     def inverse(self, powers: Floats, target: Floats) -> Floats:
         """Return the arguments at which an increasing piecewise polynomial takes given values, by Newton's iteration.
 
-        It ends when the relative step is at most :data:`_CONVERGED`, or after :data:`_MAX_ITERATIONS` steps without an
-        error.
+        It ends when all relative steps are at most :data:`_CONVERGED`, or after :data:`_MAX_ITERATIONS` steps without
+        an error.
 
         powers : coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers); its values are > 0.
-        target : values, > 0, of any shape; the upper end is returned for values beyond it.
-        Returns the arguments, of the shape of ``target``.
+        target : values, > 0, of any shape.
+        Returns the arguments, of the shape of ``target``; the upper end of the last row for values beyond it; for
+        values below those of the first row, those of its polynomial continued.
         """
         slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]
         x = np.interp(np.log(target), np.log(self.value(powers, self.x).ravel()), self.x.ravel())

@@ -55,6 +55,7 @@ class FlowMap:
         """Return the largest stated error, relative, of the speeds and, if requested, of path and losses.
 
         path, loss : whether the errors of distance and angle, and those of slip and rolling loss, count.
+        Returns a float; infinite where the scene has no map.
         """
         speeds, way, lost = self.errors
         return max(speeds, way if path else 0.0, lost if loss else 0.0)
@@ -70,7 +71,7 @@ def _digest(package: Path) -> str:
     """Return a digest of all sources on which the bits of a map depend: kernels, materials and motions.
 
     package: folder of the package.
-    Returns the first 16 hexadecimal digits of the SHA-256.
+    Returns a text of the first 16 hexadecimal digits of the SHA-256; it is computed once in a process.
     """
     from ..kernels.compile.cache import sources_digest
 
@@ -84,8 +85,8 @@ def _digest(package: Path) -> str:
 def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
     """Return the parameters as numbers, by which a map is named and compared.
 
-    parameters : (alpha or series, kappa, mu, j).
-    Returns (alpha, kappa, mu, j), or with a series (alpha, relaxation rates, strengths, kappa, mu, j).
+    parameters : (alpha or :class:`Prony` series, kappa, mu, j).
+    Returns a flat tuple: (alpha, kappa, mu, j), or with a series (alpha, relaxation rates, strengths, kappa, mu, j).
     """
     material, *others = parameters
     if isinstance(material, Prony):
@@ -96,21 +97,23 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
 def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     """Return the path of the file of a flow map, which may not exist.
 
-    parameters : (alpha or series, kappa, mu, j).
+    parameters : (alpha or :class:`Prony` series, kappa, mu, j).
     octave : the map covers kappa V < 2**octave at the onset of partial slip.
+    Returns the path in :func:`folder`; its name is a digest of the parameters and the octave.
     """
     numbers = np.array((*_numbers(parameters), octave), np.float64)
     return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
-    """Return the map in a file; None if there is none, or it is damaged or of other parameters.
+    """Return the map in a file.
 
-    The latter two cause a RuntimeWarning.  The time of last change of the file is set to now: maps that were used last
-    are kept.
+    The time of last change of the file is set to now if it can be: maps that were used last are kept.
 
     path : path of the file.
-    parameters : (alpha or series, kappa, mu, j) that the map must have.
+    parameters : (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
+    Returns the :class:`FlowMap`; None if there is no file that can be read; None with a RuntimeWarning if its content
+    is damaged or of other parameters.
     """
     try:
         content = read_private(path)
@@ -127,10 +130,10 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
 
 
 def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
-    """Return the map in the bytes of a file.
+    """Return the :class:`FlowMap` in the bytes of a file.
 
     content: bytes of the file.
-    parameters: (alpha or series, kappa, mu, j) that the map must have.
+    parameters: (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
     Raises ValueError for a file that is damaged or of another scene, KeyError for one that lacks an array.
     """
     from ..kernels.flow.layout import SIZE
@@ -149,10 +152,10 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
 def save(new_map: FlowMap, path: Path) -> None:
     """Write a map, and delete the oldest maps of the folder beyond :data:`KEPT`.
 
-    If it cannot be written nothing happens.
+    Nothing is raised if it cannot be written, or an old map not deleted: the map is then not on disk, or too many are.
 
-    new_map : the map.
-    path : path of the file.
+    new_map : the :class:`FlowMap`.
+    path : path of the file, which is replaced if it exists.
     """
     try:
         content, numbers = io.BytesIO(), _numbers(new_map.parameters)

@@ -45,9 +45,10 @@ class Histogram(msgspec.Struct):
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
         """Make the histogram of those values that are finite.
 
-        values: numbers, (n,), in the unit of the quantity; those that are not finite are left out.
-        exact: whether to keep the values, (count,), for exact quantiles.
-        Returns the :class:`Histogram`; without finite values its moments are NaN.
+        values: numbers, (n,), in the unit of the quantity; those that are not finite are left out, and -0 counts as 0.
+        exact: whether to keep the values that are finite, (count,), for exact quantiles.
+        Returns the :class:`Histogram`; without finite values it has no bins, its moments are NaN, and its ``values``
+        None.
         """
         kept = values[np.isfinite(values)]
         bits = (kept + 0.0).view(np.int64)  # -0 becomes 0
@@ -61,12 +62,13 @@ class Histogram(msgspec.Struct):
         return cls(bins, counts, kept.size, *moments, kept if exact else None)
 
     def merge(self, other: Histogram) -> Histogram:
-        """Return the histogram of the values of two histograms; it does not keep the values.
+        """Return the histogram of the values of two histograms.
 
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
 
         other: the second histogram.
-        Returns a new histogram; if one of the two has no values, the other one itself.
+        Returns a new histogram, which does not keep the values, so that its quantiles are not exact.  If one of the two
+        has no values it is the other one itself, with the values that that keeps.
         """
         if not self.count or not other.count:
             return self if self.count else other
@@ -78,9 +80,9 @@ class Histogram(msgspec.Struct):
         return Histogram(bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes)
 
     def counts_in(self, bins: NDArray[np.int32]) -> Integers:
-        """Return the counts in other bins, (bins,), 0 in those without values.
+        """Return the counts in other bins, (bins,), int64; 0 in those without values.
 
-        bins: numbers of bins, ascending, which contain all of its own.
+        bins: numbers of bins, ascending, which must contain all bins of this histogram; it is not checked.
         """
         counts = np.zeros(bins.size, np.int64)
         counts[np.searchsorted(bins, self.bins)] = self.counts
@@ -89,8 +91,8 @@ class Histogram(msgspec.Struct):
     def quantiles(self, levels: tuple[float, ...]) -> Floats:
         """Return the quantiles, (levels,), in the unit of the quantity; NaN without values.
 
-        Where the values were not kept, each quantile lies between the two values beside it, which are known to their
-        bins, 2^-8 of a value wide; else it is exact (linear between neighbouring values).
+        If the values were kept, a quantile is exact, linear between neighbouring values.  If not, it is linear between
+        the two values beside it, each of which is known to its bin, 2^-8 of a value wide.
 
         levels: levels of the quantiles, in [0, 1].
         """
@@ -106,10 +108,10 @@ class Histogram(msgspec.Struct):
     def _at_rank(self, ranks: Integers) -> Floats:
         """Return the values of ranks from 0, as if those of each bin were evenly spread.
 
-        The bin of zero is no interval of values: it holds 0 and values below 1e-310, and all of them count as 0.
+        The bin of zero is no interval: it holds 0 and positive values below 1e-310, and all of them count as 0.
 
-        ranks: ranks among the values in ascending order, from 0, (k,).
-        Returns the values, (k,), in the unit of the quantity.
+        ranks: ranks among the values in ascending order, 0 ... count - 1, (k,), int.
+        Returns the values, (k,), in the unit of the quantity, between the least and the largest value.
         """
         below, above = edges_of(self.bins)
         above = np.where(self.bins == 0, below, above)
@@ -120,9 +122,11 @@ class Histogram(msgspec.Struct):
 
 
 def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
-    """Return (smallest values of bins, smallest values of the bins that follow them), in the shape of ``bins`` each.
+    """Return the edges of bins.
 
-    bins: numbers of bins, as of :class:`Histogram`.
+    bins: numbers of bins, (bins,), as of :class:`Histogram`.
+    Returns (smallest value of each bin; smallest value of the bin behind it, infinite for the last bin of finite
+    values), floats, in the shape of ``bins`` each.
     """
     bits = np.stack([bins, bins + 1]).astype(np.int64) << _DROPPED
     below, above = (bits ^ ((bits >> 63) & _MAGNITUDE)).view(np.float64)

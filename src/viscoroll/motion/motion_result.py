@@ -60,8 +60,9 @@ class Motion(RollResult):
     regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by a brake, or by a
         prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing stops: a driven motion counts as
         at rest where V has decayed below the smallest double.
-    switches : every change of regime, located to rounding; under a drive to a small part of ``rtol``.
-    reversals : times at which V changes its sign under a drive.
+    switches : changes of regime, a tuple of (t, regime), located to rounding; under a drive to a small part of
+        ``rtol``.  Only the first 1000 changes and reversals, counted together, are kept.
+    reversals : times at which V changes its sign under a drive, (reversals,).
     force, torque : divided by P and P R, or N/m and N m/m: the loads with the pull of a slope, or the loads that a
         prescribed speed required; without the brake.
     work_force, work_torque : work of either since t = 0, divided by m (R/T_epsilon)^2 or in J/m.
@@ -71,8 +72,9 @@ class Motion(RollResult):
     drive_error : largest difference seen between a callable and the polynomials that fit it, dimensionless.
     onset_time : time of the first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
-    success, status, message : whether the motion came to its end, how it ended, and its last state if that was not
-        its end; outputs it did not reach are NaN.
+    success, status, message : whether the motion reached its last output time or rest; how it ended, a
+        :class:`MotionStatus`; the same in words, with the last state of a motion that was given up.  Outputs that it
+        did not reach are NaN.
     steps : integration steps taken, rejected ones included.
 
     Examples
@@ -88,7 +90,11 @@ class Motion(RollResult):
 
     @property
     def message(self) -> str:
-        """How the motion ended, in words; for one that was given up also the state that it had reached."""
+        """How the motion ended, in words.
+
+        For one that was given up, but not one that stays in the indentation of a standstill, also the state that it had
+        reached, for which it is integrated anew.
+        """
         text = self.status.message
         if self.success or self.status == MotionStatus.CAUGHT:
             return text
@@ -98,14 +104,20 @@ class Motion(RollResult):
 
     @cached_property
     def _step_ends(self) -> Floats:
-        """Ends of the integration steps, ascending, in T_ref."""
+        """Ends of the integration steps, ascending, in T_ref, the dimensionless unit of time, (accepted steps,).
+
+        The motion is integrated anew for them.  Empty for one that stays in the indentation of a standstill.
+        """
         ends = np.full(2 * self.steps + _MORE_STEPS, np.nan)
         integrate_single(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
         return ends[~np.isnan(ends)]
 
     @cached_property
     def _last_reached(self) -> Motion:
-        """Return the :class:`Motion` at the end of its last step alone, for one that was given up."""
+        """Return the motion at the end of its last step alone, for one that was given up before its last output time.
+
+        It is integrated anew to that time.  Returns a :class:`Motion` with one output time, (1,).
+        """
         reached = float(self._step_ends.max(initial=0.0))
         # A last step that is cut at this end may take more steps than one that was not.
         limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
@@ -126,8 +138,8 @@ class Motion(RollResult):
     def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
         """Return the contact state (:func:`viscoroll.contact`) along the motion.
 
-        At rest, and where V passes through zero while sliding, the fields have their limits for V -> 0.  At times that
-        the motion did not reach everything is NaN, and ``full_slip`` False.
+        At rest, and where V passes through zero while sliding, the fields have their limits for V -> 0; where V is -0
+        that from below.  At times that the motion did not reach all numbers are NaN, and ``full_slip`` is False.
 
         Parameters
         ----------
@@ -167,8 +179,13 @@ class Motion(RollResult):
     def validity(self) -> Validity:
         """Report which assumptions of the model the motion violates, at each output time that it reached.
 
-        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far.
-        Returns the report :class:`Validity` with arrays over these times.
+        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far; of
+        a cover it is not decided.
+
+        Returns
+        -------
+        Validity
+            The report, with arrays over the output times that were reached; empty arrays where none was.
 
         Examples
         --------
@@ -186,7 +203,12 @@ class Motion(RollResult):
         return self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report: times, speeds, drive, onset, changes of regime, end."""
+        """Return title and rows of the printed report, a list of :class:`SummaryRow`.
+
+        The rows are: output times; V, omega and x; the drive as it was given; the onset of partial slip, if there is
+        one; number of changes of regime and of reversals of V, if there are any, and the last change; how the motion
+        ended.
+        """
         rows = [self._row_of_times()]
         rows += [
             SummaryRow(name, _describe_values(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")
@@ -218,7 +240,7 @@ class Motion(RollResult):
         -------
         Motion
             With these output times; it is integrated anew.  As accurate between the steps as at their ends
-            (``tests/motion/test_motion.py``).
+            (``tests/motion/test_motion.py``).  NaN at times that a motion which was given up did not reach.
 
         Raises
         ------
@@ -254,6 +276,8 @@ class Motion(RollResult):
     def to_xarray(self) -> xr.Dataset:
         """Return the dataset over t with V, omega, x, angle, delta and regime, and the scene as attributes.
 
+        The dataset of a motion with a drive has the loads, works, losses and reversals too.
+
         Examples
         --------
         >>> import viscoroll as vr
@@ -269,11 +293,12 @@ class Motion(RollResult):
 def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     """Integrate one motion.
 
-    problem: checked problem of one motion.
-    times: output times, (times,), ascending, in the unit of its roller; the motion is integrated to its end in any
-    case.
+    problem: :class:`MotionProblem` of one motion.
+    times: output times, (times,), ascending, in the unit of its roller; a time behind the end of the motion counts as
+    its end.  The motion is integrated to its end in any case, so that steps and status do not depend on them.
     Returns the :class:`Motion`, in the units of its roller; where it did not reach an output time, quantities are NaN
-    and ``regime`` is -1.  It keeps at most 1000 changes of regime and reversals.
+    and ``regime`` is -1.  It keeps the first 1000 changes of regime and reversals of V, counted together.  The status
+    of a motion that stays in the indentation of a standstill is CAUGHT, and it reaches no output time.
     """
     scale, end = problem.roller.scale, problem.end
     T, t = scale["t"], np.minimum(times / scale["t"], end)
@@ -301,7 +326,8 @@ def _describe_values(t: NDArray, values: NDArray) -> str:
 
     t, values: times and values, (times,), in the unit of the roller; values are NaN at times that the motion did not
     reach.
-    Returns one number for one time, "not reached" where all are NaN.
+    Returns "first A, largest B (at t = T), last C"; without the largest magnitude where it is printed like the first or
+    the last; the number alone for one time; "not reached" where all values are NaN.
     """
     if np.isnan(values).all():
         return "not reached"

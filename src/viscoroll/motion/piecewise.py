@@ -1,6 +1,10 @@
 """Functions of time that act on motions, and as piecewise polynomials for the kernels.
 
-A piece lasts from ``starts`` to ``ends``; in it x = -1 ... 1 and the value is sum terms[n] x^n.
+A piece lasts from ``starts`` to ``ends``.  In it x runs from -1 to 1, and the value is the sum of terms[n] x^n.  A
+piece without length does not act; in the last piece, which has no end, the function is constant.
+
+All is dimensionless.  T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref`` of any other
+material.
 """
 
 from __future__ import annotations
@@ -57,17 +61,20 @@ def check_function(
     """Check a function of time that acts on motions; a callable is fitted by polynomials.
 
     name: name of the argument, for refusals.
-    function: None (0), a number, an array with one for each motion, a Schedule, a callable of t, or a Feedback of one
-    of these, whose gains are ignored; dimensionless, t in T_ref.
-    end: last time, in T_ref.
-    rtol: relative tolerance of the motion; a fit may differ from a callable by a tenth of it, times the largest value
-    so far.
+    function: None (0), a number, an array with one for each motion, a :class:`Schedule`, a callable of t, or a
+    :class:`Feedback` of one of these, whose gains are ignored; dimensionless, times in T_ref, the unit of time (module
+    docstring).
+    end: last time, in T_ref; ignored but for a callable.
+    rtol: relative tolerance of the motion; a fit may differ from a callable by a tenth of it, times the largest
+    magnitude so far.  Ignored but for a callable.
     low: smallest value allowed.
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is neither a number, a schedule nor a callable; an array of several dimensions;
-    values that are not finite or below ``low``; a callable that polynomials do not follow.
-    Returns the function as :class:`TimeFunction`: an array, () or (m,), a Schedule, or a fit as :class:`Piecewise`,
-    constant behind ``end``.
+    values that are not finite or below ``low``; a callable that cannot be called with a time alone, or that polynomials
+    do not follow; a ``resolve`` that requires too many samples.
+    Returns the function as :class:`TimeFunction`: a float64 array, () for None or a number and (m,) for m motions; the
+    Schedule itself; or the fit of a callable as a :class:`Piecewise` of one row, which behind ``end`` keeps its value
+    there.
     """
     if isinstance(function, Feedback):
         function = function.value
@@ -88,9 +95,9 @@ def check_function(
 
 
 def count_motions(function: TimeFunction) -> int:
-    """Return the number of motions that a function tells apart; 1 if it is the same for all.
+    """Return the number of motions for which a function has values of their own, an int; 1 if it is the same for all.
 
-    function: number, numbers of the motions, schedule or fitted callable.
+    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable.
     """
     if isinstance(function, Piecewise):
         return len(function.terms)
@@ -100,9 +107,11 @@ def count_motions(function: TimeFunction) -> int:
 
 
 def count_corners(function: TimeFunction) -> int:
-    """Return the number of corners of a schedule, of pieces of a fit (their ends included), 0 of other functions.
+    """Return the number of times at which an integration step must end, an int.
 
-    function: number, numbers of the motions, schedule or fitted callable.
+    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable.
+    Returns the number of corners of a schedule; of a fitted callable the number of its pieces, that behind the last
+    time included; 0 of numbers.
     """
     if isinstance(function, Piecewise):
         return function.starts.shape[-1]
@@ -112,9 +121,9 @@ def count_corners(function: TimeFunction) -> int:
 def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
     """Return a function of time for some of the motions; the function itself where it is the same for all.
 
-    function: number, numbers of the motions, schedule or fitted callable.
-    index: index of numpy that selects the motions.
-    Returns a function of the same kind.
+    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable.
+    index: index of numpy, a slice or a vector of integers, that selects the motions.
+    Returns a function of the same kind; times or values of a schedule that are the same for all motions stay.
     """
     if isinstance(function, Piecewise) or count_motions(function) == 1:
         return function
@@ -127,9 +136,10 @@ def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
 def piecewise(function: TimeFunction) -> Piecewise:
     """Return a function of time as piecewise polynomials; a schedule is linear between its times, constant outside.
 
-    function: number, numbers of the motions, schedule or fitted callable; dimensionless.
-    Returns :class:`Piecewise`, of one term for numbers and of two for a schedule; pieces that have no length for any
-    motion are left out.
+    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable; dimensionless.
+    Returns :class:`Piecewise`: a fitted callable itself; of numbers one piece with one term, starts (1, 1) and terms (1
+    or m, 1, 1); of a schedule with k corners up to k + 1 pieces with two terms, since pieces that have no length for
+    any motion are left out.
     """
     if isinstance(function, Piecewise):
         return function
@@ -154,9 +164,12 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     """Return the derivative with respect to time of a prescribed speed.
 
     name: name of the argument, for the refusal.
-    speed: prescribed speed, dimensionless, time in T_ref.
-    Raises ParameterError where the speed jumps by more than rounding and the error of its fit.
-    Returns :class:`Piecewise` on the same pieces, dimensionless, with one term less; 0 for a speed that is constant.
+    speed: :class:`Piecewise`, prescribed speed, dimensionless, time in T_ref.
+    Raises ParameterError where the speed jumps by more than rounding (1e-12 of its largest coefficient) and four times
+    the error of its fit.
+    Returns :class:`Piecewise` with the same starts, dimensionless.  It has one term less; of a speed of one term, which
+    is constant, it has one term that is 0.  It is 0 in pieces without length or end, and its value at the left end of a
+    piece is shifted to 0 where it is rounding.  Its ``error`` is still that of the speed.
     """
     lengths = speed.ends - speed.starts
     first, last = values_at_start(speed.terms), speed.terms.sum(axis=-1)
@@ -186,8 +199,9 @@ def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
     """Set the value at the left end of pieces to 0 where it is rounding, as it would move a cylinder at rest.
 
     terms: coefficients of powers of x in [-1, 1], ascending, (..., terms).
-    rounding: largest ratio of that value to the sum of the magnitudes of the coefficients that counts as rounding.
-    Returns new coefficients, (..., terms), of which the constant ones are shifted.
+    rounding: ratio of that value to the sum of the magnitudes of the coefficients below which it counts as rounding.
+    Returns new coefficients, (..., terms).  Where the value counts as rounding it is subtracted from the constant
+    coefficient; all others are the same.
     """
     first, size = values_at_start(terms), np.abs(terms).sum(axis=-1)
     shifted = terms.copy()
@@ -198,11 +212,14 @@ def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
 def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """Return several functions over common pieces, in the layout of the kernels.
 
-    functions: piecewise polynomials of the same motions, or the same for all.
-    end: last time, in T_ref; pieces that start at or behind it are left out.
+    functions: piecewise polynomials, each for the same m motions, or the same for all.
+    end: last time, in T_ref.  Pieces that for every motion start at or behind it are left out; the first piece always
+    stays.
     Returns (1 or m, k, 2 + number of functions * terms): start of each piece in T_ref; 2 divided by its length, 0 of
     one without length or end; then the coefficients of each function in turn, padded with 0 to the largest number of
     terms.  Where motions have times of their own, pieces between equal times have no length; the kernels skip them.
+    Pieces of a motion that start at or behind ``end``, but are kept since other motions have them before it, repeat the
+    coefficients of its last piece before ``end``.
     """
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
@@ -228,11 +245,12 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
 def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> Floats:
     """Return the coefficients of a function over finer pieces.
 
-    function: piecewise polynomial of one motion or of m motions.
+    function: :class:`Piecewise` of one motion or of m motions.
     rows: number of motions with times of their own, or 1.
     starts, ends: when the finer pieces start and end, (rows, k), in T_ref; none extends over a start of the function's
-    own.
-    Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms).
+    own.  The last may end at infinity.
+    Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms); their value at the left end
+    of a piece is shifted to 0 where it is rounding.
     """
     piece = _piece_at(function.starts, starts)
     shape = rows, function.starts.shape[1]
@@ -248,9 +266,9 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
     """Return the index of the piece that acts at each time: the last that starts by then.
 
     begins: when pieces start, (1 or m, k), ascending, the first at 0.
-    times: times in the unit of ``begins``, (m, n), >= 0; with one row of ``begins`` any number of rows.
-    Returns indices in 0 ... k - 1, in the shape of ``times``.  Takes memory in proportion to its input, and n log k
-    steps.
+    times: times in the unit of ``begins``, >= 0, (m, n); where ``begins`` has one row, m is any number.
+    Returns indices in 0 ... k - 1, int, in the shape of ``times``.  Takes memory in proportion to its input, and n log
+    k steps for each row.
     """
     if len(begins) == 1:
         return np.searchsorted(begins[0], times, side="right") - 1
@@ -264,10 +282,10 @@ def _substitute(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, e
     """Return the coefficients of polynomials on parts of their pieces, by Horner's scheme with x -> shift + scale x.
 
     terms: coefficients of powers of x in [-1, 1], ascending, (m, k, terms).
-    first, last: start and end of each piece, (m, k); a piece without length, or without end (inf), takes its value at x
-    = 0.
-    starts, ends: start and end of each part, (m, k), in the unit of ``first``.
-    Returns the coefficients on the parts, (m, k, terms).
+    first, last: start and end of each piece, (1 or m, k).
+    starts, ends: start and end of each part, (1 or m, k), in the unit of ``first``.
+    Returns the coefficients on the parts, (m, k, terms).  Of a piece without length, or without end (``last``
+    infinite), they are those of a constant: its value at x = 0.
     """
     endless = np.isinf(last) | (last == first)
     length = np.where(endless, 1.0, last - first)

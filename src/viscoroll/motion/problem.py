@@ -1,4 +1,8 @@
-"""Motions that are checked and ready to be integrated: :class:`MotionProblem`; and the calls of the kernel."""
+"""Motions that are checked and ready to be integrated: :class:`MotionProblem`; and the calls of the kernel.
+
+T_ref is the unit of time of dimensionless motions: T_epsilon of a material that is an alpha, the ``T_ref`` of any other
+material.  Speeds are divided by R/T_ref, angular velocities by 1/T_ref.
+"""
 
 from __future__ import annotations
 
@@ -60,15 +64,18 @@ class SolverOptions(NamedTuple):
 class MotionProblem(NamedTuple):
     """Checked motions; dimensionless but for roller and drive.
 
-    roller, scene : the roller on its slope, in the units of the caller, and its dimensionless parameters.
-    drive : loads and prescribed speeds as given, in the units of the roller; a load that is 0 at all times is None.
-    functions : the same as dimensionless functions of time; None for free motions.
+    roller, scene : the roller (:class:`Scene` or :class:`Cylinder`) on its slope, in the units of the caller, and its
+    dimensionless :class:`Parameters`.
+    drive : :class:`Drive`, loads and prescribed speeds as given, in the units of the roller; a load that is 0 at all
+    times is None.
+    functions : the same as dimensionless functions of time, :class:`DriveFunctions`; None for free motions.
     V0, omega0 : start speeds, numbers or (n,), reduced by the speed that a start after a standstill costs.
     immobile : whether a motion is too slow to leave the indentation of a standstill: (n,), or one truth value for all.
     end : last time, in T_ref.
-    limits : (rtol; threshold of rest, dimensionless, 0 for none; largest number of steps).
+    limits : (rtol; threshold of rest, dimensionless, 0 for none; largest number of steps, the corners of the drive
+    included).
     unsteady : whether the added mass N acts.
-    driven : whether something drives the motions, or the added mass acts.
+    driven : whether a load other than 0, or a prescribed speed, is given, or the added mass acts.
     """
 
     roller: Roller
@@ -101,15 +108,17 @@ def make_problem(
 ) -> MotionProblem:
     """Check everything about motions before any is integrated, and convert it to dimensionless numbers.
 
-    roller: scene or cylinder.
+    roller: :class:`Scene` or :class:`Cylinder`.
     start: V0 and omega0 in its units, plain numbers or arrays (n,); None where a speed is prescribed.
-    drive: loads and prescribed speeds in its units, without labels.
+    drive: :class:`Drive`, loads and prescribed speeds in its units, without labels.
     end: last output time, in its unit.
-    options: how to integrate.
+    options: :class:`SolverOptions`, not yet checked.
     single: whether only one motion is allowed (``roll``); else an ensemble.
-    Raises ParameterError for everything that :func:`viscoroll.roll` or :func:`viscoroll.ensemble` refuses, apart from
-    output times, fields and method.
-    Returns the :class:`MotionProblem`; callables are fitted by then, and nothing is integrated.
+    Raises ParameterError for everything that :func:`viscoroll.roll` (``single``) or :func:`viscoroll.ensemble` refuses,
+    apart from output times, fields, method and ``speed``.
+    Returns the :class:`MotionProblem`.  Its callables are fitted, loads that are 0 at all times are left out, the start
+    speeds are reduced by the cost of a standstill, and the step limit is raised by the number of corners of the drive;
+    nothing is integrated.
     """
     acts = drive.acts
     if single:
@@ -146,10 +155,10 @@ def make_problem(
 def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
     """Return the largest spacing of the samples of a callable, in T_ref.
 
-    resolve: the spacing in the unit of time of the roller: s, or T_ref of a scene.
-    drive: drive of the motions.
-    scale: scale of the roller, which converts s to T_ref.
-    Raises ParameterError unless ``resolve`` is one number above 0 and the drive has a callable.
+    resolve: the argument of the caller: the spacing in the unit of time of the roller, s, or T_ref of a scene.
+    drive: :class:`Drive` of the motions.
+    scale: :class:`Scale` of the roller, which converts s to T_ref.
+    Raises ParameterError unless ``resolve`` is one finite number above 0 and the drive has a callable.
     """
     if not drive.has_callable:
         sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
@@ -158,12 +167,12 @@ def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
 
 
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
-    """Return whether the added mass N acts.
+    """Return whether the added mass N acts, a bool.
 
     unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
-    scene: dimensionless parameters of the roller.
-    Raises ParameterError for what is no truth value, and, if True, for covers and for bodies of different materials,
-    for which N is not available.
+    scene: :class:`Parameters`, dimensionless, of the roller.
+    Raises ParameterError for what is no truth value, and, if it is True, for covers and for bodies of different
+    materials, for which N is not available.
     """
     if not check_bool("unsteady", unsteady):
         return False
@@ -177,9 +186,9 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
 def _standstill_time(rested: Any, units: HasUnits) -> float:
     """Return the time of the standstill before the start, in the unit of the roller: 0 without one, inf for a long one.
 
-    rested: argument of the caller: False (none), True (a long one), or a time >= 0 in the unit of the roller.
-    units: units of the roller.
-    Raises ParameterError for what is neither a truth value nor one number >= 0.
+    rested: argument of the caller: False (none), True (a long one), or a finite time >= 0 in the unit of the roller.
+    units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
+    Raises ParameterError for what is neither a truth value nor one finite number >= 0.
     """
     if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
@@ -192,12 +201,15 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    start: start speeds, numbers or (n,), and drive, dimensionless.
-    scene: dimensionless parameters of the roller.
+    start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, dimensionless.
+    scene: :class:`Parameters`, dimensionless, of the roller.
     rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
-    Returns (V0; omega0; whether the cylinder is too slow to leave its indentation, in the shape of the speeds, or one
-    False if ``rested`` is 0); the speeds are dimensionless.
-    Raises ParameterError for a prescribed speed, a start in full slip or a cover, whose cost is not known.
+    Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.  If ``rested`` is 0,
+    the speeds are returned as they are, with False.  Else V0 and omega0 of each motion are multiplied by the same
+    factor in [0, 1], and the third entry is an array in their shape.  It is True where this takes more than 45 % of V
+    (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.  A motion from rest loses nothing, with False.
+    Raises ParameterError if ``rested`` is not 0, and a speed is prescribed, any motion starts in full slip, or the
+    roller has a cover: the cost is then not known.
     """
     if rested == 0.0:
         return start.V0, start.omega0, False
@@ -221,16 +233,18 @@ def integrate(
 
     count: number of motions.
     batch: (law, the kernel's record of one material or of several; whether the two bodies take unequal parts of M;
-    kappa, mu, gamma, j, V0, omega0, vectors of one value or ``count`` values), dimensionless.
+    kappa, mu, gamma, j, V0, omega0, read-only vectors of one value or ``count`` values), dimensionless.
     drive: drive of the motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
     times: output times, (times,), ascending, in T_ref.
     limits: (rtol; threshold of rest, 0 for none; largest number of steps).
-    rows: (rows,), indices into :data:`.drive.ROWS`: the quantities to compute.
+    rows: (rows,), int, indices into :data:`.drive.ROWS`: the quantities to compute.
     notes: (switches, (k, 2): time in T_ref and new regime, or -1 where V changes its sign; ends of steps, (l,), in
-    T_ref). Both are written; what exceeds their length is left out.  Arrays of length 0 keep nothing.
+    T_ref). Both are written from the front in the order of time; what exceeds their length is left out, and entries
+    that are not needed stay as they were.  Each motion overwrites those of the one before, so that they are of use for
+    one motion.  Arrays of length 0 keep nothing.
     Returns (quantities, (rows, count, times), NaN at times that a motion did not reach; information on each motion,
-    (count, 5): code of :class:`MotionStatus`, number of steps, number of changes of regime, onset time and rest time in
-    T_ref, NaN where there is none).
+    (count, 5), floats: code of :class:`MotionStatus`, number of steps, number of changes of regime, onset time and rest
+    time in T_ref, NaN where there is none).
     """
     from ..kernels.motion.batch import N_INFO_COLUMNS, motion_loop
 
@@ -242,13 +256,15 @@ def integrate(
 def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """Integrate one motion.
 
-    problem: checked problem of one motion.
+    problem: :class:`MotionProblem` of one motion.
     times: output times, (times,), ascending, in T_ref.
     notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the ends of steps; none:
     neither is kept.
-    Returns (all quantities in the order of :data:`.drive.ROWS`, (rows, times), dimensionless; [code of
-    :class:`MotionStatus`, number of steps, number of changes of regime, onset time, rest time], times in T_ref).  A
-    cylinder that stays in its indentation is not integrated: its quantities are NaN, its status is CAUGHT.
+    Returns (all quantities in the order of :data:`.drive.ROWS`, (rows, times), dimensionless, NaN at times that the
+    motion did not reach; a list of five floats: code of :class:`MotionStatus`, number of steps, number of changes of
+    regime, onset time and rest time in T_ref, NaN where there is none).  A cylinder that stays in its indentation is
+    not integrated: all its quantities and both times are NaN, its status is CAUGHT, its numbers of steps and changes
+    are 0, and ``notes`` stay as they were.
     """
     scene = problem.scene
     if problem.immobile:
@@ -266,17 +282,20 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
 def integrate_motions(
     parameters: tuple[Any, ...], starts: tuple[Floats, Floats], gamma: Floats, t: Floats, *, threads: int | None = 1
 ) -> tuple[Floats, Floats]:
-    """Integrate free motions from which a flow map (:mod:`.flow`) is built and by which it is tested, at rtol 1e-12.
+    """Integrate free motions of one scene, from which a flow map (:mod:`.flow`) is built and by which it is tested.
 
-    They are integrated as those of an ensemble are, so that no kernel is compiled for them alone.
+    They are integrated at rtol 1e-12, and by the same call of the kernel as an ensemble, so that no kernel is compiled
+    for them alone.
 
-    parameters: (material, kappa, mu, j), numbers; the material is alpha, or a series in its own unit of time.
-    starts: V0 and omega0, (n,) each, dimensionless.
+    parameters: (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
+    time.
+    starts: V0 and omega0, (n,) each, n >= 1, dimensionless.
     gamma: P T^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, (n,) or (1,).
     t: output times, (times,), ascending, common to all, in the unit of time of the material.
-    threads: number of threads; None: all cores available.
-    Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times), dimensionless; status, steps,
-    switches, onset and rest time of each motion, (n, 5), as of :func:`integrate`).
+    threads: number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times), dimensionless, NaN at times that
+    a motion did not reach; status, steps, switches, onset and rest time of each motion, (n, 5), as of
+    :func:`integrate`).
     """
     material, kappa, mu, j = parameters
     law, count = law_table(material), starts[0].size

@@ -19,7 +19,11 @@ from .drive import Drive
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RollResult(Result):
-    """The roller, its drive, and the rows over the output times."""
+    """The data that :class:`Motion` and :class:`Ensemble` have in common: the roller, its drive, and the rows over the
+    output times.
+
+    The two classes describe the fields.
+    """
 
     roller: Roller
     drive: Drive
@@ -64,12 +68,13 @@ class RollResult(Result):
     ) -> Validity:
         """Add to a report whether the law of steady rolling may drive the motions, as its entry ``steady``.
 
-        report: validity of the states of the motions.
-        roller: roller of the motions.
+        report: :class:`Validity` of the states of the motions.
+        roller: roller of the motions; not one with a cover, for which ParameterError is raised.
         V: speeds in its unit, (times, ...).
-        rolls: where the motions are not in full slip, (times, ...).
+        rolls: mask, True where the motions are not in full slip, (times, ...).
         x: distances travelled, in the unit of the roller, (times, ...); NaN where they are not known.
-        ends: whether the unsteadiness is that of each motion as a whole, (...), else at each time, (times, ...).
+        ends: whether the unsteadiness is that of each motion as a whole, (...); else it is the largest so far at each
+        time, (times, ...).
         Returns a new report with that entry.
         """
         free = FreeRolling.of_scene(roller.scene(), V / roller.scale["V"]).scaled(roller.scale)

@@ -89,9 +89,9 @@ def roll(
         cylinder stays in its own indentation.  A drive may jump; V' then jumps too, which the real contact
         follows with a delay.  Refused where the bodies differ.
     rested : whether the cylinder stood still for long before the start, or the time for which it did, divided by T_ref
-        or in s.  Leaving its indentation costs energy (``validity(V0).steady.start``), and V0 and omega0 are reduced; a
-        motion that would lose seven tenths of its energy stays there.  The cost is that of free rolling: with a force
-        it is an approximation.
+        or in s.  Leaving its indentation costs energy (``validity(V0).steady.start``), by which V0 and omega0 are
+        reduced.  A motion that would lose seven tenths of its energy stays there: its outputs are NaN, its status is
+        CAUGHT.  The cost is that of free rolling: with a force it is an approximation.
     max_steps : step limit, at most 10^7; every corner of a schedule, at which a step ends, adds one to it.
     resolve : largest spacing of the samples of a callable, divided by T_ref or in s; a pulse that lasts longer is seen.
         Default, and at most: a thousandth of the motion.  Refused where it requires more than 5 10^5 samples, and where
@@ -108,8 +108,8 @@ def roll(
     ParameterError
         NaN, infinite or oversized input, unsorted times, an array where one number belongs; both speeds prescribed,
         a prescribed speed that jumps or does not match its start, a callable that
-        polynomials do not follow; ``unsteady`` with bodies that differ; ``rested`` below 0, with a prescribed speed,
-        or at a start in full slip.
+        polynomials do not follow; ``rest`` where something drives to the end; ``unsteady`` with bodies that differ
+        or with a cover; ``rested`` below 0, with a prescribed speed, with a cover, or at a start in full slip.
 
     Notes
     -----
@@ -131,6 +131,8 @@ def roll(
     -----
     RuntimeWarning
         Where the motion could not be integrated to the end; ``status`` and ``message`` say why.
+    ModelWarning
+        Where the start or the speeds violate assumptions of the model grossly.
     """
     units = scale_of(roller)
     times, drive = output_times(t, units), Drive(force, torque, slope, brake, drag, omega, V)

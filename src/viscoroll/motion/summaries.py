@@ -41,7 +41,8 @@ class Quantity(NamedTuple):
     over_time: bool = True
 
     def about(self, si: bool) -> dict[str, Any]:
-        """Return the attributes long_name and units of the quantity.
+        """Return the attributes long_name and units of the quantity; units are "1" for a part of the energy at the
+        start.
 
         si: whether the units are those of a cylinder.
         """
@@ -51,10 +52,10 @@ class Quantity(NamedTuple):
 
 
 def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
-    """Return a field at an output time, made dimensionless, (n,).
+    """Return a field at an output time, made dimensionless, (n,); NaN for motions that did not reach it.
 
-    motions: an ensemble.
-    name: name of the field.
+    motions: an :class:`Ensemble`.
+    name: name of a field that it has.
     k: index of the output time.
     """
     return getattr(motions, name)[:, k] / motions.scale[name]
@@ -63,7 +64,9 @@ def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
 def _start_energy(motions: Any) -> NDArray:
     """Return twice the kinetic energy at the start, divided by m (R/T_ref)^2, (n,); NaN for motions from rest.
 
-    motions: an ensemble.
+    T_ref is the unit of time of dimensionless motions.
+
+    motions: an :class:`Ensemble`; its start speeds are those after the cost of a standstill.
     """
     V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
     energy = V**2 + motions.scene.j * omega**2
@@ -81,7 +84,12 @@ def _rotation(motions: Any, k: int) -> NDArray:
 
 
 def _loss(name: str, motions: Any, k: int) -> NDArray:
-    """Return a loss divided by the kinetic energy at the start, half of whose unit is m (R/T_epsilon)^2, (n,)."""
+    """Return a loss divided by the kinetic energy at the start, (n,); NaN for motions from rest.
+
+    name: name of the field, "slip_loss" or "rolling_loss", whose unit is m (R/T_ref)^2.
+    motions: an ensemble.
+    k: index of the output time.
+    """
     return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
 
@@ -129,11 +137,12 @@ class Summary(msgspec.Struct):
 def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     """Return the summary of an ensemble in memory with exact quantiles, see ``Ensemble.summary``.
 
-    motions: the ensemble.
+    motions: the :class:`Ensemble`.
     levels: levels of the quantiles, in [0, 1].
     Raises ParameterError for an ensemble without motions.
     Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, of the distance
-    |x|, and of onset and rest time, in the units of the roller.
+    |x| if it has x, and of onset and rest time, in the units of the roller; its attributes also tell the number of
+    motions.
     """
     if not len(motions):
         raise ParameterError("motions", 0, "at least 1")
@@ -148,10 +157,11 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
 def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summary:
     """Return the summary of the motions of a block, which merges with those of other blocks.
 
-    motions: an ensemble.
+    motions: an :class:`Ensemble`.
     names: names of quantities, keys of :data:`QUANTITIES`, whose fields the ensemble has.
     exact: whether to keep the values for exact quantiles.
-    Returns the :class:`Summary`, in the units of the roller.
+    Returns the :class:`Summary`, in the units of the roller: a list of histograms for each name, one for each output
+    time, or a single one of a quantity that is one number for each motion.  Values that are not finite are left out.
     """
     histograms = {}
     for name in names:
@@ -165,8 +175,10 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
 def merge_summaries(summaries: Iterator[Summary]) -> Summary:
     """Merge the summaries of blocks to one of all their motions.
 
-    summaries: at least one, in the order of blocks, of the same quantities and times; the first one is changed.
-    Returns the first one, which then counts all motions.
+    summaries: iterator over at least one :class:`Summary`, in the order of blocks, of the same quantities and times.
+    Returns the first one, which is changed and then counts all motions.  Its histograms of more than one block do not
+    keep the values, so that quantiles are known to their bins.
+    Raises StopIteration without a summary.
     """
     total = next(summaries)
     for other in summaries:
@@ -182,12 +194,13 @@ def merge_summaries(summaries: Iterator[Summary]) -> Summary:
 def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bool) -> xr.Dataset:
     """Return moments, quantiles and histograms over t, and counts of how motions ended, as a dataset.
 
-    total: the summary.
+    total: the :class:`Summary`.
     t: output times, (times,), in the unit of the roller.
     levels: levels of the quantiles, in [0, 1].
     si: whether the units are those of a cylinder.
     Returns the dataset: of each quantity the variables of :func:`_variables`; ``ended`` over status, the number of
-    motions with each; attributes ``failed_motions`` and ``motions_from_the_flow_map``.
+    motions with each :class:`MotionStatus`, 0 included; attributes ``failed_motions``, the number of those that reached
+    neither the last output time nor rest, and ``motions_from_the_flow_map``.
     """
     import xarray as xr
 
@@ -212,13 +225,14 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
 def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...], si: bool) -> dict[str, Any]:
     """Return the variables of one quantity: moments, quantiles, and counts in all bins that hold a value at some time.
 
-    name: name of the quantity.
-    histograms: one for each output time, or one.
+    name: name of the quantity, a key of :data:`QUANTITIES`.
+    histograms: one :class:`Histogram` for each output time, or one.
     levels: levels of the quantiles, in [0, 1].
     si: whether the units are those of a cylinder.
-    Returns name of the variable -> (dimensions, values, attributes): NAME_counted, _mean, _std, _min, _max over t or
-    without dimensions, NAME_quantiles over (quantile, t), NAME_histogram over (bin, t), NAME_bin_low and NAME_bin_high
-    over bin.
+    Returns name of the variable -> (dimensions, values, attributes): NAME_counted, _mean, _std (of all values, divided
+    by their number), _min, _max over t or without dimensions, NAME_quantiles over (quantile, t), NAME_histogram over
+    (NAME_bin, t), NAME_bin_low and NAME_bin_high over NAME_bin.  At a time without values the moments and quantiles are
+    NaN, and counts 0.
     """
     about, times = QUANTITIES[name].about(si), ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))

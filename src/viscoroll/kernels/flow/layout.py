@@ -109,6 +109,10 @@ SIZE = sum(map(prod, SHAPES))
 
 
 def views(table: NDArray) -> FlowTables:
-    """The tables in one vector of :data:`SIZE` numbers, as views in their shapes."""
+    """Return the tables in one vector as views in their shapes.
+
+    table : vector of :data:`SIZE` doubles.
+    Returns :class:`FlowTables` of arrays in the shapes :data:`SHAPES`; what is written to them is written to ``table``.
+    """
     parts = zip(STARTS, SHAPES, strict=True)
     return FlowTables(*(table[start : start + prod(shape)].reshape(shape) for start, shape in parts))

@@ -82,12 +82,13 @@ _GAUSS_W = gauss(5)[1]
 def full_slip_integrals(V, level, flow):
     """Return time and distance of sliding between rest and the speed V, and the limit of full slip, from the map.
 
-    V : speed of the axis in the mirrored frame (omega > V), of either sign, kappa |V| < 2^layout.HIGH.
-    level : SPEEDS, PATH or LOSS: the distance is computed from PATH on.
+    V : float, speed of the axis in the mirrored frame (omega > V), of either sign or 0, kappa |V| < 2^layout.HIGH.
+    level : SPEEDS, PATH or LOSS: the distance is read from the table from PATH on.
     flow : Flow, of the scene.
 
-    Returns (T, X, limit): time tau from V = 0 to V, with the sign of V; distance times gamma, >= 0, or 0 at level
-    SPEEDS; delta_star |V|, the least omega - V of full slip.  Below the tables they are their limits as V -> 0.
+    Returns (T, X, limit): time tau from V = 0 to V, with the sign of V; distance times gamma between rest and V, >= 0;
+    delta_star |V|, the least omega - V of full slip, >= 0.  For kappa |V| < 2^layout.LOW, below the table, they are
+    their limits as V -> 0, (V/mu, V^2/(2 mu), mu |V|/(2 kappa)), at every level.  In the table X is 0 at level SPEEDS.
     """
     speed = abs(V)
     row, t, _ = locate_octave(flow.kappa * speed, layout.LOW)
@@ -101,8 +102,12 @@ def full_slip_integrals(V, level, flow):
 
 @inline_kernel
 def speed_at_slide_time(T, flow):
-    """Return V in full slip at the time T = gamma t after (T > 0) or before (T < 0) V = 0, in the mirrored frame;
-    ``flow``: Flow, of the scene.  V has the sign of T.
+    """Return V in full slip, in the mirrored frame, at a time before or after V = 0.
+
+    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^layout.HIGH.
+    flow : Flow, of the scene.
+
+    Returns V, with the sign of T; below the table its limit mu T for small T.
     """
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
@@ -115,13 +120,13 @@ def speed_at_slide_time(T, flow):
 def slide_distance(start, tau, flow):
     """Return the distance of sliding during a time from a given state of full slip.
 
-    start : (T, X) at the beginning, as :func:`full_slip_integrals` returns them: time and distance between rest and the
-        speed there, in the mirrored frame.
-    tau : time gamma t of sliding, > 0.
+    start : (T, X) at the beginning, as :func:`full_slip_integrals` returns them at level PATH: time and distance
+        between rest and the speed there, in the mirrored frame.
+    tau : float, time gamma t of sliding, > 0.
     flow : Flow, of the scene.
 
-    Returns gamma times the distance, with the sign of the motion in the mirrored frame: the difference of X, or, for
-        tau up to 0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
+    Returns gamma times the distance, with the sign of the motion in the mirrored frame: the difference of X; or, for
+    tau up to 0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
     """
     T, X = start
     if tau > _SHORT * abs(T):
@@ -136,12 +141,14 @@ def slide_distance(start, tau, flow):
 def read_onset(I, level, flow):
     """Return the state at the onset of partial slip of a sliding motion, in the mirrored frame (omega > V).
 
-    I : V - j omega - 2 mu T, constant while sliding, with T the time that :func:`full_slip_integrals` gives for V.
+    I : float, V - j omega - 2 mu T, which is constant while sliding, with T the time that :func:`full_slip_integrals`
+        gives for V.
     level : SPEEDS, PATH or LOSS: X is computed from PATH on.
     flow : Flow, of the scene.
 
-    Returns (V, T, X): speed at the onset, with the sign opposite to that of I; time tau and distance times gamma of
-    full slip between rest and that speed; X = 0 at level SPEEDS.  All are 0 where the onset is outside the tables.
+    Returns (V, T, X): speed at the onset, with the sign opposite to that of I; time tau of full slip between rest and
+    that speed, with the sign of V; distance times gamma between rest and that speed, >= 0, but 0 at level SPEEDS.  All
+    three are 0 where the onset is outside the tables, for I = 0 and for an I that is NaN too.
     """
     x = flow.kappa * abs(I) / (1.0 + flow.j)
     if not LOWEST <= x < HIGHEST:
@@ -157,11 +164,13 @@ def read_onset(I, level, flow):
 def _locate_on_manifold(slow_log):
     """Return the position of a slow logarithm in the table of the slow manifold.
 
-    slow_log : slow logarithm of V, the coordinate along the slow manifold; any number up to the end of the table.
+    slow_log : float, slow logarithm of V, the coordinate along the slow manifold; any number up to the end of the
+        table.
 
     Returns (position, t, factor): index in the map's vector at which the row begins, int; argument in [-1, 1] of its
-    polynomials; factor of V, delta and the remaining path: 1 inside the table, below it the exp(slow_log - lowest) by
-    which they fall.
+    polynomials; factor of V, delta and the remaining path.  Inside the table the factor is 1.  Below it the position is
+    that of the lowest slow logarithm, and the factor is exp(slow_log - lowest), by which these quantities fall; it may
+    underflow to 0.
     """
     if slow_log >= 0.0:
         row, t, _ = locate_octave(1.0 + slow_log, 0)
@@ -176,7 +185,11 @@ def _locate_on_manifold(slow_log):
 
 @inline_kernel
 def manifold_speeds(slow_log, table):
-    """Return (V, delta) on the slow manifold: speed > 0, creepage; ``slow_log``: slow logarithm; ``table``: of Flow."""
+    """Return (V, delta) on the slow manifold: speed, > 0 until it underflows to 0, and creepage.
+
+    slow_log : float, slow logarithm.
+    table : vector of all tables, ``table`` of Flow.
+    """
     at, t, share = _locate_on_manifold(slow_log)
     V, delta = evaluate_pair(table, at, t)[:2]
     return share * V, share * delta
@@ -184,8 +197,11 @@ def manifold_speeds(slow_log, table):
 
 @inline_kernel
 def _remaining_path(slow_log, table):
-    """Return (distance, angle), each times gamma, that remain to rest on the slow manifold at the slow logarithm
-    ``slow_log``; ``table``: vector of all tables, of Flow.
+    """Return the path that remains to rest on the slow manifold.
+
+    slow_log : float, slow logarithm.
+    table : vector of all tables, ``table`` of Flow.
+    Returns (distance, angle), each times gamma, >= 0 for the V > 0 of the mirrored frame.
     """
     at, t, share = _locate_on_manifold(slow_log)
     x, angle = evaluate_pair(table, at + layout.SLOW_PATH, t)[:2]
@@ -196,13 +212,14 @@ def _remaining_path(slow_log, table):
 def manifold_path(start, span, rate, table):
     """Return distance and angle along the slow manifold while the slow logarithm falls by ``span``.
 
-    start : slow logarithm at the beginning.
-    span : decrease of the slow logarithm, >= 0.
-    rate : decrease of the slow logarithm in unit time tau = gamma t, > 0: ``slow_rate`` of Flow.
-    table : vector with all tables of the map, ``table`` of Flow.
+    start : float, slow logarithm at the beginning.
+    span : float, decrease of the slow logarithm, >= 0.
+    rate : float, decrease of the slow logarithm in unit time tau = gamma t, > 0: ``slow_rate`` of Flow.
+    table : vector of all tables, ``table`` of Flow.
 
-    Returns (distance, angle), each times gamma and >= 0 for V > 0: the difference of the remaining path, or, where that
-    difference cancels, the integral of V by a five-point Gauss rule.
+    Returns (distance, angle), each times gamma and >= 0 for V > 0: the difference of the remaining path; or, for a span
+    up to a quarter of max(1 + end, 1) with the slow logarithm at its end, where that difference cancels, the integrals
+    of V and omega by a five-point Gauss rule.
     """
     end = start - span
     if span > 0.25 * max(1.0 + end, 1.0):
@@ -219,8 +236,10 @@ def manifold_path(start, span, rate, table):
 
 @kernel
 def remaining_slip_loss(slow_log, table):
-    """Return the slip loss that remains to rest on the slow manifold, divided by m (R/T_epsilon)^2; it falls as V^3 as
-    V -> 0.  ``slow_log``: slow logarithm; ``table``: vector of all tables, of Flow.
+    """Return the slip loss that remains to rest on the slow manifold, divided by m (R/T_epsilon)^2.
+
+    slow_log : float, slow logarithm; below the table the loss falls as V^3.
+    table : vector of all tables, ``table`` of Flow.
     """
     at, t, share = _locate_on_manifold(slow_log)
     return share**3 * evaluate_single(table, at + layout.SLOW_LOSS, t)[0]
@@ -228,8 +247,10 @@ def remaining_slip_loss(slow_log, table):
 
 @kernel
 def manifold_at_speed(v, table):
-    """Return (slow logarithm, delta) on the slow manifold; ``v``: kappa V, from LOWEST to the end of the tables;
-    ``table``: vector of all tables, of Flow.
+    """Return (slow logarithm, delta) on the slow manifold at a speed.
+
+    v : float, kappa V, from LOWEST to below 2^layout.HIGH; it is not checked.
+    table : vector of all tables, ``table`` of Flow.
     """
     row, t, _ = locate_octave(v, layout.LOW)
     return evaluate_pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
@@ -237,8 +258,11 @@ def manifold_at_speed(v, table):
 
 @kernel
 def asymptote_on_manifold(slow_log):
-    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already, at the slow logarithm
-    ``slow_log``: nothing in excess, and a rate so large that its boundary layer has length 0.
+    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already.
+
+    slow_log : float, its slow logarithm at the time of its onset.
+    Returns an asymptote that the motion exceeds by nothing, with split 1 and a rate of 1e30, so large that its boundary
+    layer has practically no length.
     """
     return Asymptote(slow_log, _NO_LAYER, 1.0, 0.0, 0.0, 0.0)
 
@@ -248,13 +272,13 @@ def read_asymptote(family, v, level, flow):
     """Return the motion on the slow manifold that a motion approaches after the onset of partial slip: its asymptote.
 
     family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
-    v : kappa V at the onset, in the octaves of the table, from 2^first on.
+    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES); it is not checked.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
     Returns an :class:`.records.Asymptote`: slow_log, that of the asymptote at the time of the onset; rate, the k0 of
     the stiff time E; split, the E that divides the layer; x, angle (both times gamma; 0 below level PATH) and loss (0
-    below level LOSS), by which the motion exceeds the asymptote from the onset to rest.
+    below level LOSS), by which the motion exceeds the asymptote from the onset to rest, of either sign.
     """
     table = flow.table
     row, t, _ = locate_octave(v, flow.first)
@@ -270,8 +294,11 @@ def read_asymptote(family, v, level, flow):
 
 @inline_kernel
 def layer_coordinate(E, split):
-    """Return the layer coordinate u, 2^LAYER_LOW at the onset and 1 at the split; ``E``: stiff time since the onset, >=
-    0; ``split``: the E at which the layer is divided.
+    """Return the layer coordinate u, which grows with the stiff time, linearly on either side of the split.
+
+    E : float, stiff time since the onset, >= 0.
+    split : float, the E at which the layer is divided, > 0.
+    Returns u: 2^LAYER_LOW at the onset, 1 at the split, 1 + E - split behind it.
     """
     return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
 
@@ -281,12 +308,12 @@ def locate_in_layer(family, v, u, flow):
     """Return the position of a motion in the table of the boundary layer.
 
     family : PLUS or MINUS.
-    v : kappa V at the onset, in the octaves of the table.
-    u : layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
+    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES).
+    u : float, layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
     flow : Flow, of the scene.
 
     Returns (position, t, s): index in the map's vector at which the polynomials of column 0 begin, int; their arguments
-    in [-1, 1] over v and over u, each linear within an octave.
+    in [-1, 1), t over v and s over u, each linear within an octave.
     """
     row, t, _ = locate_octave(v, flow.first)
     part, s, _ = locate_octave(u, layout.LAYER_LOW)
@@ -295,8 +322,10 @@ def locate_in_layer(family, v, u, flow):
 
 @inline_kernel
 def _evaluate_in_t(p, t):
-    """Return the value of a polynomial of 12 coefficients; ``p``: they, as three vectors of four, ascending; ``t``:
-    argument.
+    """Return the value of a polynomial of 12 coefficients, a float.
+
+    p : the coefficients in ascending order, as three vectors of four.
+    t : float, argument.
     """
     square = t * t
     per = broadcast(square * square)
@@ -308,12 +337,12 @@ def _evaluate_in_t(p, t):
 def layer_value_and_slopes(table, column, at, t, s):
     """Return value and slopes of one quantity of the boundary layer behind the onset of partial slip.
 
-    table : vector with all tables of the map, ``table`` of Flow.
-    column : the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE (distance and angle beyond
-        those at constant V0, in units of V0/k0), LAYER_LOSS (slip loss divided by V0^2); V0 is V at the onset.
-    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and over u.
+    table : vector of all tables, ``table`` of Flow.
+    column : int, the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE (distance and angle
+        beyond those at constant V0, in units of V0/k0), LAYER_LOSS (slip loss divided by V0^2); V0 is V at the onset.
+    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and over u, in [-1, 1].
 
-    Returns (value, slope in t, slope in s).
+    Returns (value, derivative in t at fixed s, derivative in s at fixed t), dimensionless.
     """
     at += column * layout.BLOCK
     per, value = broadcast(s), _powers(table, at + layout.BLOCK - LAYER_TERMS)
@@ -341,7 +370,7 @@ def layer_state(stick, asymptote, elapsed, level, flow):
 
     stick : :class:`.records.StickOnset`, of which family and v = kappa V at the onset are read.
     asymptote : :class:`.records.Asymptote` of the motion, of which rate k0 and split are read.
-    elapsed : time tau = gamma t since the onset, >= 0.
+    elapsed : float, time tau = gamma t since the onset, >= 0 and at most LAYER_END/k0.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
@@ -366,9 +395,10 @@ def layer_state(stick, asymptote, elapsed, level, flow):
 def slow_log_at_rest(rest, flow):
     """Return the slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold.
 
-    rest : threshold, > 0; a larger one than half the highest V of a start counts as that.
+    rest : float, threshold, > 0; one above half the highest V of a start, HIGHEST/kappa, is replaced by that half.
     flow : Flow, of the scene.
-    Returns the slow logarithm, the coordinate along the slow manifold; below the tables it follows ln V.
+    Returns the slow logarithm, the coordinate along the slow manifold, after four steps of a fixed-point iteration for
+    V; below the tables, where delta counts as 0, that of their lowest V plus the logarithm of the ratio of the speeds.
     """
     rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
     for _ in range(4):

@@ -74,8 +74,11 @@ ROWS = 8
 
 @inline_kernel
 def _write_output(out, column, state):
-    """Write one output state; ``out``: (ROWS, times), of which column ``column`` is written, all rows but ROLLING_LOSS;
-    ``state``: :class:`.records.Output`.
+    """Write one output state.
+
+    out : outputs (ROWS, times), of which one column is written, all rows but ROLLING_LOSS.
+    column : int, index of the output time.
+    state : :class:`.records.Output`.
     """
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
     out[_ANGLE, column], out[_DELTA, column], out[_REGIME, column] = state.angle, state.delta, state.regime
@@ -84,8 +87,12 @@ def _write_output(out, column, state):
 
 @inline_kernel
 def _write_rest(at, x, angle, loss, out):
-    """Write outputs at rest, V = omega = delta = 0, into the columns of ``out``, (ROWS, times), from ``at`` on; ``x``,
-    ``angle``, ``loss``: distance and angle times gamma, and slip loss, of all of them.
+    """Write outputs at rest, V = omega = delta = 0 and regime AT_REST, from a column to the last.
+
+    at : int, first column to write; nothing is written if it is the number of columns.
+    x, angle : float, distance and angle, times gamma, of all of them.
+    loss : float, slip loss of all of them.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.
     """
     for column in range(at, out.shape[1]):
         _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
@@ -95,14 +102,16 @@ def _write_rest(at, x, angle, loss, out):
 def _start_in_full_slip(frame, V, omega, start, level, flow):
     """Locate the onset of partial slip of a motion that starts in full slip.
 
-    frame : 1, or -1 where the motion is mirrored.
-    V, omega : initial speeds in the mirrored frame, omega >= V.
+    frame : float, 1, or -1 where the motion is mirrored.
+    V, omega : float, initial speeds in the mirrored frame, omega >= V.
     start : (T, X), time tau and distance times gamma of sliding between rest and V, from the table of full slip.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns (:class:`FullSlipStart`, :class:`StickOnset` at a time tau >= 0, whether the map covers the motion: its V at
-    onset is tabulated and the initial speeds are at most 4096 times that).  Distance and loss need level PATH.
+    Returns (:class:`FullSlipStart`; :class:`StickOnset` at a time tau >= 0, in the frame in which V > 0 at the onset;
+    whether the map covers the motion: its V at onset is tabulated and |V| and |omega| at the start are at most 4096
+    times that).  Below level PATH distance, angle and slip loss of the onset have no meaning, and where the map does
+    not cover the motion its whole onset has none.
     """
     mu, (T, X) = flow.mu, start
     w = V - flow.j * omega
@@ -121,13 +130,15 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
 def _start_in_partial_slip(V0, omega0, edge, level, flow):
     """Locate the earlier onset of partial slip of a motion that starts inside the stick zone.
 
-    V0, omega0 : initial speeds, V0 != 0.
-    edge : delta_star at V0.
+    V0, omega0 : float, initial speeds, V0 != 0.
+    edge : float, delta_star at V0.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns (:class:`StickOnset` at a time tau <= 0, its :class:`Asymptote`, whether the map covers the motion). A start
-    on the slow manifold has its onset at practically tau = 0 and no boundary layer.
+    Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers the motion, without
+    which the other two have no meaning).  Distance, angle and slip loss of the onset are minus those from there to the
+    start; they are 0 below level PATH.  A start on the slow manifold has its onset at practically tau = 0 and no
+    boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
@@ -146,14 +157,14 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
 def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     """Write the outputs before the onset of partial slip.
 
-    at : first column to write.
-    tau_out : output times tau = gamma t, ascending, (times,).
-    until : time tau of the onset; an output at that time is not written.
+    at : int, first column to write.
+    tau_out : output times tau = gamma t, ascending, > 0 from column ``at`` on, (times,).
+    until : float, time tau of the onset; an output at that time is not written.
     slide : :class:`FullSlipStart`: frame, V - j omega, and (T, X) of the start.
     level : SPEEDS, PATH or LOSS: distance, angle and slip loss are 0 below PATH.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written in the frame of the caller.
-    Returns the index of the next column to write.
+    out : outputs (ROWS, times), written in the frame of the caller; delta is infinite where V = 0.
+    Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     mu, per_j = flow.mu, 1.0 / flow.j
     frame, w, T0, X0 = slide
@@ -177,15 +188,15 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
 def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     """Write the outputs in partial slip up to a time, in the boundary layer and then on the slow manifold.
 
-    at : first column to write.
+    at : int, first column to write.
     tau_out : output times tau = gamma t, ascending, (times,).
-    until : last time tau; an output at that time is written.
+    until : float, last time tau; an output at that time is written.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
-    level : SPEEDS, PATH or LOSS: quantities beyond it are those of the onset.
+    level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which have no meaning then.
     flow : Flow, of the scene.
     out : outputs (ROWS, times), written in the frame of the caller.
-    Returns the index of the next column to write.
+    Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     frame = stick.frame
     total_loss = remaining_slip_loss(asymptote.slow_log, flow.table) + asymptote.loss if level >= LOSS else 0.0
@@ -216,7 +227,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     """Write all outputs from the onset of partial slip to the last output time, those after coming to rest included.
 
-    at : first column to write.
+    at : int, first column to write.
     tau_out : output times tau = gamma t, ascending, (times,).
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
@@ -224,8 +235,9 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     flow : Flow, of the scene.
     out : outputs (ROWS, times), written in the frame of the caller.
 
-    Returns (status, time tau at which the motion comes to rest, NaN if it does not).  The status is COMPLETED (0) or
-    CAME_TO_REST (1), or NOT_COVERED (-1), and nothing is written, where rest is reached within the boundary layer.
+    Returns (status, time tau at which the motion comes to rest).  The status is COMPLETED (0), with the time NaN, where
+    the motion does not come to rest before the last output time; CAME_TO_REST (1) where it does; NOT_COVERED (-1), with
+    the time NaN and nothing written, where it would come to rest within the boundary layer or before the start.
     """
     layer_end = stick.tau + LAYER_END / asymptote.rate
     rest_time, end = np.inf, tau_out[tau_out.size - 1]
@@ -251,15 +263,21 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
 def look_up_motion(V0, omega0, tau_out, request, flow, out):
     """Look up one motion and write its outputs.
 
-    V0, omega0 : initial speeds, of any sign.
-    tau_out : output times tau = gamma t, ascending, >= 0, (times,).
+    V0, omega0 : float, initial speeds, of any sign.
+    tau_out : output times tau = gamma t, ascending, >= 0, (times,), at least one.
     request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
     flow : Flow, of the scene.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS; not whole if the status is NOT_COVERED.
 
     Returns (status, time of the onset of partial slip, time of coming to rest).  The status is COMPLETED (0),
-    CAME_TO_REST (1) or NOT_COVERED (-1); times are tau, NaN where there is none: the onset of a start in partial slip,
-    or of one below the rest threshold, whose time of rest is 0.
+    CAME_TO_REST (1) or NOT_COVERED (-1).  Times are tau.  The onset is NaN for a start in partial slip, for a motion
+    that is still in full slip at the last output time, and for a start below the rest threshold, whose time of rest is
+    0.  The time of rest is NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
+
+    The map does not cover a motion if kappa |V0| is at least HIGHEST, if a start speed is NaN, if the onset of partial
+    slip is not tabulated or more than 4096 times slower than the start, if V there is below twice the rest threshold,
+    or if the motion comes to rest within the boundary layer.  A start with V0 = omega0 = 0 is not covered without a
+    rest threshold.
     """
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:
@@ -299,15 +317,16 @@ def look_up_motions(flow, motions, result, start, stop):
 
     flow : Flow, of the scene.
     motions : :class:`.records.Motions` of all n motions: gamma; rest threshold, 0 for none; initial speeds V0, omega0,
-        of length 1 or n; output times t, ascending, (times,); requested rows of an output, int, (q,).
+        of length 1 or n; output times t, ascending, >= 0, (times,), at least one; requested rows of an output, int,
+        (q,).
     result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these motions are written:
         out, (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1); onset and rest, (n,),
-        times t of the onset of partial slip and of coming to rest, NaN where there is none; switches, (n,), 1 with an
-        onset, else 0.
+        times t of the onset of partial slip and of coming to rest, NaN where there is none up to the last output time;
+        switches, (n,), 1 with an onset, else 0.
     start, stop : int, index of the first motion and of the one behind the last.
 
-    Distance and angle are written as x and angle, divided by gamma.  Entries of ``out`` of a motion that is not covered
-    have no meaning.
+    Distance and angle are written as x and angle, divided by gamma.  The rolling loss is the loss of kinetic energy
+    since the start less the slip loss.  Entries of a motion that is not covered have no meaning, apart from its status.
     """
     gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j

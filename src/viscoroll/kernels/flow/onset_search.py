@@ -41,12 +41,16 @@ _HIGHEST_U = 2.0**layout.LAYER_HIGH * (1.0 - 2.0**-50)
 def _initial_u(size, slow, turns):
     """Return the first guess of the layer coordinate u at which delta has fallen to a given value, by Carter's law.
 
-    size : delta/delta_star of the start, in [-1, 1], times 1 for PLUS and -1 for MINUS: negative beyond delta = 0.
-    slow : delta/delta_star on the slow manifold at the speed of the start, times the same sign.
+    size : float, delta/delta_star of the start, in [-1, 1], times 1 for PLUS and -1 for MINUS: negative beyond delta =
+        0.
+    slow : float, delta/delta_star on the slow manifold at the speed of the start, times the same sign; less than
+        ``size``.
     turns : bool, whether motions of this family pass delta = 0 (then the layer has a split there).
 
-    Returns u, from 2^LAYER_LOW on.  Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the
-    traction is 1 - r^2, so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
+    Returns u, a float from 2^LAYER_LOW on; it may lie behind the end of the layer, to which the caller limits it.
+
+    Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction is 1 - r^2, so that dr/dE =
+    (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
     """
     traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)
     a = np.sqrt(1.0 - traction)
@@ -70,17 +74,23 @@ def _clamp(x, low, high):
 def find_onset(V, delta, edge, flow):
     """Find the onset of partial slip from which a state inside the stick zone would have come.
 
-    V : speed of the axis, > 0.
-    delta : creepage, |delta| < delta_star.
-    edge : delta_star at V.
+    V : float, speed of the axis, > 0.
+    delta : float, creepage, |delta| < delta_star.
+    edge : float, delta_star at V; it serves the first guess only.
     flow : Flow, of the scene.
 
-    Returns (family, kappa V at that onset, E, whether the map covers the state).  family is PLUS or MINUS; E is the
-    stiff time since that onset, in [0, LAYER_END].  On the slow manifold E is infinite, the speed is that of the state
-    and the family is PLUS.  Where the map does not cover the state, the first three have no meaning.
+    Returns (family, kappa V at that onset, E, whether the map covers the state): int, float, float, bool.  family is
+    PLUS or MINUS; E is the stiff time since that onset, in [0, LAYER_END].  A state whose delta is within 1e-10 of the
+    slow manifold, or within 1e-9 where no onset is found, counts as on it: then family is PLUS, the second is kappa V
+    of the state, and E is infinite.
 
-    Method: Newton's iteration in ln V at onset and in u, applied to the logarithm of the distance from the manifold,
-        which decreases nearly linearly in E; a solution counts if V (relative) and delta (absolute) are met to 1e-10.
+    The map does not cover a state, and the first three have no meaning, if kappa V is below LOWEST or at least the
+    smaller of HIGHEST and 2^(first + OCTAVES); if it is not on the manifold and kappa V is outside the tabulated onsets
+    less one octave at either end; or if the iteration finds no onset.
+
+    Method: Newton's iteration in ln V at onset and in u, of at most 12 steps, applied to the logarithm of the distance
+        from the manifold, which decreases nearly linearly in E; a solution counts if V (relative) and delta (absolute)
+        are met to 1e-10.
     """
     v = flow.kappa * V
     lowest, highest = 2.0**flow.first, 2.0 ** (flow.first + layout.OCTAVES)

@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 class Flow(NamedTuple):
     """The flow map of a scene.
 
-    table : all tables of :mod:`layout` in one vector.  first : onsets are tabulated from kappa V = 2**first on.
-    kappa, mu, j : parameters of the scene.  slow_rate : rate at which the slow logarithm falls along the slow
-    manifold.
+    table : all tables of :mod:`layout` in one vector of layout.SIZE doubles.
+    first : int; onsets are tabulated for kappa V from 2**first to 2**(first + layout.OCTAVES).
+    kappa, mu, j : parameters of the scene.
+    slow_rate : rate at which the slow logarithm falls along the slow manifold in unit time tau = gamma t, > 0.
     """
 
     table: Any
@@ -25,9 +26,12 @@ class Flow(NamedTuple):
 class Motions(NamedTuple):
     """Motions to be looked up, dimensionless.
 
-    gamma : time scale of the scene.  rest : rest threshold, 0 for none.  V0, omega0 : initial speeds, vectors of one or
-    n numbers.  t : output times.  rows : output quantities, indices of rows of an output; distance, angle and slip loss
-    are computed only if they are among them.
+    gamma : P T^2/(m R), the ratio of load to inertia: tau = gamma t.
+    rest : rest threshold of max(|V|, |omega|), 0 for none.
+    V0, omega0 : initial speeds, vectors of one or n numbers.
+    t : output times, (times,), ascending.
+    rows : output quantities, indices of rows of an output, int, (q,), or a tuple before the kernel is called; distance,
+        angle and slip loss are computed only if they are among them.
     """
 
     gamma: Any

@@ -23,10 +23,11 @@ def states(V, delta, kappa, mu, law, out):
     """Evaluate critical creepage, moment and traction at states inside the stick zone, to which a flow map is fitted.
 
     V : speeds of the axis, > 0, (n,).
-    delta : creepage, |delta| < delta_star, (n,).
-    kappa, mu : slenderness R/l0 and coefficient of friction.
-    law : :class:`..rows.record.Law` of the material, of half-spaces.
-    out : (4, n), written: delta_star; M divided by P R; Q divided by P, with the sign of delta; dQ/d delta at fixed V.
+    delta : creepage, |delta| < delta_star, (n,).  From delta_star on Q is +-mu and its slope 0, nearly.
+    kappa, mu : float, slenderness R/l0 and coefficient of friction.
+    law : :class:`..rows.record.Law` of one material, without a cover.
+    out : (4, n), written: delta_star; M divided by P R; Q divided by P, with the sign of delta, 0 at delta = 0; dQ/d
+        delta at fixed V.
     """
     for i in range(V.size):
         u = kappa * V[i]

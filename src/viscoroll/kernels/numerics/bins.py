@@ -15,16 +15,23 @@ _ONE = 1023 << 52
 
 @inline_kernel
 def bin_number(x, bits):
-    """Return the number of the bin of ``x`` > 0, an int: its exponent and the leading ``bits`` bits of its mantissa.
+    """Return the number of the bin of a number: its exponent and the leading bits of its mantissa.
 
-    An octave has 2^bits bins.  The number grows by one from bin to bin; that of x = 1 is 1023 2^bits.
+    x : float, > 0.
+    bits : int, 0 ... 51; an octave has 2^bits bins.
+    Returns an int, which grows by one from bin to bin; that of x = 1 is 1023 2^bits.
     """
     return float_to_bits(x) >> (52 - bits)
 
 
 @inline_kernel
 def bin_offset(x, bits):
-    """Return the mantissa, in [1, 2), of ``x`` > 0 less that of the centre of its bin; an octave has 2^bits bins."""
+    """Return the mantissa of a number less that of the centre of its bin.
+
+    x : float, > 0, not so small (below 2.3e-308) that it has lost digits.
+    bits : int, 0 ... 51; an octave has 2^bits bins.
+    Returns a float in [-2^-(bits + 1), 2^-(bits + 1)); mantissas are in [1, 2).
+    """
     word = float_to_bits(x)
     half = 1 << (51 - bits)
     centre = bits_to_float((word & (_MANTISSA - (2 * half - 1))) | (_ONE + half))

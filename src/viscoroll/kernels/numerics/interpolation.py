@@ -32,8 +32,10 @@ _Floats = NDArray[np.float64]
 def in_40_digits(function: Callable) -> Callable:
     """Decorate a function so that it computes with Decimals of 40 digits, whatever the decimal context of its caller.
 
-    function : any function.
-    Returns the decorated function, of the same arguments and values.
+    function : any function of positional arguments; it must finish its work, since a generator would run in the context
+        of its caller.
+    Returns the decorated function, which returns the same value, takes its arguments by position only, and leaves the
+    context of the caller as it was.
     """
 
     @wraps(function)
@@ -61,7 +63,8 @@ class Interpolation:
     def __init__(self, nodes: Sequence[Decimal]) -> None:
         """Compute the coefficients of Lagrange's polynomials of the nodes, with 40 digits.
 
-        nodes : distinct numbers, Decimals; kept as ``exact`` and, rounded, as ``nodes``.
+        nodes : list of at least two distinct numbers, Decimals; kept as ``exact`` and, rounded, as ``nodes``.
+        Raises decimal.DivisionByZero where two nodes are equal.
         """
         self.exact = tuple(nodes)
         self.nodes = to_doubles(nodes)
@@ -80,37 +83,48 @@ class Interpolation:
 
     @in_40_digits
     def values(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix from values at the nodes to those at ``points``, m Decimals: doubles, (m, n), [point,
-        node].
+        """Return the matrix from values at the nodes to those at other points.
+
+        points : m Decimals or integers, inside of the nodes or beyond.
+        Returns doubles, (m, n), [point, node].
         """
         return _values(self._basis, points)
 
     @in_40_digits
     def slopes(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix from values at the nodes to slopes at ``points``, m Decimals: doubles, (m, n), [point,
-        node].
+        """Return the matrix from values at the nodes to slopes, derivatives in x, at other points.
+
+        points : m Decimals or integers, inside of the nodes or beyond.
+        Returns doubles, (m, n), [point, node].
         """
         return _values(polyder(self._basis), points)
 
     @in_40_digits
     def integrals(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix from values at the nodes to the integrals from -1 to each of ``points``, m Decimals:
-        doubles, (m, n), [point, node].
+        """Return the matrix from values at the nodes to integrals over x from -1 to other points, for any nodes.
+
+        points : m Decimals or integers; below -1 the integral has the opposite sign.
+        Returns doubles, (m, n), [point, node].
         """
         return _values(polyint(self._basis, lbnd=-1), points)
 
     @in_40_digits
     def coefficients(self, values: Sequence[Decimal]) -> _Floats:
-        """Return the coefficients of the powers of x for ``values`` at the nodes, the constant first, (n,)."""
+        """Return the coefficients of the powers of x of the polynomial through given values, the constant first.
+
+        values : values at the nodes, n Decimals or integers.
+        Returns doubles, (n,).
+        """
         return to_doubles(self._basis @ np.array(values))
 
 
 @in_40_digits
 def radau(n: int, side: int) -> list[Decimal]:
-    """Return the n nodes of Radau's rule on [-1, 1] as Decimals, ascending: one end, and n - 1 nodes inside.
+    """Return the nodes of Radau's rule on [-1, 1]: one end, and n - 1 nodes inside.
 
     n : number of nodes, the end included, > 1.
     side : the end that is a node, -1 or 1.
+    Returns n Decimals, ascending, rounded to 36 digits behind the point.
     """
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
     return sorted([Decimal(side), *(-side * x for x in inner)])
@@ -118,8 +132,10 @@ def radau(n: int, side: int) -> list[Decimal]:
 
 @in_40_digits
 def gauss(n: int) -> tuple[_Floats, _Floats]:
-    """Return (nodes, weights) of the Gauss-Legendre rule of ``n`` points on [0, 1], doubles, each (n,); the weights add
-    up to 1.
+    """Return nodes and weights of the Gauss-Legendre rule on [0, 1].
+
+    n : number of points, >= 1.
+    Returns (nodes, ascending; weights, which add up to 1), doubles, (n,) each.
     """
     legendre = leg2poly(_unit_series(n, 1))
     nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))
@@ -129,13 +145,19 @@ def gauss(n: int) -> tuple[_Floats, _Floats]:
 
 @in_40_digits
 def chebyshev(n: int) -> list[Decimal]:
-    """Return the ``n`` zeros of the Chebyshev polynomial T_n on [-1, 1], ascending, as Decimals."""
+    """Return the zeros of the Chebyshev polynomial T_n on [-1, 1].
+
+    n : number of zeros, >= 1.
+    Returns n Decimals, ascending, rounded to 36 digits behind the point.
+    """
     return _zeros(cheb2poly(_unit_series(n, 1)), [(k - 0.5) / n for k in range(1, n + 1)])
 
 
 @in_40_digits
 def to_chebyshev(n: int) -> _Floats:
     """Return the matrix from values at the zeros of T_n, ascending, to the coefficients of T_0 ... T_(n-1).
+
+    It gives the series of the polynomial of degree n - 1 through the values.
 
     n : number of nodes and terms, > 1.
     Returns doubles, (n, n), [term, node].
@@ -151,9 +173,9 @@ def to_chebyshev(n: int) -> _Floats:
 def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
     """Return the powers of t in shifted Chebyshev polynomials T_m(scale t - shift), m < n, computed in doubles.
 
-    n : number of polynomials.
-    shift, scale : shift and scale of the argument, dimensionless.
-    Returns (n, n), [m, k]: the coefficient of t^k in T_m(scale t - shift).
+    n : number of polynomials, > 1.
+    shift, scale : floats, shift and scale of the argument, dimensionless.
+    Returns (n, n), [m, k]: the coefficient of t^k in T_m(scale t - shift), 0 for k > m.
     """
     matrix = np.zeros((n, n))
     matrix[0, 0], matrix[1, :2] = 1.0, [-shift, scale]
@@ -171,19 +193,20 @@ def to_doubles(values) -> _Floats:
 def _unit_series(degree: int, *last: int) -> list[Decimal]:
     """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with ``degree`` zeros.
 
-    degree : how many polynomials, from that of degree 0 on, have the coefficient 0.
-    last : coefficients of the next ones.
-    Returns ``degree`` + len(last) Decimals, ascending.
+    degree : int, how many polynomials, from that of degree 0 on, have the coefficient 0.
+    last : integers, coefficients of the next ones.
+    Returns ``degree`` + len(last) Decimals, that of degree 0 first.
     """
     return [Decimal(c) for c in (*[0] * degree, *last)]
 
 
 def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
-    """Return zeros of a polynomial, in ascending order, by five steps of Newton's iteration with 60 digits.
+    """Return zeros of a polynomial by five steps of Newton's iteration with 60 digits.
 
     polynomial : coefficients of the powers of x, the constant first, Decimals.
     half_turns : for each zero an angle whose cosine is near it, to two digits, divided by pi.
-    Returns one Decimal for each angle, rounded to 36 digits behind the point.
+    Returns one Decimal for each angle, in ascending order of the zeros, whatever the order of the angles, rounded to 36
+    digits behind the point.  It is not checked that the iteration has converged.
     """
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)

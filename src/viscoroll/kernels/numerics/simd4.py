@@ -62,10 +62,10 @@ def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
     context, builder : numba's context of code generation, and builder of LLVM.
     kind : numba's type of ``array``: a contiguous array of doubles, or a pointer to doubles.
     array : the array or pointer, a value of LLVM.
-    start : index of the first number of the first vector, a value of LLVM.
-    count : number of vectors, an int.
+    start : index of the first number of the first vector, an integer value of LLVM; it is not checked.
+    count : number of vectors, an int of Python.
     vector : LLVM's type of the vectors; four doubles by default.
-    Returns a list of ``count`` pointers to vectors, values of LLVM.
+    Returns a list of ``count`` pointers to vectors, values of LLVM, aligned to 8 bytes only.
     """
     data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
     first = builder.bitcast(builder.gep(data, [start]), vector.as_pointer())
@@ -73,11 +73,12 @@ def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
 
 
 def load_vectors(context, builder, signature, arguments, count):
-    """Return a list of ``count`` instructions that load vectors which follow each other in an array.
+    """Return a list of ``count`` instructions that load vectors of four which follow each other in an array.
 
     context, builder, signature, arguments : of numba's lowering of a function (array, start, ...): context of code
-        generation, builder of LLVM, signature and values of LLVM of the call.
-    count : number of vectors, an int.
+        generation, builder of LLVM, signature and values of LLVM of the call, of which the first two are used.
+    count : number of vectors, an int of Python.
+    Returns values of LLVM, each of type :data:`VECTOR`.
     """
     pointers = vector_pointers(context, builder, signature.args[0], *arguments[:2], count)
     return [builder.load(pointer, align=8) for pointer in pointers]
@@ -85,6 +86,8 @@ def load_vectors(context, builder, signature, arguments, count):
 
 def _define_operator(function, name):
     """Register with numba an operator of Python for two vectors, and for a number and a vector in either order.
+
+    A number, a double, stands for four times itself; the operator returns a vector.
 
     function : the operator, a function (a, b) of the module ``operator``.
     name : method of LLVM's builder that makes its instruction: "fadd", "fsub", "fmul" or "fdiv".
@@ -181,5 +184,10 @@ store = make_intrinsic(_store, types.void, None, types.int64, None)
 
 
 def make_load(count):
-    """Return a function for kernels, (array, start) -> tuple of ``count`` vectors that follow each other."""
+    """Return a function for kernels that loads vectors which follow each other.
+
+    count : number of vectors, an int >= 1.
+    Returns numba's intrinsic (array, start) -> tuple of ``count`` vectors: array, contiguous doubles or a pointer to
+    doubles; start, int, index of the first number.
+    """
     return make_intrinsic(_load, types.UniTuple(FOUR, count), None, types.int64)

@@ -1,8 +1,10 @@
 """The law of a grid at one alpha as a C function, like :mod:`..rows.c_function`: splines in ln |V| and delta.
 
-``int law(double V, double omega, double out[8], void *grid)``; ``grid`` is its user data, a :data:`GRID`. Below the
-slowest speed of the grid Q is that of the slowest at the same creepage, and M is in proportion to V.  Beyond both ends
-of delta |Q| is mu P, if the grid slips fully there.  The status of other states outside is not 0.
+``int law(double V, double omega, double out[8], void *grid)``; ``grid`` is its user data, a :data:`GRID`.
+
+Below the slowest speed of the grid Q is that of the slowest at the same creepage, and M is in proportion to V, so that
+it is 0 at V = 0.  Beyond both ends of delta |Q| is mu P, if the grid slips fully there.  In all other states outside of
+the grid the status is not 0.  The creepage is delta = (omega R - V)/V, infinite for V = 0 with omega not 0.
 """
 
 import numpy as np
@@ -28,12 +30,16 @@ def _grid_law(V, omega, pointer, grids):
     """Evaluate the splines of a grid at one state and write the results; it is the C function of the grid.
 
     V, omega : speed of the axis and angular velocity in the units of the grid, of any sign.
-    pointer : address of RESULTS = 8 numbers, written: Q, M, M_half_space, M_cylinder; then, if ``grid.slopes``, dQ/dV
-        at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV; all in the units of the grid.
+    pointer : address of RESULTS = 8 numbers, of which the first four are written: Q, M, M_half_space, M_cylinder; then,
+        if ``grid.slopes``, dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, else the last
+        four stay; all in the units of the grid.
     grids : pointer to a GRID record: addresses of the splines and the bounds of the grid.
 
-    Returns 0; or 1, and all results are NaN, outside the grid (of V above, of delta where the grid does not slip
-    fully).
+    Both slopes of Q are 0 where Q does not depend on the creepage: beyond the ends of delta, and where it is clipped to
+    +-mu P.  At rest (V = omega = 0) they are infinite.  V = 0 counts as rolling in the direction V > 0.
+
+    Returns the status: 0; or 1, and all eight results are NaN, where |V| is above the grid, V or omega is not finite,
+    or delta is outside a grid that does not slip fully at its ends.
     """
     out = carray(pointer, RESULTS)
     grid = record_at(grids)
@@ -72,10 +78,11 @@ def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Ji
 
     splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline (:mod:`.spline`), doubles, (numbers,), which
         the law keeps alive.
-    numbers : fields of :data:`GRID` by name, in the units of the grid: slips (1 if the grid
-        slips fully at both ends of delta, else 0), slowest (least V), low and high (ends of delta), R (radius, which
-        turns omega into a speed).
-    Returns the :class:`Jitted` law: (V, omega) -> :class:`LoadsAndSlopes`, in the units of the grid, NaN outside it.
+    numbers : fields of :data:`GRID` by name, in the units of the grid: slips (1 if the grid slips fully at both ends of
+        delta, else 0), slowest (least V), low and high (ends of delta), R (radius, which turns omega into a speed).
+
+    Returns the :class:`Jitted` law: (V, omega) -> :class:`LoadsAndSlopes`, eight floats in the units of the grid: Q, M,
+    M_half_space, M_cylinder and the slopes of :func:`_grid_law`; all NaN where the law of the grid is not defined.
     """
     grids = np.zeros(2, GRID)
     grids["slopes"] = 0, 1

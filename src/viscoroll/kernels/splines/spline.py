@@ -2,7 +2,8 @@
 
 A spline is one vector of doubles: a head, its three axes, its coefficients.  An axis is a head, the edges of its
 intervals, and for each interval the basis splines that are not 0 there, as polynomials of the distance from its left
-edge.  ``viscoroll.materials.law.splines`` writes it.
+edge.  An axis may run in the logarithm of its coordinate.  An axis on which the field does not depend has no interval,
+and one basis spline, which is 1.  ``viscoroll.materials.law.splines`` writes the vector.
 """
 
 from typing import NamedTuple
@@ -41,8 +42,10 @@ TERMS = 4
 
 
 class Value(NamedTuple):
-    """A field at a point and its slopes over V, delta and alpha; NaN outside of the axes, slopes 0 where the value is
-    clipped to the bounds.
+    """A field at a point and its slopes over V, delta and alpha, in the units of the grid.
+
+    All four are NaN outside of the axes.  The slope over an axis on which the field does not depend is 0, and so are
+    all slopes where the value is clipped to the bounds.
     """
 
     value: float
@@ -54,8 +57,10 @@ class Value(NamedTuple):
 class AxisPosition(NamedTuple):
     """Position of a coordinate on an axis.
 
-    axis : where the axis begins in the spline.  interval : number of the interval.
-    t : distance from its left edge, NaN outside of the axis.  slope : slope of the logarithm, or 1.
+    axis : int, where the axis begins in the spline.
+    interval : int, number of the interval, from 0.
+    t : distance from its left edge, in the coordinate or in its logarithm; NaN outside of the axis.
+    slope : derivative of the logarithm over the coordinate; 1 where the axis does not run in it.
     """
 
     axis: int
@@ -78,12 +83,15 @@ def _integer_at(spline, n):
 
 @inline_kernel
 def _locate(spline, name, x):
-    """Return the :class:`AxisPosition` of a coordinate on an axis of the spline.
+    """Return the position of a coordinate on an axis of the spline.
 
     spline : vector of the spline: bounds, axes and coefficients.
     name : V_AXIS, DELTA_AXIS or ALPHA_AXIS, index in the head of the spline.
-    x : the coordinate, in the units of the grid; any number if the field does not depend on it.
-    Returns a t of NaN outside of the axis.
+    x : float, the coordinate, in the units of the grid; it is ignored if the field does not depend on it.
+
+    Returns :class:`AxisPosition`.  A coordinate on an inner edge is at the left end of its interval, one at the upper
+    end of the axis is in the last interval.  Outside of the axis, and for NaN, t is NaN and the interval 0.  If the
+    field does not depend on the coordinate, interval and t are 0 and the slope is 1.
     """
     axis = _integer_at(spline, name)
     interval = np.int64(0)
@@ -109,10 +117,11 @@ def _basis(spline, position, n):
 
     spline : vector of the spline: bounds, axes and coefficients.
     position : the :class:`AxisPosition`.
-    n : int, index of the basis spline among those that are not 0 in the interval, from 0.
+    n : int, 0 ... 3, index of the basis spline among those that are not 0 in the interval; those beyond the degree of
+        the axis are 0.
 
-    Returns (value, slope, offset): value, dimensionless; slope over the coordinate, also of a logarithmic axis; int
-    that is added to the position of a coefficient in the vector.
+    Returns (value, slope, offset): value, dimensionless; slope over the coordinate itself, also of a logarithmic axis;
+    int that is added to the position of a coefficient in the vector.  Value and slope are NaN outside of the axis.
     """
     axis = position.axis
     at = (position.interval * TERMS + n) * TERMS + EDGES + 1 + _integer_at(spline, axis + INTERVALS) + axis
@@ -130,9 +139,11 @@ def evaluate(spline, V, delta, alpha):
     """Return the :class:`Value` of a field at a point, for kernels that inline it.
 
     spline : vector of the spline: bounds, axes and coefficients.
-    V, delta, alpha : coordinates in the units of the grid; any number for an axis on which the field does not depend.
-    Returns value and slopes, in the units of the grid: NaN outside of the axes; a value beyond the bounds of the field
-    is clipped to them, and its slopes are 0.
+    V, delta, alpha : float, coordinates in the units of the grid.  A coordinate on which the field does not depend is
+        ignored.
+
+    Returns value and slopes over V, delta and alpha, in the units of the grid: all NaN if a coordinate is outside of
+    its axis; a value beyond the bounds of the field is clipped to them, and all its slopes are 0.
     """
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)
@@ -165,8 +176,13 @@ def spline_at(spline, V, delta, alpha):
     """Return the :class:`Value` of a field at a point: value and slopes over V, delta and alpha, in the units of the
     grid.
 
-    spline : the vector of :meth:`viscoroll.io.tables.Interpolant.jitted`: bounds, axes and coefficients.
-    V, delta, alpha : coordinates in the units of the grid; for an axis that the field is not over any number does.
-    Returns NaN outside of the axes; a value beyond the bounds of the field is clipped to them, and its slopes are 0.
+    It is :func:`evaluate` for callers outside of this folder, compiled once.
+
+    spline : vector of doubles of :meth:`viscoroll.io.tables.Interpolant.jitted`: bounds, axes and coefficients.
+    V, delta, alpha : float, coordinates in the units of the grid.  Where the field does not depend on one of them, that
+        argument is ignored, and any number may be given.
+
+    Returns NaN, the slopes too, if another coordinate is outside of its axis.  A value beyond the bounds of the field
+    is clipped to them, and its slopes are 0.
     """
     return evaluate(spline, V, delta, alpha)
