@@ -114,3 +114,9 @@ def test_summary():
     assert summary.V_quantiles.attrs["comment"] == "exact"
     assert summary.V_histogram.sum("V_bin").values.tolist() == summary.V_counted.values.tolist() == [50] * len(T)
     assert summary.ended.sum() == 50
+
+
+def test_the_sense_of_a_start_from_rest():
+    """Friction moves the axis in the sense of the rotation, so the states that are judged have omega >= 0 at V >= 0."""
+    motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, 0.0, [-20.0, 20.0], 1.0)
+    assert motions.fastest().omega.tolist() == [20.0, 20.0]

@@ -140,3 +140,11 @@ def test_caught_in_the_imprint():
     assert np.isnan([e.V[::2, 0], e.onset_time[::2]]).all()
     one = vr.roll(ROLLER, 30.0, 30.0, T[:3], rested=True, unsteady=True)
     assert np.array_equal(e.V[1], one.V)
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the point is the look-up of a motion so slow
+def test_a_motion_caught_at_rest_is_not_of_the_flow_map():
+    V0 = np.array([1.3, 30.0])
+    e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, method="flow")
+    assert e.status.tolist() == [vr.MotionStatus.CAUGHT, vr.MotionStatus.DONE]
+    assert (e.flow.tolist(), e.switches[0]) == ([False, True], 0)

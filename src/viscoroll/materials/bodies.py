@@ -27,16 +27,17 @@ class Bodies(OneOrMany):
 
     Parameters
     ----------
-    cylinder, base : their series, times over one T_ref.
-    share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2), in [0, 1]; 0: the cylinder is
-        rigid, 1: the half-space is rigid.
+    cylinder, base : :class:`Prony` series of the two bodies, with times in one unit T_ref.
+    share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2), dimensionless, in [0, 1]; 0:
+        the cylinder is rigid, 1: the half-space is rigid.
         If a body is n series, or ``share`` is an array (n,), these are n pairs: ``p[i]`` is one of them, ``p[i:k]`` are
         some; a single series or number is that of all pairs.
 
     Attributes
     ----------
     shape : (), or (n,).
-    alpha : instantaneous divided by long-time stiffness of the pair, for each.
+    alpha : instantaneous divided by long-time stiffness of the pair, a number, or (n,).
+    total : the :class:`Prony` series of both bodies together, which the contact law depends on.
 
     Raises
     ------
@@ -60,7 +61,12 @@ class Bodies(OneOrMany):
     share: Any = 0.5
 
     def __post_init__(self) -> None:
-        """Check the bodies, set ``shape`` and make ``share`` read-only; raises ParameterError."""
+        """Check the bodies, set ``shape``, and replace ``share`` by a float or a read-only copy of the array.
+
+        The number of modes is checked here for n pairs alone, as the sum of those of both bodies; a single pair of more
+        than 64 modes is refused where :attr:`total` is computed.
+        Raises ParameterError as the class states.
+        """
         bodies = {"cylinder": self.cylinder, "base": self.base}
         for name, body in bodies.items():
             if not isinstance(body, Prony):
@@ -99,11 +105,11 @@ class Bodies(OneOrMany):
 
     @cached_property
     def _creep(self) -> tuple[NDArray, ...]:
-        """Return the creep modes of both bodies together.
+        """Return the creep modes of both bodies together; those of equal times are added.
 
         Returns (strengths divided by the long-time compliance of the pair; retardation times in units of T_ref; that
-        part of each strength which is the half-space's, between 0 and the strength), (..., modes) each, dimensionless,
-        slowest first, modes without strength last.
+        part of each strength which is the half-space's, between 0 and the strength), (..., modes) each, slowest first,
+        modes without strength last, as those of a rigid body.
         """
         share = np.asarray(self.share)[..., np.newaxis]
         parts = share * self.cylinder.J, (1.0 - share) * self.base.J
@@ -116,7 +122,10 @@ class Bodies(OneOrMany):
 
     @cached_property
     def total(self) -> Prony:
-        """The series that stands for both in the contact law."""
+        """The :class:`Prony` series that stands for both in the contact law, of the shape of the pairs.
+
+        Of two equal series it is that series, whatever the share is.
+        """
         if not self._same:
             return Prony.creep(*self._creep[:2], alpha=self.alpha)
         one = self.cylinder
@@ -124,10 +133,11 @@ class Bodies(OneOrMany):
 
     @cached_property
     def half_space_weights(self) -> Floats:
-        """Return the half-space's part of each creep mode of ``total``, divided by the mode's strength, slowest mode
-        first.
+        """Return the half-space's part of each creep mode of :attr:`total`, divided by the mode's strength, slowest
+        mode first.
 
-        Returns an array (..., modes) of numbers from 0 to 1.
+        Returns an array (..., modes) of numbers from 0 to 1: 1 - share for two equal series; 0 for a mode without
+        strength.
         """
         J = self.total.J
         if self._same:
@@ -136,7 +146,12 @@ class Bodies(OneOrMany):
         return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """Yield pairs in blocks of equal numbers of modes; ``which``: indices of the pairs, (m,)."""
+        """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations on whole arrays.
+
+        which: indices of the pairs, (m,).
+        Yields a :class:`Block` with weights for each number of modes that occurs, ascending; its ``rows`` are places in
+        ``which``.
+        """
         some = self[which]
         for block in some.total.blocks(np.arange(len(some))):
             yield block._replace(weights=some.half_space_weights[block.rows, : block.modes.J.shape[-1]])
@@ -153,7 +168,10 @@ class Bodies(OneOrMany):
 
 
 def total_series(material: float | Prony | Bodies) -> Prony:
-    """Return the series of ``material``: of an alpha, of a series itself, or of both bodies together."""
+    """Return the series of a material: that of an alpha, a series itself, or that of both bodies together.
+
+    material: alpha >= 1 as a float, with T_epsilon for the unit of time; a :class:`Prony`; or :class:`Bodies`.
+    """
     if isinstance(material, Bodies):
         return material.total
     return material if isinstance(material, Prony) else series_of_alpha(material)

@@ -88,14 +88,16 @@ class Cover(Bodies):
     ) -> None:
         """Check the parameters and make one or many covers.
 
-        series: Prony series of the cover, times in units of T_ref, or its alpha.
-        nu: Poisson's ratio of the cover, in [0, 0.5], a number or (n,).
-        thickness: thickness divided by l0, > 0, a number or (n,).
-        on: body that has the cover, "cylinder" or "base".
-        part: part of the cover in the long-time compliance of both bodies as half-spaces, in (0, 1].
-        other_nu: Poisson's ratio of the other body, in [0, 0.5].
+        series: :class:`Prony` series of the layer, times in units of T_ref, or its alpha, a number in [1, 1e12], with
+            T_epsilon for the unit of time.
+        nu: Poisson's ratio of the layer, in [0, 0.5], a number, or (n,) if ``thickness`` is (n,).
+        thickness: thickness divided by l0, in (0, 1e15], a number or (n,).
+        on: body that has the layer, "cylinder" or "base".
+        part: part of the layer in the long-time compliance of both bodies as half-spaces, in (0, 1].
+        other_nu: Poisson's ratio of the other body, in [0, 0.5]; without effect if ``part`` is 1.
         other: series of the other body, times in units of T_ref; None: elastic.
-        Raises ParameterError for a value out of range, a series of many materials, and shapes that do not agree.
+        Raises ParameterError for a value out of range, a series of many materials, and shapes that do not agree.  A
+        cover that is too thin for its law is refused where the law is computed.
         """
         if isinstance(series, Real) and not isinstance(series, bool):
             series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
@@ -143,6 +145,7 @@ class Cover(Bodies):
         """Raise ParameterError if the other body relaxes, for functions that need slip and M of each body.
 
         call: name of that function, for the error.
+        Returns nothing beside a rigid or elastic body.
         """
         if self.other.alpha > 1.0:
             allowed = (
@@ -152,7 +155,12 @@ class Cover(Bodies):
             raise described_error("the body in contact with the layer", "is viscoelastic", allowed)
 
     def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
-        """Return the same bodies with another ``thickness``, divided by l0, and ``nu``, numbers or arrays (n,)."""
+        """Return the same bodies with other thicknesses and Poisson's ratios, as one :class:`Cover`.
+
+        thickness: thickness divided by l0, > 0, a number or (n,).
+        nu: Poisson's ratio of the layer, a number or, beside an array of thicknesses, (n,); None: that of this cover.
+        Raises ParameterError for values out of range, and shapes that do not agree.
+        """
         more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
         return Cover(self.layer, nu=self.nu if nu is None else nu, thickness=thickness, **more)
 

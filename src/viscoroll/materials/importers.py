@@ -46,25 +46,30 @@ class FromPrograms:
 
         Parameters
         ----------
-        E0 : modulus of ``*ELASTIC``, Pa: the instantaneous one, or the long-time one where
-            ``long_term`` (``MODULI=LONG TERM``).
-        nu : Poisson's ratio of ``*ELASTIC``.  Without ``k`` it is taken constant in time, as k_i = g_i make it.
-        g : g_i, fractions of the instantaneous shear modulus, >= 0, of a sum below 1; or the table (n, 3) of
+        E0 : modulus of ``*ELASTIC``, Pa: the instantaneous one, or the long-time one where ``long_term`` (``MODULI=LONG
+            TERM``).
+        nu : Poisson's ratio of ``*ELASTIC``, of the same time as E0.  Without ``k`` it is taken constant in time, as
+            k_i = g_i make it.
+        g : g_i, fractions of the instantaneous shear modulus, >= 0, of a sum below 1, (n,); or the table (n, 3) of
             ``*VISCOELASTIC``, a row (g_i, k_i, tau_i) each, without ``tau`` and ``k``.
-        tau : relaxation times tau_i, s, > 0.
+        tau : relaxation times tau_i, s, > 0, (n,); None where ``g`` is the table.
         k : k_i, fractions of the instantaneous bulk modulus, >= 0, of a sum below 1, at the same times; zeros are a
             constant bulk modulus, which is also what Abaqus takes where they are left out.  Where they differ from g,
-            nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.
+            nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.  Without
+            effect for nu = 0.5.
+        long_term : whether E0 and nu are those of long times; default: instantaneous.
         more : ``name``, ``density``, ``thickness``, ``measured``, ``temperature`` of the material.
 
         Returns
         -------
         Material
+            With its long-time modulus, and T_ref = 1 s.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword.
+            A value out of range, lists of different lengths, an unknown keyword; where k differs from g, more than 64
+            creep modes of shear and bulk together.
 
         Examples
         --------
@@ -92,21 +97,24 @@ class FromPrograms:
         Parameters
         ----------
         E0 : instantaneous Young's modulus EX, Pa.
-        nu : Poisson's ratio PRXY.  Without ``k`` it is taken constant in time, as a bulk table equal to that of shear
-            makes it.
-        alpha, tau : the pairs alpha_i (>= 0, of a sum below 1) and tau_i (s, > 0) of the table ``SHEAR``.
-        k : alpha_i of the table ``BULK`` at the same times; of a table with times of its own list all times, and zeros
-            where one of the two has none.  As of :meth:`abaqus`.
+        nu : instantaneous Poisson's ratio PRXY.  Without ``k`` it is taken constant in time, as a bulk table equal to
+            that of shear makes it.
+        alpha, tau : the pairs alpha_i (dimensionless, >= 0, of a sum below 1) and tau_i (s, > 0) of the table
+            ``SHEAR``, (n,) each.
+        k : alpha_i of the table ``BULK`` at the same times, (n,).  If that table has other times, give all times of
+            both as ``tau``, and 0 in ``alpha`` or ``k`` where a table has no term.  Its effect is as in :meth:`abaqus`.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
+            With its long-time modulus, and T_ref = 1 s.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword.
+            A value out of range, lists of different lengths, an unknown keyword; where k differs from alpha, more than
+            64 creep modes of shear and bulk together.
         """
         return cls._from_fractions(E0, nu, "alpha", alpha, tau, k, False, more)
 
@@ -116,27 +124,30 @@ class FromPrograms:
     ) -> Any:
         """Make the material of a generalized Maxwell node under Linear Elastic Material.
 
-        G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural Mechanics
-        Module User's Guide, "Linear Viscoelasticity" (doc.comsol.com, sme_ug_theory).
+        G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural Mechanics Module User's
+        Guide, "Linear Viscoelasticity" (doc.comsol.com, sme_ug_theory).
 
         Parameters
         ----------
         E, nu : Young's modulus, Pa, and Poisson's ratio of the elastic node: the long-time values (static stiffness
             "Long-term").  Without ``K`` nu is taken constant in time.
-        G : shear moduli G_m of the branches, Pa, >= 0.
-        tau : their relaxation times tau_m, s, > 0.
-        K : bulk moduli of the branches, Pa, >= 0, at the same times; zeros where only deviatoric strains are
-            viscoelastic.
+        G : shear moduli G_m of the branches, Pa, >= 0, (n,).
+        tau : their relaxation times tau_m, s, > 0, (n,).
+        K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only deviatoric strains are
+            viscoelastic.  Where they are not in proportion to G, the series is that of E/(1 - nu^2) in plane strain;
+            without effect for nu = 0.5.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
+            With T_ref = 1 s.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword.
+            A value out of range, lists of different lengths, an unknown keyword; where K is not in proportion to G,
+            more than 64 creep modes of shear and bulk together.
         """
         E, nu = check_number("E", E, unit=SI, above=0.0), check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
@@ -158,32 +169,36 @@ class FromPrograms:
     ) -> Any:
         """Make the material of ``*MAT_GENERAL_VISCOELASTIC`` (076), or of ``*MAT_VISCOELASTIC`` (006) as one pair.
 
-        G(t) = sum G_i exp(-beta_i t), G_i absolute and beta_i = 1/tau_i; a pair with beta = 0 is the
-        long-time modulus: LS-DYNA Keyword Manual, Vol. II.  In 006 G(t) = G_inf + (G0 - G_inf) exp(-beta t)
-        (help.altair.com, mat_006_viscoelastic): give G = [G0 - G_inf] and G_inf.
+        G(t) = sum G_i exp(-beta_i t), G_i absolute and beta_i = 1/tau_i; a pair with beta = 0 is the long-time modulus:
+        LS-DYNA Keyword Manual, Vol. II.  In 006 G(t) = G_inf + (G0 - G_inf) exp(-beta t) (help.altair.com,
+        mat_006_viscoelastic): give G = [G0 - G_inf] and G_inf.
 
         Parameters
         ----------
-        G : G_i, Pa, >= 0.
-        beta : beta_i, 1/s, >= 0.
-        nu : Poisson's ratio, constant in time, with ``K`` that of long times; this or ``bulk``.
+        G : G_i, Pa, >= 0, (n,).
+        beta : beta_i, 1/s, >= 0, (n,).
+        nu : Poisson's ratio, constant in time, with ``K`` that of long times; this, ``bulk`` or a K_i with beta = 0.
         bulk : constant bulk modulus, Pa, with ``K`` that of long times.  Then nu(t) is not constant; what the contact
-            feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` is the long-time one.
-        G0 : instantaneous shear modulus, Pa, from which the G_i take away; this, ``G_inf`` or a pair
-            with beta = 0.
+            feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` of the material is the long-time
+            one.
+        G0 : instantaneous shear modulus, Pa, from which the G_i take away; this, ``G_inf`` or a pair with beta = 0.
         G_inf : long-time shear modulus, Pa.
-        K : K_i, Pa, >= 0, at the same beta; that with beta = 0 is the long-time one, in place of ``nu`` and ``bulk``.
+        K : K_i, Pa, >= 0, at the same beta, (n,); that with beta = 0, if it is not 0, is the long-time one, in place of
+            ``nu`` and ``bulk``.  None: the bulk modulus is constant if ``bulk`` is given, else relaxes in proportion to
+            G.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
+            With its long-time modulus, and T_ref = 1 s.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, no long-time modulus or several, both or
-            neither of nu and bulk, an unknown keyword.
+            A value out of range, lists of different lengths, no long-time modulus or several, both or neither of nu and
+            bulk, an unknown keyword; more than 64 creep modes of shear and bulk together where these do not relax in
+            proportion.
         """
         strengths, rates = check_pairs("G", G, "beta", beta, above=-math.inf)
         resting = rates == 0.0
@@ -214,10 +229,12 @@ class FromPrograms:
         name: name of the parameter ``fractions``, for errors.
         fractions: terms of G(t) divided by G(0), (terms,), >= 0, of a sum below 1.
         tau: relaxation times, s, > 0, (terms,).
-        bulk: terms of K(t) divided by K(0), (terms,), as ``fractions``; None: nu is constant in time.
+        bulk: terms of K(t) divided by K(0), (terms,), as ``fractions``; None: nu is constant in time.  Without effect
+            on an incompressible body, nu = 0.5.
         long_term: whether E and nu are those of long times.
         more: keywords of the material, as ``name`` and ``density``.
-        Returns the material, of the class ``cls``, with its long-time modulus.
+        Returns the material, of the class ``cls``, with its long-time modulus and, where bulk and shear terms differ,
+        nu of long times.
         Raises ParameterError for values out of range, lists of different lengths, and an unknown keyword.
         """
         E, nu = check_number("E0", E, unit=SI, above=0.0), check_poisson(nu)
@@ -241,16 +258,17 @@ class FromPrograms:
     ) -> Any:  # fmt: skip
         """Make a material from the terms of its moduli.
 
-        G_inf, nu: shear modulus, in any unit, and Poisson's ratio of long times.
+        G_inf, nu: shear modulus, in any unit (in Pa if ``E`` is None), and Poisson's ratio of long times.
         G: terms of G(t), in the unit of G_inf, (terms,).
         tau: relaxation times, s, (terms,).
-        K: terms of K(t), in the unit of G_inf, (terms,); None: nu is constant in time.
+        K: terms of K(t), in the unit of G_inf, (terms,); None: nu is constant in time.  Ignored for an incompressible
+            body, nu = 0.5, which has no bulk strain.
         more: keywords of the material, as ``name`` and ``density``.
-        K_inf: bulk modulus of long times, in the unit of G_inf; None: by nu.
-        E: Young's modulus of long times, Pa; None: 2 (1 + nu) G_inf, with G_inf in Pa then.
-        Returns the material, of the class ``cls``.  Where bulk and shear terms differ, its series is that of E/(1 -
-        nu^2).
-        Raises ParameterError for an unknown keyword.
+        K_inf: bulk modulus of long times, in the unit of G_inf; None: it follows from E and nu.  Used only with ``K``.
+        E: Young's modulus of long times, Pa; None: 2 (1 + nu) G_inf.
+        Returns the material, of the class ``cls``, with T_ref = 1 s.  Its series is that of G(t); where K is not
+        proportional to G it is that of E/(1 - nu^2) (:func:`plane_strain`).
+        Raises ParameterError for values out of range, too many terms, and an unknown keyword.
         """
         E = 2.0 * (1.0 + nu) * G_inf if E is None else E
         prony = Prony(G / G_inf, tau)
@@ -273,13 +291,14 @@ def check_poisson(nu: Any) -> float:
 def check_pairs(
     name: str, values: ArrayLike, other: str, at: ArrayLike, *, above: float = 0.0
 ) -> tuple[Floats, Floats]:
-    """Check two lists of equal length, and return them as arrays (n,) in SI units.
+    """Check two lists of equal length, and return them as arrays in SI units.
 
     name, values: name of the first list, for errors, and its numbers, >= 0; in Pa if it is called G or K, else
-    dimensionless.
+        dimensionless.
     other, at: name of the second list, for errors, and its numbers, > 0; in s if it is called tau, else in 1/s.
-    above: number that those of the second list must exceed; with -inf they must be >= 0.
-    Raises ParameterError for numbers out of range and lists of different lengths.
+    above: number that those of the second list must exceed; they must be >= 0 in any case, so that -inf allows 0.
+    Returns (numbers of the first list, numbers of the second), (n,) each; n may be 0.
+    Raises ParameterError for numbers out of range, lists of different lengths, and other shapes than (n,).
     """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
@@ -289,7 +308,7 @@ def check_pairs(
 
 
 def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
-    """Return the long-time shear modulus of LS-DYNA, Pa, by exactly one of its three ways.
+    """Return the long-time shear modulus of LS-DYNA, Pa, > 0, by exactly one of its three ways.
 
     strengths: all G_i, Pa, (terms,).
     G0: instantaneous shear modulus, Pa, from which all G_i are subtracted; None: not given.
@@ -311,10 +330,10 @@ def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, 
 
 
 def _remaining_fraction(name: str, fractions: Floats) -> float:
-    """Return 1 - sum fractions, the long-time modulus divided by the instantaneous one.
+    """Return 1 - sum fractions, the long-time modulus divided by the instantaneous one, in (0, 1].
 
     name: name of the parameter, for errors.
-    fractions: fractions of the instantaneous modulus that relax, (terms,).
+    fractions: fractions of the instantaneous modulus that relax, >= 0, (terms,); 1 is returned without terms.
     Raises ParameterError where the sum is 1 or more.
     """
     rest = 1.0 - math.fsum(fractions)
@@ -327,19 +346,25 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
 def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArray) -> Prony:
     """Return the series of E/(1 - nu^2), divided by its long-time value, if shear and bulk modulus both relax.
 
-    As operators (1 - nu^2)/E = (3 K + 4 G)/(4 G (3 K + G)) = 1/(4 G) + 3/(4 (3 K + G)): two materials in series,
-    whose creep terms are added (the correspondence principle of linear viscoelasticity).
+    As operators (1 - nu^2)/E = (3 K + 4 G)/(4 G (3 K + G)) = 1/(4 G) + 3/(4 (3 K + G)): two materials in series, whose
+    creep terms are added (the correspondence principle of linear viscoelasticity).
 
     Parameters
     ----------
-    G_inf, K_inf : long-time moduli, in one unit.
-    G, K : strengths of their terms in that unit, >= 0, shape (n,) each.
-    tau : relaxation times of both, s, shape (n,).
+    G_inf, K_inf : long-time moduli, > 0, in one unit.
+    G, K : strengths of their terms in that unit, >= 0, shape (n,) each; 0 where one of them has no term at that time.
+    tau : relaxation times of both, s, > 0, shape (n,).
 
     Returns
     -------
     Prony
-        Accurate to 1e-14 (``test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes``).
+        In creep form, with times in s; up to 2 n modes.  Accurate to 1e-14
+        (``test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes``).
+
+    Raises
+    ------
+    ParameterError
+        Values out of range, more than 64 creep modes of both together.
     """
     stiff = 3.0 * K_inf + G_inf
     first, second = Prony(G / G_inf, tau), Prony((3.0 * K + G) / stiff, tau)

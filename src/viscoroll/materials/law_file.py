@@ -171,7 +171,7 @@ class Content(NamedTuple):
 
 
 def dataset_content(dataset: Any) -> Content:
-    """Return the content of a ``dataset``; for another object, nothing."""
+    """Return the content of a ``dataset``; for another object, empty numbers and attributes."""
     numbers = {str(name): variable.values for name, variable in getattr(dataset, "variables", {}).items()}
     return Content(numbers, getattr(dataset, "attrs", {}))
 
@@ -179,9 +179,10 @@ def dataset_content(dataset: Any) -> Content:
 def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
     """Return the SHA-256 over names and numbers of all variables: little-endian doubles, last dimension fastest.
 
-    numbers: arrays by the names of the variables; other names are left out.
+    numbers: arrays by the names of the variables; names that the kind does not have are left out.
     kind: kind of the file, a key of :data:`KINDS`, which determines the names and their order.
-    Returns the hexadecimal digits.
+    Returns the 64 hexadecimal digits.
+    Raises KeyError for a variable that is missing.
     """
     digest = hashlib.sha256()
     for name in (*KINDS[kind].functions, *KINDS[kind].others):
@@ -192,11 +193,15 @@ def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
 def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], **attributes: str) -> xr.Dataset:
     """Return the dataset of a file: its numbers, their meaning and origin, and their checksum.
 
-    law: the law, an object with the variables of its kind as attributes, and ``coefficients`` with the functions last.
+    law: the law, an object with the variables of its kind as attributes, and ``coefficients`` with the functions along
+        the last axis, in the order of the kind.
     kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
     title: bodies whose law it is, in words.
-    errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind.
+    errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind,
+        else KeyError.
     attributes: further global attributes of the dataset by name.
+    Returns the dataset, with one variable of coefficients for each function, the other variables of the kind, integers
+    as int32, and global attributes with the kind, the schema, the command line and the time of the call.
     """
     import xarray as xr
 
@@ -227,7 +232,12 @@ def stated_errors(dataset: Any) -> dict[str, float]:
 
 
 def is_law(path: str | PathLike[str]) -> bool:
-    """Return whether the file ``path`` is the law of a material or cover; raises FileError for a damaged file."""
+    """Return whether a file is the law of a material or cover, by its attribute alone.
+
+    path: path of the file.
+    Returns False for the law of every alpha, another netCDF-4 file, and a file that is no HDF5.
+    Raises FileError for a file that cannot be read, or whose seal does not match it.
+    """
     try:
         return read_content(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
     except OSError:  # no HDF5: the reader of materials reports that
@@ -237,7 +247,7 @@ def is_law(path: str | PathLike[str]) -> bool:
 def read_law(path: str | PathLike[str]) -> Content:
     """Return the content of a law file, verified by its seal, schema and checksum.
 
-    path: path of the file.
+    path: path of the file; a file without a seal is verified by its checksum alone.
     Returns :class:`Content`.
     Raises FileError for a file that cannot be read, is damaged, is no law, or is of another schema.
     """
@@ -257,8 +267,10 @@ def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Conte
     path: path of the file.
     expected: kind of file in words, for errors.
     remedy: what to do about a damaged file, for errors.
-    Returns the :class:`Content`: arrays of all variables, and global attributes as texts and numbers.
-    Raises FileError for a file that cannot be read or whose seal does not match it, and any error of h5py.
+    Returns the :class:`Content`: arrays of all variables of the root group, of a scalar a numpy number; and global
+    attributes as texts and numbers.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal does not match it, and any
+    error of h5py, as OSError for a file that is no HDF5.
     """
     import h5py
 
@@ -268,7 +280,12 @@ def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Conte
 
 
 def _to_scalar(value: Any) -> Any:
-    """Return the ``value`` of an attribute as text or number: some programs write arrays of one, and texts as bytes."""
+    """Return the value of an attribute as text or number: some programs write arrays of one, and texts as bytes.
+
+    value: what h5py reads.
+    Returns a text for bytes, in UTF-8 with replacements of wrong bytes; the element of an array of one; an array of
+    more elements as it is.
+    """
     if np.size(value) == 1:
         value = np.ravel(value)[0]
     return value.decode(errors="replace") if isinstance(value, bytes) else value
@@ -277,7 +294,8 @@ def _to_scalar(value: Any) -> Any:
 def check_law(content: Content, path: Any) -> None:
     """Raise FileError for a file that is no law of this schema, or whose numbers do not match its checksum.
 
-    content: content of the file.
+    It checks in turn: the kind, the schema, that no variable of the kind is missing, the checksum.
+    content: :class:`Content` of the file.
     path: path of the file, for errors.
     """
     numbers, attributes = content

@@ -73,7 +73,12 @@ class Material(FromPrograms):
     temperature: float | None = None
 
     def __post_init__(self) -> None:
-        """Convert the fields to numbers in SI units and check them; raises ParameterError."""
+        """Convert the fields to numbers in SI units and check them.
+
+        A rigid body must neither relax nor have a thickness.
+        Raises ParameterError for the first field that is not allowed.  A temperature that looks like kelvin warns with
+        ModelWarning (:func:`.shift.check_celsius`).
+        """
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
@@ -102,8 +107,10 @@ class Material(FromPrograms):
         ----------
         E : long-time Young's modulus, Pa.
         nu : Poisson's ratio.
-        T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.
-        more : ``name``, ``density`` and ``thickness``.
+        T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.  Where
+            they are equal, or their ratio rounds to 1, the material is elastic.
+        more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
+            ``temperature``.
 
         Returns
         -------
@@ -112,7 +119,7 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A value out of range.
+            A value out of range, T_epsilon below T_sigma, T_epsilon/T_sigma above 1e12.
 
         Examples
         --------
@@ -135,11 +142,12 @@ class Material(FromPrograms):
         ----------
         E : Young's modulus, Pa.
         nu : Poisson's ratio.
-        more : ``name``, ``density`` and ``thickness``.
+        more : further parameters of :class:`Material` by name, as ``name``, ``density`` and ``thickness``.
 
         Returns
         -------
         Material
+            With ``T_ref`` = 1 s, unless it is given.
 
         Raises
         ------
@@ -156,11 +164,20 @@ class Material(FromPrograms):
 
     @classmethod
     def rigid(cls, **more: Any) -> Material:
-        """Make a body that does not deform, with infinite E; ``more``: ``name`` and ``density``.
+        """Make a body that does not deform, with infinite E; its Poisson's ratio, 0.5, has no effect.
+
+        Parameters
+        ----------
+        more : ``name`` and ``density``, and other parameters of :class:`Material` but E, nu and ``thickness``.
 
         Returns
         -------
         Material
+
+        Raises
+        ------
+        ParameterError
+            A value out of range, a thickness, a series that relaxes.
 
         Examples
         --------
@@ -188,15 +205,16 @@ class Material(FromPrograms):
     def at(self, temperature: float, shift: Callable[[float], float]) -> Material:
         """Return the material at another temperature: T_ref, and with it all times, is multiplied by a_T.
 
-        The measured band moves with it.
+        The measured band moves with it.  The moduli, and all other fields, stay.
 
         Parameters
         ----------
-        temperature : degrees Celsius.
-        shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature that gives a_T.  Where the
-            material has a ``temperature``, times are multiplied by a_T(temperature)/a_T(its own), so that constants
-            that refer to another temperature (T0 of the glass transition, say) are converted; where it has none, it
-            is taken to be at the temperature where the shift is 1.
+        temperature : degrees Celsius, one number.
+        shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature in degrees Celsius that returns
+            a_T, dimensionless, > 0.  Where the material has a ``temperature``, times are multiplied by
+            a_T(temperature)/a_T(its own), so that constants that refer to another temperature (T0 of the glass
+            transition, say) are converted; where it has none, it is taken to be at the temperature where the shift is
+            1.
 
         Returns
         -------
@@ -206,7 +224,8 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A temperature that the shift does not allow, a shift that is no function.
+            A temperature that the shift does not allow, an array of temperatures, a shift that is no function or does
+            not return a finite positive number.
 
         Examples
         --------
@@ -231,7 +250,7 @@ class Material(FromPrograms):
         return replace(self, T_ref=self.T_ref * factor, measured=measured, temperature=temperature)
 
     def storage(self, omega: ArrayLike) -> Any:
-        """Return the storage modulus E', Pa.
+        """Return the storage modulus E' in tension, which rises from E at omega = 0 to the instantaneous modulus.
 
         Parameters
         ----------
@@ -239,7 +258,7 @@ class Material(FromPrograms):
 
         Returns
         -------
-        number or array, Pa, of the shape of ``omega``
+        number or array, Pa, of the shape of ``omega``; infinite for a rigid body
 
         Raises
         ------
@@ -289,7 +308,7 @@ class Material(FromPrograms):
         return loss / storage
 
     def relaxation(self, t: ArrayLike) -> Any:
-        """Return the tensile relaxation modulus E(t), Pa.
+        """Return the tensile relaxation modulus E(t), which falls from the instantaneous modulus at t = 0 to E.
 
         Parameters
         ----------
@@ -297,7 +316,7 @@ class Material(FromPrograms):
 
         Returns
         -------
-        number or array, Pa, of the shape of ``t``
+        number or array, Pa, of the shape of ``t``; E at all times for an elastic and infinite for a rigid body
 
         Raises
         ------
@@ -318,7 +337,7 @@ class Material(FromPrograms):
         """Return the creep compliance in tension times E, which rises from E/E(0) at t = 0 to 1, dimensionless.
 
         t: times, s, >= 0, of any shape.
-        Returns a number or an array of that shape.
+        Returns a number or an array of that shape; 1 at all times for an elastic and a rigid body.
         Raises ParameterError for a time that is negative, NaN or infinite.
 
         Examples
@@ -334,6 +353,13 @@ class Material(FromPrograms):
     def to_xarray(self) -> xr.Dataset:
         """Return both forms of the series and the constants as a dataset, with names and units, as in files.
 
+        Returns
+        -------
+        xarray.Dataset
+            E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths dimensionless and times in units
+            of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density, thickness, temperature and the measured band
+            those that are given.
+
         Examples
         --------
         >>> import viscoroll as vr
@@ -345,7 +371,12 @@ class Material(FromPrograms):
         return material_as_dataset(self)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return a title, and a line for each property that is given."""
+        """Return what the HTML of a notebook shows: a title, and a line for each property.
+
+        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as texts).
+        Properties that are None are left out, as are the relaxation times of an elastic material; of these the shortest
+        and the longest are shown.
+        """
         times = self.prony.tau * self.T_ref
         values: list[tuple[str, Any, str]] = [
             ("E", self.E, "Pa, of long times"), ("instantaneous", self.instant, "Pa"), ("nu", self.nu, ""),
@@ -406,7 +437,7 @@ class Material(FromPrograms):
         Raises
         ------
         FileError
-            A file that is missing, damaged in any byte, or no material.
+            A file that is missing, damaged in any byte, or no material, or has values out of range.
 
         Examples
         --------
@@ -425,7 +456,8 @@ class Material(FromPrograms):
 
         omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation time that overflows
             is taken as infinite.
-        Returns (E'/E, E''/E), each a number or an array of that shape.
+        Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an elastic and of a
+        rigid body.
         Raises ParameterError for a frequency that is negative, NaN or infinite.
         """
         with np.errstate(over="ignore"):
@@ -437,21 +469,23 @@ class Material(FromPrograms):
         return storage[()], (E * (ratio / whole)).sum(axis=-1)[()]
 
     def _divide_time(self, t: ArrayLike, times: Floats) -> Floats:
-        """Return t divided by each of several times, (..., times).
+        """Return t divided by each of several times of the material.
 
         t: s, >= 0, of any shape.
-        times: times in units of T_ref, (times,).
-        Returns the ratios, dimensionless, of the shape of t with a last axis of the times.
+        times: relaxation or retardation times in units of T_ref, (times,).
+        Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the quotient
+        overflows.
+        Raises ParameterError for a time t that is negative, NaN or infinite.
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
-    """Raise ParameterError where T_epsilon < T_sigma, as no material has it.
+    """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are allowed.
 
-    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast.  The error
-        names the longest T_sigma that is too long.
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast.  The error is
+        that of T_epsilon, and of the element with the longest T_sigma of those that are too long.
     """
     slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
     short = fast > slow

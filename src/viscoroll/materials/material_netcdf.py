@@ -53,9 +53,10 @@ def material_as_dataset(material: Any) -> xr.Dataset:
     """Return both forms of the series, relaxation and creep, and the constants of a material as a dataset.
 
     material: a :class:`viscoroll.Material`.
-    Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, and the constants in SI
-    units; those that are not given are left out.  The attribute ``given`` names the form from which the material is
-    read, "relaxation" or "creep".
+    Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, of length 0 if elastic:
+    strengths over the long-time modulus or compliance, times in units of T_ref; and the constants in SI units: E_long,
+    nu, T_ref, alpha, and those of density, thickness, temperature and the measured band that are given.  The attribute
+    ``given`` names the form from which the material is read, "relaxation" or "creep".
     """
     import xarray as xr
 
@@ -85,7 +86,7 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
     path: path of the file.
     make: constructor of the material, called with the parameters of :class:`viscoroll.Material` by name.
     Returns what ``make`` returns.
-    Raises FileError for a file that is missing, damaged, no material, or has values out of range.
+    Raises FileError for a file that is missing, damaged, without a seal, no material, or has values out of range.
     """
     try:
         numbers, about = read_content(path, "material of this package", "write it again")

@@ -108,10 +108,12 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
 
 
 def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
-    """Return the materials of a file that was read; raises FileError as :func:`read_materials` does.
+    """Return the materials of a file that was read.
 
-    path: path of the file.
-    content: sections of the file.
+    path: path of the file, for errors; paths in its sections are relative to its folder.
+    content: sections of the file by name, as tomllib reads them.
+    Returns a dict from "material" and "base", those that exist, to :class:`Material`; empty without either.
+    Raises FileError as :func:`read_materials` does, but not for missing sections.
     """
     return {name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content}
 
@@ -121,8 +123,9 @@ def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[f
 
     path: path of the file, for errors.
     content: sections of the file by name, as tomllib reads them.
-    Returns a dict from "material" and "base" to a function a_T(temperature in degrees Celsius), which is 1 at the
-    temperature of the section, or without one where the shift itself is 1.
+    Returns a dict from "material" and "base", those with a key wlf or arrhenius, to a function of a temperature in
+    degrees Celsius.  It returns the factor of all times, dimensionless, > 0, from the key ``temperature`` of the
+    section, at which it is 1, to that temperature; without the key it is the shift itself.
     Raises FileError for a section that is wrong.
     """
     sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
@@ -135,9 +138,10 @@ def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[f
 def material_as_toml(material: Material, section: str = "material") -> str:
     """Return the TOML section that reads back as a material, to the bit.
 
-    material: the material.
+    material: the :class:`Material`.
     section: name of the section, "material" or "base".
-    Returns the text, with a header and a line for each property that is given.
+    Returns the text, with a header, a line for each property that is given (``temperature`` as ``reference``) and the
+    series.
     """
     band = material.measured
     values = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
@@ -150,7 +154,10 @@ def material_as_toml(material: Material, section: str = "material") -> str:
 
 
 def series_as_toml(series: Prony) -> str:
-    """Return the key ``prony`` or ``creep`` that reads back as this ``series``, to the bit."""
+    """Return the key ``prony`` or ``creep``, in the form in which the series was given, that reads back to the bit.
+
+    series: :class:`Prony` of one material; an elastic one has empty lists.
+    """
     if series.by_creep:
         return f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = {series.alpha!r} }}"
     return f"prony = {{ E = {series.E.tolist()}, tau = {series.tau.tolist()} }}"
@@ -162,10 +169,11 @@ def _quote(text: str) -> str:
 
 
 def _parse_section(path: Any, name: str, content: Any) -> Any:
-    """Return a section as a FileSection or MaterialSection; raises FileError.
+    """Return a section as a :class:`FileSection`, if it has the key file, or as a :class:`MaterialSection`.
 
-    path, name: path of the file and name of the section.
-    content: keys and values of the section.
+    path, name: path of the file and name of the section, for errors.
+    content: keys and values of the section, as tomllib reads them.
+    Raises FileError, with the line of the key, for a key that is unknown, missing or of the wrong type.
     """
     kind = FileSection if isinstance(content, dict) and "file" in content else MaterialSection
     return as_struct(path, name, content, kind)
@@ -176,6 +184,8 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
 
     path, name: path of the file, against which a path in the section is taken, and name of the section.
     content: keys and values of the section, as tomllib reads them.
+    Returns the :class:`Material`: of the section itself, or of the file that it names with the thickness of the section
+    if that is given; shifted if the section has a ``temperature``, else as at its reference.
     Raises FileError, with the line of the key, for a key or value that is wrong, a temperature without a shift, and a
     file that the section names and that is wrong.
     """
@@ -202,7 +212,9 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
     """Return the material of a file that a section names.
 
     path, name: path of the file with that section, and name of the section, for errors.
-    other: netCDF file of a material or of its law, or TOML file with a section of this name or [material].
+    other: netCDF file (suffix .nc) of a material or of its law, or TOML file with a section of this name or, without
+        one, [material].
+    Returns the :class:`Material`, at the temperature of that file.
     Raises FileError for the key ``file`` of the section if that file is missing or wrong, or names a file again.
     """
     try:
@@ -220,7 +232,10 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
 
 
 def _material_of_law(path: Path) -> Material:
-    """Return the material of the law in file ``path``; raises FileError for a pair and for a law without units."""
+    """Return the :class:`Material` of the law in the file ``path``.
+
+    Raises FileError for a pair, for a law without units, and for a file that is damaged or no law.
+    """
     content = tomllib.loads(read_law(path).attributes["material"])
     if not content.keys() & set(SECTIONS):
         raise FileError(path, "is the law of a material without units: it must be the law of a [material] in SI units")
@@ -233,10 +248,11 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     """Return the material of a section at its reference temperature, by its standard linear solid or its series.
 
     path, name: path of the file and name of the section, for errors.
-    section: checked content of the section.
-    Returns the material; elastic if the section has neither times nor a series.
-    Raises FileError for T_epsilon without T_sigma or beside a series, and for a series that is wrong; ParameterError
-    for another value out of range.
+    section: checked content of the section, without the key file.
+    Returns the :class:`Material`: with T_epsilon and T_sigma the standard linear solid, else with the series and T_ref
+    (1 s if it is not given); elastic if the section has neither times nor a series.
+    Raises FileError for T_epsilon without T_sigma, either beside T_ref or a series, and for a series that is wrong;
+    ParameterError for another value out of range.
     """
     more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
     more["temperature"] = section.reference
@@ -255,9 +271,10 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     """Return the series of a section by its key prony or creep.
 
     path, name: path of the file and name of the section, for errors.
-    given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps alpha, each a list
-        by mode, whose elements may be arrays (n,) of n materials; other keys are ignored.
-    Returns a :class:`Prony`, None if neither key is given.
+    given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps alpha.  Each but
+        alpha is a list by mode, whose elements may be arrays (n,) of n materials; other keys are ignored, as is a key
+        that is None.
+    Returns a :class:`Prony`, of shape () or (n,), None if neither key is given.
     Raises FileError for both keys, and for values out of range.
     """
     forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
@@ -280,7 +297,7 @@ def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | N
 
     path, name: path of the file and name of the section, for errors.
     section: checked content of the section.
-    Returns None if neither key is given.
+    Returns the :class:`WLF` or :class:`Arrhenius`, None if neither key is given.
     Raises FileError for both keys.
     """
     if section.wlf is not None and section.arrhenius is not None:

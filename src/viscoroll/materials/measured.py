@@ -15,8 +15,9 @@ class Measured:
 
     Parameters
     ----------
-    low, high : first and last angular frequency of the data at the temperature of the material, rad/s, > 0.
-    misfit : root mean square of the relative errors of storage or loss modulus, whichever is larger, >= 0.
+    low, high : first and last angular frequency of the data at the temperature of the material, rad/s, 0 < low <= high.
+    misfit : root mean square of the relative errors of storage or loss modulus, whichever is larger, dimensionless, >=
+        0.
     source : text that names the source of the data.
 
     Raises
@@ -49,7 +50,8 @@ class Measured:
         """Return the measured band at another temperature.
 
         a_T: factor of all times from the temperature of the band to the other one, dimensionless, > 0.
-        Returns a :class:`Measured` whose frequencies are divided by ``a_T``; misfit and source stay.
+        Returns a new :class:`Measured` whose frequencies are divided by ``a_T``; misfit and source stay.
+        Raises ParameterError for a factor with which a frequency is 0, negative or infinite.
 
         Examples
         --------

@@ -45,14 +45,15 @@ class Pair:
 
     Parameters
     ----------
-    cylinder : material of the cylinder.
-    base : material of the half-space; None: that of the cylinder.
+    cylinder : material of the cylinder, a :class:`Material` or :class:`Solid`.
+    base : material of the half-space, likewise; None: that of the cylinder.
     plane : "strain", or "stress".
 
     Raises
     ------
     ParameterError
-        A body that is no :class:`Material`; two rigid bodies; two bodies with a thickness, or one in plane stress.
+        A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; two bodies with a thickness, or one in
+        plane stress.
     """
 
     cylinder: Any
@@ -75,9 +76,11 @@ class Pair:
             self._refuse_covers()
 
     def _refuse_covers(self) -> None:
-        """Refuse pairs with a layer to which the law of a cover does not apply.
+        """Refuse pairs with a layer to which the law of a cover does not apply; called only where a body has a
+        thickness.
 
-        Raises ParameterError for a thickness of both bodies, and for a layer in plane stress.
+        Raises ParameterError for a thickness of both bodies (also of a cylinder without a base, whose material is that
+        of both), and for a layer in plane stress.
         """
         if self.cylinder.thickness is not None and self.half_space.thickness is not None:
             allowed = "given for one body only: the law of two layers is not available; give base=, rigid or elastic"
@@ -99,7 +102,10 @@ class Pair:
 
     @property
     def like(self) -> bool:
-        """Whether both bodies deform and relax alike."""
+        """Whether both bodies deform and relax alike: one body is given for both, or E, nu, series and T_ref are equal.
+
+        Two different objects of which one is a :class:`Solid` are never alike.
+        """
         one, other = self.cylinder, self.half_space
         if one is other or Solid in (type(one), type(other)):
             return one is other
@@ -115,7 +121,8 @@ class Pair:
     def E_prime(self) -> Any:
         """Return the contact modulus E' of the pair at long times, 2/E' = 1/E'_1 + 1/E'_2 (Sect. 3.1), Pa.
 
-        A number, or an array of many pairs; on a rigid base twice that of the other body alone.
+        A float, or an array (n,) of many pairs; that of one body if both are alike; on a rigid base twice that of the
+        other body.
         """
         one, other = self._moduli
         if self.like:
@@ -126,13 +133,15 @@ class Pair:
 
     @property
     def share(self) -> Any:
-        """The cylinder's part of the long-time compliance: 0 if it is rigid, 1 on a rigid base."""
+        """The cylinder's part of the long-time compliance, dimensionless, a number or (n,): 0 if it is rigid, 1 on a
+        rigid base, 1/2 of like bodies.
+        """
         one, other = self._moduli
         return 1.0 / (1.0 + one / other)
 
     @property
     def T_ref(self) -> float:
-        """Unit of time, s: the cylinder's T_ref, or that of the base if the cylinder does not relax."""
+        """Unit of time, s: the cylinder's T_ref if it relaxes or is many series, else that of the half-space."""
         series = self.cylinder.prony
         return (self.cylinder if series.shape or series.alpha > 1.0 else self.half_space).T_ref
 
@@ -140,7 +149,8 @@ class Pair:
     def law(self) -> Prony | Bodies:
         """Return the material of the law: a :class:`Prony` series for like bodies, else :class:`Bodies`.
 
-        Its times are in units of ``T_ref``; strengths are divided by the long-time modulus or compliance.
+        Its times are in units of ``T_ref``; strengths are divided by the long-time modulus or compliance.  Of many
+        bodies it is as many series or pairs.
 
         Raises
         ------
@@ -158,6 +168,8 @@ class Pair:
     def cover(self, l0: Any) -> Cover:
         """Return the layer of finite thickness and the other body as a dimensionless :class:`Cover`.
 
+        One of the bodies must have a thickness (:attr:`covered`).
+
         Parameters
         ----------
         l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array (n,) for n
@@ -171,8 +183,8 @@ class Pair:
         Raises
         ------
         ParameterError
-            Many series, or many parts of the compliance beside an elastic body; a cover that is too thin or out of
-            range.
+            Many series, or many parts of the compliance beside an elastic body; a thickness or Poisson's ratio out of
+            the range of :class:`Cover`.
         """
         on = self.covered
         assert on is not None
@@ -195,8 +207,10 @@ class Pair:
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:
-        """Dundurs' constant beta_D, (of the long-time moduli, of the instantaneous moduli), dimensionless, any sign;
-        body 1 is the cylinder.
+        """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous moduli), dimensionless,
+        any sign.
+
+        Body 1 is the cylinder.  Both bodies must be a :class:`Material`; a :class:`Solid` has no shear modulus.
         """
         one, other = self.cylinder, self.half_space
         instant = one.G * one.prony.alpha, other.G * other.prony.alpha
@@ -206,10 +220,10 @@ class Pair:
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
     """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper; in plane stress pi E.
 
-    E: Young's modulus, a number or an array.
-    nu: Poisson's ratio, likewise; they broadcast.
-    plane: "strain" or "stress".
-    Returns E' in the unit of E.
+    E: Young's modulus, a number or an array; infinite for a rigid body.
+    nu: Poisson's ratio, likewise; they broadcast.  Ignored in plane stress.
+    plane: "strain"; any other text is taken as "stress".
+    Returns E' in the unit of E, a number or an array.
     """
     return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
 
@@ -217,12 +231,12 @@ def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
 def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:
     """Return Dundurs' constant beta_D of two bodies; where it is 0, shear does not change the pressure.
 
-    beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), with k = 3 - 4 nu in plane
-    strain and k = (3 - nu)/(1 + nu) in plane stress.
+    beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), with k = 3 - 4 nu in plane strain and k =
+    (3 - nu)/(1 + nu) in plane stress.
 
-    G_1, G_2: shear moduli in one unit, > 0; one of them may be infinite.
+    G_1, G_2: shear moduli in one unit, > 0; one of them may be infinite, and its nu then has no effect on the result.
     nu_1, nu_2: Poisson's ratios.
-    plane: "strain" or "stress".
+    plane: "strain"; any other text is taken as "stress".
     Returns a number, dimensionless; its sign changes where the bodies are exchanged.
     """
     k_1, k_2 = (3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2))

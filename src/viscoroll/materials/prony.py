@@ -31,7 +31,7 @@ class Block(NamedTuple):
     """Materials of equal numbers of modes, along the last axis.
 
     rows : their places in the list of indices that was asked for, (materials,).
-    modes : strengths and rates of relaxation and creep, arrays (materials, modes).
+    modes : :class:`.prony_forms.Modes`, strengths and rates of relaxation and creep, arrays (materials, modes).
     weights : for pairs the part of each creep mode that is the half-space's, 0 to 1, (materials, modes); None of
         series.
     """
@@ -80,23 +80,27 @@ class Prony(OneOrMany):
     ----------
     E : strengths of the modes divided by the long-time modulus, >= 0, dimensionless; zeros are dropped.
     tau : their relaxation times in units of T_ref, > 0; strengths of equal times are added.
-        Arrays (n, N), one of which may be (N,), are n materials: ``p[i]`` is one of them, ``p[i:k]`` are some.
+        Arrays (n, N), one of which may be (N,), are n materials: ``p[i]`` is one of them, ``p[i:k]`` are some.  Where
+        they differ in the number of modes, those of strength 0 stand behind the others.
 
     Attributes
     ----------
     shape : (), or (n,).
-    alpha : instantaneous divided by long-time modulus, for each.
+    alpha : instantaneous divided by long-time modulus, >= 1, a float, or (n,).
+    E, tau : strengths and times of relaxation, slowest mode first, (modes,) or (n, modes).
+    J, T : strengths and times of creep, likewise; each form is computed from the given one at its first use.
     by_creep : whether it was given by its creep compliance.
 
     Raises
     ------
     ParameterError
-        Negative strengths, times that are not positive, more than 64 modes, times that span more than
-        32 decades, or 1 + sum E above 1e12; for any of them.
+        Negative strengths, times that are not positive, more than 64 modes, times that span more than 32 decades, or a
+        sum of E above 1e12; for any of them.
 
     Notes
     -----
-    Immutable, hashable, equal where modes and ``alpha`` are.  Values are not rescaled.
+    Immutable, hashable, equal where modes and ``alpha`` are, and both were given in the same form.  Values are not
+    rescaled.
 
     Examples
     --------
@@ -111,10 +115,10 @@ class Prony(OneOrMany):
     def __init__(self, E: ArrayLike = (), tau: ArrayLike = ()) -> None:
         """Make one or many materials from their relaxation modulus, divided by its long-time value.
 
-        E: strengths, >= 0, dimensionless, (modes,) or (n, modes).
+        E: strengths, >= 0, dimensionless, (modes,) or (n, modes); empty (default): elastic.
         tau: relaxation times in units of T_ref, > 0, in the shape of E; one of the two may be (modes,) where the other
-            is (n, modes).
-        Raises ParameterError as the class states.
+            is (n, modes), or one number for all modes.
+        Raises ParameterError as the class states, and for shapes that do not fit.
         """
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
@@ -130,10 +134,11 @@ class Prony(OneOrMany):
         ----------
         J : strengths divided by the long-time compliance, >= 0, of a sum below 1, dimensionless, (modes,) or (n,
             modes).
-        T : retardation times in units of T_ref, > 0, in the shape of J.
-        alpha : instantaneous divided by long-time modulus, 1/(1 - sum J); a number or, for arrays (n, modes), (n,).
-            That difference loses digits where the sum is near 1: a value given here replaces it, and must agree with
-            it to rounding of J.  None: it is computed.
+        T : retardation times in units of T_ref, > 0, in the shape of J; one of the two may be (modes,) where the other
+            is (n, modes).
+        alpha : instantaneous divided by long-time modulus, 1/(1 - sum J), in [1, 1e12]; a number or, for arrays (n,
+            modes), (n,). That difference loses digits where the sum is near 1: a value given here replaces it, and must
+            agree with it to rounding of J: 1/alpha to 1e-14 for each mode and one more.  None: it is computed.
 
         Returns
         -------
@@ -191,11 +196,11 @@ class Prony(OneOrMany):
         return series
 
     def _set(self, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> None:
-        """Set all attributes to checked values, and make the arrays read-only.
+        """Set all attributes of a new object to checked values, and make the arrays read-only.
 
         by_creep: whether the modes are those of creep, else of relaxation.
-        strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength last;
-            dimensionless, times in units of T_ref.
+        strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength last; dimensionless,
+            times in units of T_ref.
         alpha: instantaneous divided by long-time modulus, a number or (n,).
         """
         self.by_creep, self.shape = by_creep, strengths.shape[:-1]
@@ -203,6 +208,11 @@ class Prony(OneOrMany):
         self.alpha = lock_array(alpha) if isinstance(alpha, np.ndarray) else alpha
 
     def __getitem__(self, which: Any) -> Prony:
+        """Return one of n materials for an index, or some for a slice or an array of indices; as a new :class:`Prony`.
+
+        which: what numpy accepts along the first axis; of a single material nothing is accepted.
+        Of one material the modes without strength are dropped; of several the arrays keep their number of modes.
+        """
         strengths, times, alpha = self._strengths[which], self._times[which], self.alpha[which]
         if strengths.ndim == 1:
             count = np.count_nonzero(strengths)
@@ -210,7 +220,7 @@ class Prony(OneOrMany):
         return Prony._make(self.by_creep, strengths, times, alpha)
 
     def repeated(self, count: int) -> Prony:
-        """Return ``count`` materials that are equal to this single one."""
+        """Return ``count`` materials that are equal to this single one, as one :class:`Prony` of shape (count,)."""
         strengths, times = (np.broadcast_to(values, (count, values.size)) for values in (self._strengths, self._times))
         return Prony._make(self.by_creep, strengths, times, np.full(count, self.alpha))
 
@@ -221,14 +231,17 @@ class Prony(OneOrMany):
 
     @cached_property
     def modes(self) -> Modes:
-        """Both forms of a single series, and the gaps between their rates."""
+        """Both forms of a single series, and the gaps between their rates, as :class:`.prony_forms.Modes` with rates in
+        1/T_ref.
+        """
         return self._convert(self._strengths, self._times, self.alpha)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
         """Yield materials in blocks of equal numbers of modes, for computations on whole arrays.
 
-        which: indices of the materials, (m,).
-        Yields a :class:`Block` for each number of modes that occurs, ascending; its ``rows`` are places in ``which``.
+        which: indices of the materials, (m,); empty: nothing is yielded.
+        Yields a :class:`Block` for each number of modes that occurs, ascending, without weights; its ``rows`` are
+        places in ``which``.  Elastic materials make a block of 0 modes.
         """
         counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
@@ -241,8 +254,8 @@ class Prony(OneOrMany):
     def _other_form(self) -> tuple[NDArray, NDArray]:
         """Return the modes of the form that was not given: creep if relaxation was given, and the reverse.
 
-        Returns (strengths, times), (modes,) each; for many materials (n, modes), with strength 0 and time 1 behind the
-        last mode.
+        Returns read-only arrays (strengths, dimensionless; times in units of T_ref), (modes,) each; for many materials
+        (n, modes), with strength 0 and time 1 behind the last mode.
         """
         names = ("E", "a") if self.by_creep else ("J", "b")
         if not self.shape:
@@ -280,21 +293,28 @@ class Prony(OneOrMany):
 
     @property
     def T_mean(self) -> Any:
-        """sum J_j T_j = sum E_i tau_i in units of T_ref: M = V T_mean at low speed."""
+        """sum J_j T_j = sum E_i tau_i in units of T_ref, a float or (n,): M = V T_mean at low speed; 0 of elastic
+        materials.
+        """
         return _exact_sums(self._strengths * self._times)
 
     @property
     def slow_time(self) -> float:
-        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref; slow rolling: kappa V is below its inverse."""
-        if not self.E.size:
-            return 1.0
-        return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2)) / self.T_mean
+        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref, a float or (n,): slow rolling is kappa V below
+        its inverse.
+
+        1.0 of an elastic material, also of one among others.
+        """
+        elastic = self.T_mean == 0.0
+        return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2) + elastic) / (self.T_mean + elastic)
 
     def slower(self, factor: ArrayLike) -> Prony:
         """Return the material with all times multiplied by a factor, as of a colder rubber.
 
         factor: dimensionless, > 0, a number or, of n materials, (n,).
-        Raises ParameterError for a factor that is not positive or not finite.
+        Returns a new :class:`Prony` in the same form.
+        Raises ParameterError for a factor that is not positive or not finite, and for one that makes a time 0 or
+        infinite.
 
         Examples
         --------
@@ -308,10 +328,11 @@ class Prony(OneOrMany):
         return Prony(self._strengths, times)
 
     def in_own_time(self) -> tuple[Prony, float]:
-        """Return a single series with its slow time near 1, and the unit of time that this takes.
+        """Return a single series with its :attr:`slow_time` near 1, and the unit of time that this takes.
 
-        Returns (the series with times divided by the unit; the unit in T_ref, a power of two, so that no time is
-        rounded).
+        Returns (the series with times divided by the unit, so that its slow time is within a factor of 2^(1/2) of 1;
+        the unit in T_ref, a power of two, so that no time is rounded).  With a unit of 1, as of an elastic series, the
+        series itself is returned.
         """
         return self._in_own_time
 
@@ -339,10 +360,11 @@ class Prony(OneOrMany):
 def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
     """Check modes, sort them, and add those of equal times.
 
-    names: names of both parameters, for errors.
-    strengths, times: strengths and times of the modes, (modes,) or (n, modes); dimensionless, in units of T_ref.
-    Returns (strengths, times) by descending time, (modes,) or (n, modes); modes without strength are dropped or, of
-    many materials, put behind the others.
+    names: names of strengths and times, for errors.
+    strengths, times: strengths, >= 0, and times, > 0, of the modes, (modes,) or (n, modes), or one of them a number;
+        dimensionless, times in units of T_ref.
+    Returns (strengths, times) by descending time, (modes,) or (n, modes) with as many modes as the material with most
+    has; modes without strength are dropped or, of many materials, put behind the others.
     Raises ParameterError for numbers out of range, shapes that do not fit, more than :data:`MOST_MODES` modes, and
     times that span more than :data:`LARGEST_TIME_RATIO`.
     """
@@ -369,8 +391,9 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
 def series_of_alpha(alpha: float) -> Prony:
     """Return the standard linear solid of the paper, with both forms of its series without rounding.
 
-    alpha: instantaneous divided by long-time modulus, >= 1; for 1 the series is elastic.
-    Returns a series with times in units of T_epsilon: T = 1, tau = 1/alpha.
+    alpha: instantaneous divided by long-time modulus, >= 1, not checked; for 1 the series is elastic.
+    Returns a :class:`Prony` in creep form with times in units of T_epsilon: one mode, J = (alpha - 1)/alpha, T = 1, tau
+    = 1/alpha; for 1 none.
     """
     c, one = np.array([(alpha - 1.0) / alpha]), np.ones(1)
     if alpha == 1.0:
@@ -385,7 +408,8 @@ def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floa
 
     strengths, times: strengths and times of the modes, (..., modes), any unit; not changed.
     parts: parts of the strengths, (..., modes) each, which are sorted and added like them.
-    Returns a list of new arrays [strengths, times, *parts], each (..., modes).
+    Returns a list of new arrays [strengths, times, *parts], each (..., modes).  Of modes of equal times one has the sum
+    of the strengths; the others have strength 0 and stand behind.
     """
     order = np.argsort(-times, axis=-1, kind="stable")
     values, each, *rest = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts))
@@ -399,7 +423,11 @@ def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floa
 
 
 def _exact_sums(values: NDArray) -> Any:
-    """Return sums over the modes, correctly rounded: a number of ``values`` (modes,), an array of (n, modes)."""
+    """Return sums over the modes, correctly rounded.
+
+    values: (modes,) or (n, modes).
+    Returns a float, or an array (n,); 0 without modes.
+    """
     rows = values.tolist()
     return math.fsum(rows) if values.ndim == 1 else np.array([math.fsum(row) for row in rows])
 
@@ -407,8 +435,9 @@ def _exact_sums(values: NDArray) -> Any:
 def lock_array(values: Any) -> Any:
     """Make an array read-only.
 
-    values: a contiguous array, which is locked itself, or another one, of which a contiguous copy is made.
-    Returns the array that was locked.
+    values: a contiguous array, which is locked itself and so read-only for the caller too; or another one, of which a
+        contiguous copy is made and locked.
+    Returns the array that was locked.  A scalar becomes an array (1,).
     """
     values = np.ascontiguousarray(values)
     values.flags.writeable = False

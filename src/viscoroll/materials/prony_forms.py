@@ -1,7 +1,10 @@
 """Conversion between the relaxation and the creep form of a series, for one material or many at once.
 
-The rates of one form are the zeros of a sum over the poles of the other.  The unknown is the distance of a zero from
-the nearer pole, so that the gaps a_i - b_j keep all digits; the strengths are products of gaps.
+A series of N modes has the relaxation form E(t) = 1 + sum E_i exp(-a_i t) and the creep form J(t) = 1 - sum J_j
+exp(-b_j t), over the long-time modulus and compliance, with 1/alpha = 1 - sum J_j and alpha = 1 + sum E_i.  The rates
+of one form are the zeros of a sum over the poles of the other, and they alternate: b_1 < a_1 < b_2 < ... < a_N.  The
+unknown is the distance of a zero from the nearer pole, so that the gaps a_i - b_j keep all digits; the strengths are
+products of gaps.
 """
 
 from __future__ import annotations
@@ -33,12 +36,13 @@ _CLOSEST = 1e-300
 class Modes:
     """Relaxation and creep form of one material, or of many along leading axes, and the gaps between their rates.
 
+    All arrays are empty along the modes for an elastic material.
     alpha : instantaneous divided by long-time modulus, a number or (...).
     a : rates of relaxation, 1/tau_i, in units of 1/T_ref, ascending, (..., modes).
     b : rates of creep, 1/T_j, in units of 1/T_ref, ascending, (..., modes).
     E : strengths of relaxation divided by the long-time modulus, (..., modes).
     J : strengths of creep divided by the long-time compliance, (..., modes).
-    gap : a_i - b_j, (..., modes, modes), [..., j, i].
+    gap : a_i - b_j, in units of 1/T_ref, (..., modes, modes), [..., j, i]; positive where i >= j, else negative.
     """
 
     alpha: Any
@@ -52,10 +56,10 @@ class Modes:
 def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     """Compute the creep form of a series from its relaxation form.
 
-    E: strengths divided by the long-time modulus, > 0, (..., modes).
-    tau: relaxation times, descending, (..., modes).
+    E: strengths divided by the long-time modulus, > 0, (..., modes); of any number of modes, also 0.
+    tau: relaxation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1 + sum E, a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``tau``.
+    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``tau``; E is that of the argument.
     """
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
@@ -69,10 +73,10 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
 def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     """Compute the relaxation form of a series from its creep form.
 
-    J: strengths divided by the long-time compliance, > 0, (..., modes).
-    T: retardation times, descending, (..., modes).
+    J: strengths divided by the long-time compliance, > 0, (..., modes); of any number of modes, also 0.
+    T: retardation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1/(1 - sum J), a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``T``.
+    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``T``; J is that of the argument.
     """
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
@@ -86,23 +90,24 @@ def _rate_differences(times: NDArray) -> Floats:
     For close times their difference is exact, that of the rounded rates is not.
 
     times: relaxation or retardation times, > 0, (..., modes).
-    Returns rate[j] - rate[l] as (..., modes, modes), [..., j, l].
+    Returns rate[j] - rate[l] as (..., modes, modes), [..., j, l], in the inverse unit of the times; 0 on the diagonal.
     """
     row, column = times[..., None, :], times[..., :, None]
     return (row - column) / (column * row)
 
 
 def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """Return the gaps between the zeros s_i of constant + sum weight_j/(pole_j - s) and its poles, to full relative
+    """Return the gaps between the zeros of constant + sum weight_j/(pole_j - s) and its poles, to full relative
     accuracy.
 
-    The sum increases from pole to pole: one zero lies between two neighbours, and one right of the last if
-    ``constant`` > 0.  Zeros are found by halving ln(distance from the nearer pole), then by Newton's method.
+    The sum increases from pole to pole: one zero s_i lies between two neighbours, and one right of the last if
+        ``constant`` > 0.  Zeros are found by halving ln(distance from the nearer pole), then by Newton's method.
 
-    spread: pole_j - pole_l, (..., poles, poles), [..., j, l]; poles are ascending.
+    spread: pole_j - pole_l, (..., poles, poles), [..., j, l]; poles are ascending and different.
     weight: weights of the poles, positive, (..., poles).
     constant: the constant, (...): > 0 for all, or 0 for all.
-    Returns gap[..., j, i] = s_i - pole_j, (..., poles, zeros), zeros ascending.
+    Returns gap[..., j, i] = s_i - pole_j, (..., poles, zeros), in the unit of the poles, zeros ascending: as many as
+    poles for a positive constant, one fewer for 0.
     """
     poles, constant = weight.shape[-1], constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
@@ -125,21 +130,23 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
 
 
 def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
-    """Return pole_j - pole of the origin of zero i, [..., i, j].
+    """Return the poles relative to the origin of each zero, that pole from which the zero is measured.
 
-    origin: index of the pole that each zero is measured from, (..., zeros).
-    spread: pole_j - pole_l, [..., j, l].
+    origin: index of the origin of each zero, (..., zeros).
+    spread: pole_j - pole_l, (..., poles, poles), [..., j, l].
+    Returns pole_j - pole of the origin of zero i, (..., zeros, poles), [..., i, j].
     """
     return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
 
 
 def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """Return constant + sum weight_j/(pole_j - s) at s = pole[origin] + step, (..., zeros).
+    """Return constant + sum weight_j/(pole_j - s) at one s for each zero, s = pole[origin] + step.
 
-    step: distance of s from the pole of its origin, (..., zeros).
-    seen: poles relative to the origin of each zero, [..., i, j].
+    step: signed distance of s from the pole of its origin, not 0, (..., zeros).
+    seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
     weight: weights of the poles, (..., poles).
     constant: the constant, (..., 1).
+    Returns (..., zeros).
     """
     return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 
@@ -150,7 +157,7 @@ def _improve_distance(
     """Improve the distances of zeros from their poles by one step of Newton's method.
 
     The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.  A step
-    that would halve or double a distance is left out.
+    that would halve or double a distance is left out, and that distance stays as it is.
 
     distance: distance of each zero from its origin, the pole that it is measured from, > 0, (..., zeros).
     origin: index of that pole, (..., zeros).
@@ -158,7 +165,7 @@ def _improve_distance(
     seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
     weight: weights of the poles, (..., poles).
     constant: the constant of the sum, (..., 1).
-    Returns the distances, (..., zeros), in the unit of the poles.
+    Returns the distances, > 0, (..., zeros), in the unit of the poles.
     """
     inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)
@@ -175,12 +182,13 @@ def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
     """Return the strengths of both forms of a series from the differences between the rates of the two forms.
 
     A strength times its rate is a product of gaps between rates of the two forms, divided by differences of rates of
-    one form.  The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits
-    cancel.  Factors are paired so that nothing overflows.
+    one form.  The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.
+    Factors are paired so that nothing overflows.
 
-    gap: a_i - b_j, rates of relaxation minus rates of creep, (..., modes, modes), [..., j, i].
+    gap: a_i - b_j, rates of relaxation minus rates of creep, in any unit, (..., modes, modes), [..., j, i].
     alpha: instantaneous divided by long-time modulus, a number or (...).
-    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, (..., modes).
+    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, in the unit of the gaps, (..., modes)
+    each, > 0.
     """
     size, own = np.abs(gap), np.eye(gap.shape[-1], dtype=bool)
     nearest, alpha = np.diagonal(size, 0, -2, -1), np.asarray(alpha)[..., None]

@@ -63,7 +63,9 @@ class WLF:
         object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
-        """Return a_T at a ``temperature`` in degrees Celsius."""
+        """Return a_T at a ``temperature``, degrees Celsius: dimensionless, > 0, 1 at T0.  Raises ParameterError as the
+        class states.
+        """
         above = check_celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
             allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, where the WLF shift is infinite, in degrees Celsius"
@@ -107,7 +109,9 @@ class Arrhenius:
         object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
-        """Return a_T at a ``temperature`` in degrees Celsius."""
+        """Return a_T at a ``temperature``, degrees Celsius: dimensionless, > 0, 1 at T0.  Raises ParameterError as the
+        class states.
+        """
         kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
 
@@ -118,18 +122,24 @@ def check_celsius(name: str, temperature: Any) -> float:
     Parameters
     ----------
     name : name of the parameter, for the error and the warning.
-    temperature : number of degrees Celsius, or a value with a unit of temperature; above absolute zero.
+    temperature : number of degrees Celsius, or a value with a unit of temperature, which is converted; above absolute
+        zero.
+
+    Returns
+    -------
+    float
+        Degrees Celsius; also where it warns.
 
     Raises
     ------
     ParameterError
-        A value that is no finite number above -273.15.
+        A value that is no single finite number above -273.15.
 
     Warns
     -----
     ModelWarning
-        A temperature outside :data:`USUAL_RANGE`.  The text contains no value, so that Python shows it once for each
-        line of a program.
+        A temperature outside :data:`USUAL_RANGE`, -150 to 200.  The text contains no value, so that Python shows it
+        once for each line of a program.
     """
     found = check_number(name, temperature, unit="degC", above=ABSOLUTE_ZERO)
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
@@ -143,13 +153,13 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
     """Return the ratio of times at a temperature to those at a reference, a_T(temperature)/a_T(reference).
 
     The ratio is the same whatever temperature the constants of the shift refer to: WLF and Arrhenius keep their form
-    when they are converted to another (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
+        when they are converted to another (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
 
     Parameters
     ----------
-    shift : function that returns a_T, > 0, at a temperature in degrees Celsius.
-    temperature : degrees Celsius.
-    reference : degrees Celsius; None: the temperature at which the shift is 1.
+    shift : function that returns a_T, dimensionless, > 0, at a temperature in degrees Celsius.
+    temperature : degrees Celsius; None: the temperature at which the shift is 1.
+    reference : degrees Celsius; None likewise.
 
     Returns
     -------
@@ -159,31 +169,32 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
     Raises
     ------
     ParameterError
-        A temperature that the shift does not allow; a shift that returns no finite positive number.
+        A temperature that the shift does not allow; a shift that returns no finite positive number; a ratio that no
+        double holds.
     """
     factor, unit = (1.0 if at is None else check_number("a_T", shift(at), above=0.0) for at in (temperature, reference))
     return check_number("a_T", factor / unit, above=0.0)
 
 
 def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
-    """Check that fields of a frozen dataclass are numbers above lower bounds, and replace them by floats in their
-    unit.
+    """Check that fields of a frozen dataclass are numbers above lower bounds, and replace them by floats in their unit.
 
-    instance: the dataclass, which is changed.
-    unit: unit of all these fields, as "rad s-1", or an object that has units by name.
-    lows: lower bound of each field by name; the number must be larger.
-    Raises ParameterError for the first field that is no such number.
+    instance: the dataclass, whose fields are changed in place, one after another; at an error those before it are
+        changed.
+    unit: unit of all these fields, as "rad s-1", or an object that has units by name, as SI (default).
+    lows: lower bound of each field by name, in that unit; the number must be larger.
+    Raises ParameterError for the first field that is no such number, or is infinite.
     """
     for name, low in lows.items():
         object.__setattr__(instance, name, check_number(name, getattr(instance, name), unit=unit, above=low))
 
 
 def _shift(temperature: float, exponent: float) -> float:
-    """Return a_T = exp(exponent).
+    """Return a_T = exp(exponent), dimensionless, > 0.
 
     temperature: degrees Celsius, for the error.
-    exponent: ln a_T.
-    Raises ParameterError where a_T is beyond the range of doubles.
+    exponent: ln a_T; NaN is refused too.
+    Raises ParameterError for an exponent of 700 or more in size, near which a_T leaves the range of doubles.
     """
     if not abs(exponent) < 700.0:
         raise ParameterError(

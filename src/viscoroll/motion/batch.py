@@ -83,8 +83,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     "flow" neither.
 
     Motions that stay in the indentation of a standstill (``immobile``) are not integrated: they have status CAUGHT and
-    NaN in all quantities, onset and rest times.  Their ``flow`` and number of switches are those of the look-up that
-    NaN has overwritten, if there was one.
+    NaN in all quantities, onset and rest times, no switches, and ``flow`` is False.
 
     batch: :class:`Batch`, the motions.
     method: "auto" (a map is tried from :data:`FLOW_PAYS` motions on), "flow" (for any number) or "integrate" (never),
@@ -96,22 +95,22 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     Returns the :class:`Solution`; a motion that could not be integrated to its end has a status above RESTED, and NaN
     at the times that it did not reach.
     """
-    scene = batch.problem.scene
+    scene, immobile = batch.problem.scene, batch.immobile
     free = not batch.problem.driven and scene.like_bodies
     if method == "flow" and (scene.shape or not free):
         which = "motions have different scenes" if free else "motions are driven or unsteady, or bodies differ"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
-    mapped = method == "flow" or (method == "auto" and batch.immobile.size >= FLOW_PAYS)
+    mapped = method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)
     if free and not scene.shape and mapped:
         found = _solve_by_flow_map(batch, speed, about)
     if found is None:
-        found = FlowResult.empty(len(batch.rows), batch.immobile.size, batch.times.size)
-    about["flow"] = found.status >= 0
-    if (immobile := batch.immobile).any():
+        found = FlowResult.empty(len(batch.rows), immobile.size, batch.times.size)
+    about["flow"] = (found.status >= 0) & ~immobile
+    if immobile.any():
         found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
-        found.status[immobile] = MotionStatus.CAUGHT
+        found.status[immobile], found.switches[immobile] = MotionStatus.CAUGHT, 0
     about["steps"] = _integrate_others(found, batch)
     return Solution(found, about)
 

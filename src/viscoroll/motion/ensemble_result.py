@@ -183,7 +183,8 @@ class Ensemble(RollResult):
             if (values := getattr(self, name)) is not None:
                 speeds[name] = np.fmax(start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
         index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
-        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], self.V0 * self.omega0)[index])
+        sense = self.V0 * self.omega0 + 0.0  # +0 from rest: friction moves the axis in the sense of the rotation
+        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return title and rows of the printed report, a list of :class:`SummaryRow`.

@@ -76,12 +76,13 @@ def equilibrium_tolerance(rtol):
 
 @inline_kernel
 def may_be_at_equilibrium(noise, work):
-    """Return whether V at node 0 may be near its equilibrium, a check that costs no evaluation of the law.
+    """Return whether p at node 0 may be near its equilibrium, a bool: a check that costs no evaluation of the law.
 
-    V is estimated to be p'/(dp'/dp) away from the equilibrium; the relative distance is compared with twice the
-    tolerance.  Where this holds, :func:`find_equilibrium` decides.
+    p is estimated to be p'/(dp'/dp) away from the equilibrium, and the noise may explain a part of p'; this distance is
+    compared with twice the tolerance of an equilibrium times |p|.  Where dp'/dp >= 0 there is no stable equilibrium,
+    and the result is True only for a p' within the noise.  If True, :func:`find_equilibrium` decides.
 
-    noise: float, rounding error of p', dimensionless.
+    noise: float, rounding error of p', at least 0, dimensionless.
     work: Workspace, with p, p' and dp'/dp at node 0.
     """
     nodes, tolerance = work.nodes, equilibrium_tolerance(work.options.rtol)
@@ -92,14 +93,17 @@ def may_be_at_equilibrium(noise, work):
 def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
     """Return the equilibrium of V in full slip and whether V has reached it, by one Newton step.
 
-    V has no equilibrium here where omega approaches V, or 0 under a brake, or where a feedback of omega acts.
+    V has no equilibrium here where omega approaches V, or 0 under a brake, where feedback of omega acts on either
+    speed, or where V' does not decrease with V.
 
     state: State, the present one.
     rates: Rates, at that state.
     regime: Regime, of full slip.
     noise: float, rounding error of p', dimensionless.
     tolerance: float, relative distance of V at which it has reached its equilibrium.
-    Returns (whether V has reached it, State after the Newton step); (False, state) where V has no equilibrium.
+    Returns (reached, State): whether the Newton step is at most ``tolerance`` times V plus the part of it that
+    ``noise`` explains; the State after the step, reached or not, with omega unchanged.  (False, state) where V has no
+    equilibrium.
     """
     if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
         return False, state
@@ -113,16 +117,18 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
 def find_equilibrium(state, regime, noise, step_state, work):
     """Return the stable equilibrium under the present drive and whether the motion has reached it.
 
-    The motion has reached it if the Newton step to it is below the tolerance, of V relative to itself and of d, or
-    below rounding.
+    The motion has reached it if the Newton step to it is below the tolerance, of V relative to itself and of d in
+    absolute terms, or below rounding.  In full slip the equilibrium is that of V alone
+    (:func:`_equilibrium_full_slip`).  The Jacobian of the present state decides whether the equilibrium is stable.
 
-    state: State, the present one, with V > 0.
+    state: State, the present one, with V > 0 in partial slip.
     regime: Regime, at that state.
     noise: float, rounding error of p' at the equilibrium, dimensionless.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
-    Returns (whether the motion has reached it, State after the Newton step); (False, state) where the equilibrium is
-    not stable, or in partial slip with a speed prescribed.
+    Returns (reached, State): a bool, and the State after the Newton step, reached or not, with V at least 0 in partial
+    slip. (False, state) where the equilibrium is not stable, and in partial slip where a speed is prescribed or the
+    brake holds omega.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
@@ -151,16 +157,17 @@ def find_equilibrium(state, regime, noise, step_state, work):
 def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     """Write the outputs up to the end of a segment if a motion has reached its equilibrium.
 
-    V is constant there, and d in partial slip; omega is linear in full slip.
+    V is constant there, and d in partial slip; omega is linear in time in full slip.
 
     end: float, tau at the end of the segment.
     noise: float, rounding error of p', dimensionless.
-    state: State, the present one, with V > 0.
+    state: State, the present one, with V > 0 in partial slip.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; nodes and outputs are written.
-    Returns (whether it has reached it, State, StepState): both at the end of the segment with one trial step more, or
-    both unchanged.
+    work: Workspace, of the motion; where the equilibrium is reached, nodes, dense output, drive at the nodes, outputs
+    and quadratures are written.
+    Returns (reached, State, StepState): whether the motion has reached it; both at the end of the segment, with one
+    trial step and one accepted step more and the length of the next step not chosen, or both unchanged.
     """
     steady, equilibrium = find_equilibrium(state, regime, noise, step_state, work)
     if not steady:
@@ -180,10 +187,11 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
 
 @inline_kernel
 def is_coasting(state, regime, step_state, work):
-    """Return whether V decays exponentially from here on, to a fraction of the tolerance.
+    """Return whether V decays exponentially from here on, to a fraction of the tolerance; a bool.
 
-    It does in slow rolling in partial slip where no force or torque acts, or only feedback below the rolling
-    resistance.
+    It does in partial slip at 0 < V < 1e-4 rtol times the moderate speed with |d| < 0.01 rtol, if the rolling
+    resistance exceeds the feedback and no force, torque, brake or prescribed speed acts from this segment on.  Where
+    alpha = 1 there is no rolling resistance, and V decays only under a feedback that brakes.
 
     state: State, the present one.
     regime: Regime, at that state.
@@ -202,11 +210,15 @@ def is_coasting(state, regime, step_state, work):
 def _energies_of_decay(rate, inertia, torque_difference, work):
     """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the start.
 
-    rate: float, rate of the decay per unit of tau.
+    Of half-spaces the loss in slip is of higher order and counts as 0, and the loss in rolling is the kinetic energy
+    plus the works of the feedback.  Of a cover, which slips in free rolling, both follow from traction and moments.
+
+    rate: float, rate of the decay of V per unit of tau.
     inertia: float, factor of V' in the equation of the decay, dimensionless.
-    torque_difference: float, inertia times Q/V, dimensionless.
+    torque_difference: float, inertia times Q/V, dimensionless; only a cover needs it.
     work: Workspace, of the motion.
-    Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the brake), dimensionless.
+    Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the brake), floats,
+    dimensionless, in the order of the quadratures; the last is 0, as no brake acts.
     """
     half_space, cylinder, force, torque = low_speed_limits(work)
     delta_0, force_work, torque_work = rest_limits(work.scene)[1], force / rate, torque / rate
@@ -219,14 +231,22 @@ def _energies_of_decay(rate, inertia, torque_difference, work):
 
 @kernel
 def coast_to_end(state, regime, step_state, work):
-    """Write the remaining outputs by the closed form of slow rolling, (1 + j + gamma N) V' = -rate V with delta/V
-    constant.
+    """Write the remaining outputs by the closed form of slow rolling, V' = -rate V with delta - delta_0 proportional to
+    V.
 
-    state: State, the present one, in partial slip.
-    regime: Regime, at that state.
+    The rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit V -> 0 and
+    inertia = 1 + j (1 + delta_0) + gamma N.  With a rest threshold the motion ends when the larger speed has fallen to
+    it: from then on V = omega = 0, forces of 0, delta = delta_0 and the code AT_REST are written, and the kinetic
+    energy that is left counts as lost.
+
+    state: State, the present one, in partial slip; its V is the start of the decay, its d is replaced by that of the
+    decay.
+    regime: Regime, at that state; ``direction`` is read.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; outputs are written.
-    Returns (status, StepState at the last output); the status is COMPLETED, or CAME_TO_REST below the rest threshold.
+    work: Workspace, of the motion; all outputs from ``next_output`` on are written, and REST_TIME where the motion
+    comes to rest.  The change of regime to AT_REST is not recorded among the switches.
+    Returns (status, StepState): CAME_TO_REST if the threshold is reached at or before the last output time, else
+    COMPLETED; the StepState at the last output time, with the numbers of steps unchanged.
     """
     scene, direction = work.scene, regime.direction
     half_space, cylinder, force, torque = low_speed_limits(work)

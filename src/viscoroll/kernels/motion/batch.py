@@ -35,9 +35,9 @@ N_INFO_COLUMNS = len(INFO_COLUMNS)
 class Drives(NamedTuple):
     """Drives of many motions.
 
-    segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of :mod:`records`
-    gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains`
-    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
+    segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of :mod:`records`, with
+    times and slopes in t, not in tau gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains` prescribed
+    : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
     """
 
     segments: Any
@@ -55,11 +55,14 @@ def _value_of_motion(array, i):
 def _drive_of_motion(drives, gamma, i, segments):
     """Write the segments of one motion as functions of tau = gamma t.
 
-    drives: Drives, over t.
+    Start, scale of time and the slope of the prescribed speed are converted from t to tau; forces, torques and the
+    prescribed speed are copied.
+
+    drives: Drives, over t; one for all motions, or one for each.
     gamma: float, tau = gamma t, dimensionless.
     i: int, index of the motion.
     segments: (k, columns), written.
-    Returns the Gains of the motion.
+    Returns the Gains of the motion, those of the last one given if there are fewer.
     """
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
     for k in range(segments.shape[0]):
@@ -79,15 +82,18 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
 
     Batch, Drives and Options come as plain tuples: numba needs microseconds to find the type of a record.
 
-    batch: :class:`Batch`, parameters and starts.
-    drives: :class:`Drives`, over t.
+    batch: fields of a :class:`Batch`, parameters and starts of n motions; n is the length of the second axis of
+    ``out``.
+    drives: fields of :class:`Drives`, over t.
     t: (k,), output times, dimensionless, increasing.
-    options: :class:`Options`, of the integration.
+    options: fields of :class:`Options`, of the integration.
     rows: (q,) int, requested output rows of :mod:`output`.
-    out: (q, n, k), [quantity, motion, time], filled.
-    info: (n, 5), [motion, INFO_COLUMNS], filled.
-    notes: (switches, step_ends), arrays (m, 2) and (k,), filled with the regime changes and the ends of the steps of
-    the last motion.
+    out: (q, n, k), [quantity, motion, time], filled; NaN at times that a motion did not reach.
+    info: (n, 5), [motion, INFO_COLUMNS], filled: status (a code of :mod:`records`), trial steps, regime changes, and t
+    of the onset of stick and of coming to rest, NaN where they do not occur.
+    notes: (switches, step_ends), arrays (m, 2) and (l,).  Each motion writes its regime changes, t and code, and the
+    ends t of its steps from their starts on, as far as they have room: they are meant for a single motion, as entries
+    that a motion does not write are left as they were.
     """
     motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
     (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes

@@ -44,10 +44,11 @@ EXTRAPOLATION_TO_START = _INNER.values([Decimal(-1)])[0]
 
 
 def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
-    """Divide polynomials in t that vanish at t = -1 by 1 + t.
+    """Divide polynomials in t that vanish at t = -1 by 1 + t, by synthetic division.
 
     powers: (n, m), coefficients of m polynomials in ascending powers of t.
-    Returns (n - 1, m), coefficients of the quotients.
+    Returns (n - 1, m), coefficients of the quotients in ascending powers; the remainder of a polynomial that does not
+    vanish at -1 is dropped.
     """
     found, quotient = np.zeros_like(powers[1:]), 0.0
     for k in range(len(powers) - 1, 0, -1):
@@ -80,11 +81,11 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     """Write the product of a matrix and a row, from whose values ``offset`` is subtracted.
 
     matrix: ROW_LENGTH^2 numbers, column by column.
-    row: int, index in ``values`` at which the row begins.
+    row: int, index in ``values`` at which the row of ROW_LENGTH numbers begins.
     offset: float, subtracted from each value of the row.
     values: array or pointer that contains the row.
     target: int, index in ``result`` from which the product is written.
-    result: array or pointer, ROW_LENGTH numbers of which are written.
+    result: array or pointer, ROW_LENGTH numbers of which are written; it may be ``values``, as all are read before.
     """
     low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
@@ -99,7 +100,8 @@ def multiply_matrix(matrix, row, offset, values, target, result):
 def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     """Write diag(weights) D - diag(diagonal), the matrix of a linear system of :mod:`step`.
 
-    D is the differentiation matrix.  Row and column of node 0 are 0 or unchanged: node 0 is given.
+    D is the differentiation matrix.  Node 0 is given, not an unknown: the column of node 0 is not written, and in the
+    other columns the entry of node 0 is 0.
 
     weights, diagonal: int, indices in ``nodes`` of the rows with the numbers of either diagonal matrix.
     nodes: Workspace.nodes.
@@ -120,11 +122,13 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
 def _eliminate(i, matrix):
     """Do one step of the inversion of a Newton matrix in place, by Gauss and Jordan with the pivot on the diagonal.
 
-    Only whole vectors are stored: a vector load behind the store of a single number into it would wait for that store.
+    After the steps 1 ... N the matrix holds its inverse.  Only whole vectors are stored: a vector load behind the store
+    of a single number into it would wait for that store.
 
     i: int, 1 ... N, number of the step and index of the row and column of its pivot; row and column of node 0 are left
     out.
-    matrix: pointer to ROW_LENGTH^2 numbers, column by column.
+    matrix: pointer to ROW_LENGTH^2 numbers, column by column; columns 1 ... N are changed.  A pivot of 0 leaves inf and
+    NaN.
     """
     column = ROW_LENGTH * i
     pivot = broadcast(1.0 / matrix[column + i])
@@ -144,9 +148,11 @@ def _eliminate(i, matrix):
 def invert_matrix(matrix):
     """Invert a Newton matrix in place, by Gauss-Jordan elimination without pivoting.
 
-    Where a small pivot costs digits, Newton's iteration does not converge, and the step is repeated shorter.
+    Row and column of node 0 are left out.  Where a small pivot costs digits, Newton's iteration does not converge, and
+    the step is repeated shorter; a pivot of 0 leaves inf and NaN in the matrix, with the same effect.
 
-    matrix: pointer to ROW_LENGTH^2 numbers, column by column.
+    matrix: pointer to ROW_LENGTH^2 numbers, column by column, as :func:`assemble_newton_matrix` writes them;
+    overwritten by the inverse.
     """
     for i in range(1, ROW_LENGTH):
         _eliminate(i, matrix)
@@ -156,7 +162,7 @@ def invert_matrix(matrix):
 def invert_two_matrices(first, second):
     """Invert two Newton matrices in place, step by step in turn: the processor works on one while the other waits.
 
-    first, second: pointers to ROW_LENGTH^2 numbers each, column by column, as for :func:`invert_matrix`.
+    first, second: pointers to ROW_LENGTH^2 numbers each, column by column, overwritten as by :func:`invert_matrix`.
     """
     for i in range(1, ROW_LENGTH):
         _eliminate(i, first)
@@ -167,8 +173,15 @@ def invert_two_matrices(first, second):
 def fit_dense_output(row, target, nodes):
     """Store the coefficients of the interpolant of a row, less its value at the left end.
 
+    With t in [-1, 1] on the step and v = 1 + t the interpolant through all nodes is
+
+        nodes[row] + v (c_0 + c_1 t + ... + c_(N-1) t^(N-1))
+
+    The value nodes[row] at the left end is not among the coefficients.
+
     row: int, index in ``nodes`` of the values at all nodes.
-    target: int, index in ``nodes`` of the coefficients, for :func:`evaluate_dense_output`.
+    target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in the unit of the row,
+    and a 0.
     nodes: Workspace.nodes.
     """
     multiply_matrix(_DENSE_MATRIX, row, nodes[row], nodes, target, nodes)
@@ -178,8 +191,16 @@ def fit_dense_output(row, target, nodes):
 def fit_integral(row, target, nodes):
     """Store the coefficients of the integral of the interpolant of a row.
 
+    With t in [-1, 1] on the step and v = 1 + t the integral over t from the left end is
+
+        v (nodes[row] + v (c_0 + c_1 t + ... + c_(N-1) t^(N-1)))
+
+    It is over t, so that half the length of the step is still to be multiplied.  The value nodes[row] at the left end
+    is not among the coefficients: :func:`evaluate_integral` takes it as an argument.
+
     row: int, index in ``nodes`` of the values at all nodes.
-    target: int, index in ``nodes`` of the coefficients, for :func:`evaluate_integral`.
+    target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in the unit of the row,
+    and a 0.
     nodes: Workspace.nodes.
     """
     multiply_matrix(_INTEGRAL_MATRIX, row, nodes[row], nodes, target, nodes)
@@ -187,11 +208,12 @@ def fit_integral(row, target, nodes):
 
 @inline_kernel
 def evaluate_dense_output(v, nodes, row):
-    """Return the interpolant of a row at a position, less its value at the left end; in the unit of the row.
+    """Return the interpolant of a row at a position, less its value at the left end; a float in the unit of the row.
 
-    v: float, position in [0, 2] on the step.
+    v: float, position on the step, 0 at its left end, where the result is 0, and 2 at its right end; beyond 2 the
+    polynomial is extrapolated.
     nodes: Workspace.nodes.
-    row: int, index of the coefficients of :func:`fit_dense_output`.
+    row: int, index in ``nodes`` of the coefficients of :func:`fit_dense_output`.
     """
     t, value = v - 1.0, 0.0
     for k in range(ROW_LENGTH - 1, -1, -1):
@@ -201,15 +223,15 @@ def evaluate_dense_output(v, nodes, row):
 
 @inline_kernel
 def evaluate_integral(v, first, nodes, row):
-    """Return the integral of the interpolant of a row from the left end to a position.
+    """Return the integral of the interpolant of a row from the left end to a position; a float in the unit of the row.
 
     It is over t in [-1, 1]: times half the length of the step it is the integral over tau.  It is accurate relative to
     itself as v -> 0.
 
     v: float, position in [0, 2] on the step.
-    first: float, value of the row at the left end.
+    first: float, value of the row at the left end, which is not among the coefficients.
     nodes: Workspace.nodes.
-    row: int, index of the coefficients of :func:`fit_integral`.
+    row: int, index in ``nodes`` of the coefficients of :func:`fit_integral`.
     """
     return v * (first + evaluate_dense_output(v, nodes, row))
 

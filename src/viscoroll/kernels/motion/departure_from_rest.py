@@ -16,7 +16,9 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
   whether the brake holds omega at 0.
-- Load: force, torque, largest torque of the brake and prescribed slopes at one time, in the direction of the Regime.
+- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
+  torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
+  prescribed or held by the brake) and the gains of the feedback.
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
@@ -61,10 +63,10 @@ _NEGLIGIBLE_FORCE = 1e-75
 def _residual_of_d(d, load, scene):
     """Evaluate the equation of d at V = 0, of the module: its left side less its right side.
 
-    d: float, delta/delta_star.
-    load: Load, at V = 0, with brake and added mass in it.
-    scene: Scene, parameters of Eq. (22).
-    Returns (residual, its slope in d, V'), dimensionless.
+    d: float, delta/delta_star, in [-1, 1]; of a cover that of the excess over free rolling.
+    load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
+    scene: Scene, parameters of Eq. (22); mu > 0.
+    Returns (residual, its slope in d, V'), floats, dimensionless.
     """
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
@@ -78,7 +80,10 @@ def _residual_of_d(d, load, scene):
 
 @inline_kernel
 def _d_at_zero_omega(scene):
-    """Return the d at which omega stays 0 as V grows from 0, dimensionless; above -1 only where mu > 2 kappa.
+    """Return the d at which omega stays 0 as V grows from 0, that of delta = -1; a float below 0, dimensionless.
+
+    It is above -1, so that omega can stay 0 in partial slip, only where mu L > 2 kappa (1 + delta_0); of half-spaces,
+    where L = 1 and delta_0 = 0 at rest, that is mu > 2 kappa.
 
     scene: Scene, parameters of Eq. (22).
     """
@@ -88,12 +93,16 @@ def _d_at_zero_omega(scene):
 
 @kernel
 def _spin_against_brake(load, scene):
-    """Return the sign with which omega grows from 0 under a brake, or that the brake holds it, as V grows from 0.
+    """Return what omega does under a brake while V grows from 0: the sign with which it grows, and whether it stays 0.
+
+    The brake can hold omega in partial slip only where friction is so strong that d at omega = 0 is above -1
+    (:func:`_d_at_zero_omega`); it holds it where the torque that the traction there leaves is at most its own.
 
     load: Load, at V = 0, with a brake.
     scene: Scene, parameters of Eq. (22).
-    Returns (sign of omega, whether the brake holds omega at 0 instead).  The brake holds it where mu > 2 kappa and the
-    torque that the traction at omega = 0 leaves is below that of the brake.
+    Returns (sign, held): sign of omega, 1.0 where d at omega = 0 is at most -1, as omega then grows with V, else that
+    of the torque that is left, 0.0 for none; held, whether the brake holds omega at 0, in which case the sign is to be
+    ignored.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
@@ -107,8 +116,10 @@ def _effective_load(load, spin_sign, scene):
     """Return the Load that contains the torque of the brake and the effect of the added mass on V' and omega'.
 
     load: Load, at V = 0.
-    spin_sign: float, sign of omega against the brake; 0 without one.
+    spin_sign: float, sign of omega against which the brake acts; 0 for none.
     scene: Scene, with the added mass.
+    Returns ``load`` with other ``torque``, ``inverse_mass`` and ``inverse_inertia``; without brake and added mass they
+    stay too.  The field ``brake`` stays although its torque is in ``torque``.
     """
     force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
     half_n = 0.5 * added_inertia(0.0, scene)[0]
@@ -128,12 +139,13 @@ def _local_maximum_of_residual(load, scene):
 
         -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
 
-    where C = inverse_mass f + V_rate, so that the larger zero of the slope is the maximum.  Of a half-space at rest
-    L = 1 and delta_0 = 0.
+    where C = inverse_mass f + V_rate, so that the larger zero of the slope is the maximum.  Of a half-space at rest L =
+    1 and delta_0 = 0.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum is
+    returned.
 
-    load: Load, at V = 0, with brake and added mass in it.
+    load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
     scene: Scene, parameters of Eq. (22).
-    Returns d there, dimensionless; -inf where the cubic decreases for all d.
+    Returns d there, a float, dimensionless, which may lie outside [-1, 0]; -inf where the cubic decreases for all d.
     """
     L, delta_0 = rest_limits(scene)
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
@@ -148,10 +160,15 @@ def _local_maximum_of_residual(load, scene):
 def solve_d_at_departure(load, spin_sign, scene):
     """Solve the equation of d at V = 0, of the module, by a bracketed Newton iteration.
 
+    Where friction is strong (mu > 2 kappa for half-spaces) the residual need not decrease everywhere: a root above the
+    d of omega = 0 is taken if the residual is positive there, else one between that d and the local maximum below it.
+    If omega is held at 0, d is that of omega = 0.
+
     load: Load, at V = 0.
-    spin_sign: float, sign of omega against a brake; 0 without one.
+    spin_sign: float, sign of omega against which a brake acts; 0 without one, or where it holds omega.
     scene: Scene, parameters of Eq. (22).
-    Returns (whether the cylinder can roll off in partial slip with V > 0, d); d = 0 where there is no root.
+    Returns (can_roll, d): whether the cylinder can roll off in partial slip, that is there is a root with |d| < 1 and
+    V' > 0 there; d of the root, also where V' <= 0, dimensionless.  (False, 0.0) where there is no root.
     """
     load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
     d_zero = _d_at_zero_omega(scene)  # The residual decreases above this d.
@@ -182,11 +199,17 @@ def solve_d_at_departure(load, spin_sign, scene):
 def holding_margin(load, mu):
     """Return the margin by which friction and brake hold the cylinder at V = omega = 0; below 0 where it moves.
 
-    A traction within +-mu must leave V constant, and omega too, which a brake may help with.
+    A traction within +-mu must leave V constant, and omega too, which a brake may help with:
 
-    load: Load, at V = omega = 0.
+    - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|; a sum of
+      1e-75 or less counts as 0.  Without a brake the margin is at most 0, and 0 only where the sum is 0;
+    - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the motor;
+    - omega prescribed to stay 0: mu - |force|.
+
+    load: Load, at V = omega = 0, where feedback vanishes.
     mu: float, coefficient of friction.
-    Returns the margin as a force or torque, dimensionless; -1 where a prescribed speed moves it.
+    Returns the margin as a force or torque, a float, dimensionless; -1.0 where a prescribed speed has a slope other
+    than 0.
     """
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
         return -1.0
@@ -214,11 +237,14 @@ def _holding_margin_at(tau, segment, work):
 def find_departure_time(tau, segment, work):
     """Return the first tau at which the drive moves a cylinder at rest; the end of the segment if it does not.
 
-    A sign change of the holding margin is searched in _SCAN_INTERVALS intervals, then bisected to rounding.
+    If the drive is constant its margin at ``tau`` decides between ``tau`` and the end.  Else a sign change of the
+    holding margin is searched in _SCAN_INTERVALS intervals of the rest of the segment, then bisected to rounding; two
+    sign changes in one interval are not found.
 
     tau: float, time from which the search starts.
     segment: int, index of the segment that contains it.
     work: Workspace, of the motion.
+    Returns a float in [tau, end of the segment]; the margin is negative there, unless it is the end.
     """
     end = segment_end(segment, work)
     if is_constant(segment, work.drive):
@@ -241,14 +267,20 @@ def find_departure_time(tau, segment, work):
 
 @kernel
 def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
-    """Decide whether the cylinder departs in full slip, in a direction of slip that its accelerations keep up.
+    """Decide whether the cylinder departs in full slip: under full slip its accelerations must increase the slip.
+
+    The sign sigma = 1 of the slip is tried first, then -1; the first is returned for which sigma (omega' - V' (1 +
+    delta_0)) exceeds ``stick_zone_slip`` times L |V'|.
 
     tau: float, time at which the drive is evaluated.
     segment: int, index of the segment of the drive that contains the time.
     braked: bool, whether a brake acts on the segment.
-    stick_zone_slip: float, |omega - V|/(L V) that full slip must exceed in the limit V -> 0, dimensionless.
+    stick_zone_slip: float, limit of the excess slip divided by L V, dimensionless: mu/(2 kappa), or 0 where no
+    departure in partial slip was found.
     work: Workspace, of the motion.
-    Returns (SLIDES_OFF or STAYS_AT_REST, Regime, omega = 0.0), in the form of :func:`depart_from_rest`.
+    Returns (kind, Regime, 0.0) in the form of :func:`depart_from_rest`: SLIDES_OFF with the Regime of full slip, in the
+    direction in which V grows, with the sign of the slip in that direction as ``sigma`` and the ``spin_sign`` and
+    ``locked`` that the brake causes; or STAYS_AT_REST with REGIME_AT_REST.  The third entry, 0.0, is omega.
     """
     scene = work.scene
     L, free_creep = rest_limits(scene)
@@ -272,11 +304,21 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
 def depart_from_rest(tau, segment, work):
     """Decide whether and how a cylinder departs from V = omega = 0.
 
+    Where the drive of a varying segment does not move the cylinder at ``tau``, its values a millionth of the rest of
+    the segment later decide.  A departure in partial slip is sought in both directions, then one in full slip.  Where
+    mu <= 2 kappa the first departure in partial slip is the only one; where friction is stronger, two possible
+    departures are ambiguous.
+
     tau: float, the time.
     segment: int, index of the segment of the drive that contains the time.
     work: Workspace, of the motion.
-    Returns (kind, Regime, d): STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS; the Regime of the departure; d =
-    delta/delta_star at the departure in partial slip, else 0.
+    Returns (kind, Regime, d):
+
+    - STAYS_AT_REST: friction and brake hold the cylinder, or no departure satisfies the equations; REGIME_AT_REST, 0;
+    - ROLLS_OFF: the Regime of partial slip with direction, sigma and brake; d = delta/delta_star at ``tau``,
+      dimensionless;
+    - SLIDES_OFF: the Regime of full slip; 0, which is omega;
+    - AMBIGUOUS: the cylinder may roll off in both directions, or may roll off as well as slide; REGIME_AT_REST, 0.
     """
     scene = work.scene
     tau_drive = tau

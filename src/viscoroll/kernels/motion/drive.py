@@ -12,7 +12,9 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
   the next step.
 - Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
-- Load: force, torque, largest torque of the brake and prescribed slopes at one time, in the direction of the Regime.
+- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
+  torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
+  prescribed or held by the brake) and the gains of the feedback.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
@@ -50,17 +52,19 @@ _ZERO_SPEED_ROUNDINGS = 30.0
 
 @inline_kernel
 def n_coefficients(row):
-    """Return the number of coefficients of each function of a segment; row: (columns,), the segment."""
+    """Return the number of coefficients of each of the five functions of a segment, an int; row: (columns,), the
+    segment.
+    """
     return (row.size - COL_COEFFICIENTS) // N_DRIVE_FUNCTIONS
 
 
 @inline_kernel
 def evaluate_polynomial(row, function, x):
-    """Return one function of a segment at a position, dimensionless.
+    """Return one function of a segment at a position, a float, dimensionless, in fixed directions.
 
     row: (columns,), the segment.
-    function: int, DRIVE_FORCE ... DRIVE_SPEED.
-    x: float, position in [-1, 1] on the segment.
+    function: int, DRIVE_FORCE, DRIVE_TORQUE, DRIVE_RATE, DRIVE_BRAKE or DRIVE_SPEED (:mod:`records`).
+    x: float, position in [-1, 1] on the segment; outside the polynomial is extrapolated.
     """
     n_terms = n_coefficients(row)
     first, total = COL_COEFFICIENTS + function * n_terms, 0.0
@@ -71,8 +75,9 @@ def evaluate_polynomial(row, function, x):
 
 @inline_kernel
 def _sum_of_moduli(row, first, last):
-    """Return the sum of the moduli of the coefficients of some functions of a segment, an upper bound of each;
-    dimensionless.
+    """Return the sum of the moduli of the coefficients of some functions of a segment, dimensionless.
+
+    It is an upper bound of the modulus of each of them on the segment, and 0 only if all are 0.
 
     row: (columns,), the segment.
     first, last: int, index DRIVE_* of the first function and of the one behind the last.
@@ -85,13 +90,13 @@ def _sum_of_moduli(row, first, last):
 
 @kernel
 def evaluate_drive(tau, segment, drive):
-    """Return the drive at one time, in fixed directions, not in those of the regime, dimensionless.
+    """Return the drive at one time, in fixed directions, not in those of the regime, without feedback; dimensionless.
 
     tau: float, the time.
     segment: int, index of the segment that contains tau.
     drive: Drive, that of the motion.
-    Returns (force, torque of the motor, slope in tau of the prescribed speed, largest torque of the brake); the slope
-    is 0 without a prescribed speed, the torque of the brake at least 0.
+    Returns (force, torque of the motor, slope in tau of the prescribed speed, largest torque of the brake), floats; the
+    slope is 0 without a prescribed speed; the torque of the brake is at least 0, as values below 0 count as 0.
     """
     row = drive.segments[segment]
     x = (tau - row[COL_START]) * row[COL_SCALE] - 1.0
@@ -106,13 +111,13 @@ def evaluate_drive(tau, segment, drive):
 
 @kernel
 def prescribed_speed(tau, segment, drive):
-    """Return the prescribed speed at one time.
+    """Return the prescribed speed at one time, V or omega, as ``drive.prescribed`` tells.
 
     tau: float, the time.
     segment: int, index of the segment that contains tau.
-    drive: Drive, with a prescribed speed.
-    Returns V or omega, dimensionless, in a fixed direction, not in that of the regime; 0 where it is rounding relative
-    to the coefficients of its segment.
+    drive: Drive, with a prescribed speed; without one the result is 0.
+    Returns a float, dimensionless, in a fixed direction, not in that of the regime; exactly 0 where it is rounding: at
+    most 30 units of rounding of the sum of its coefficients' moduli on the segment.
     """
     row = drive.segments[segment]
     speed = evaluate_polynomial(row, DRIVE_SPEED, (tau - row[COL_START]) * row[COL_SCALE] - 1.0)
@@ -122,10 +127,15 @@ def prescribed_speed(tau, segment, drive):
 
 @inline_kernel
 def load_from_values(values, regime, work):
-    """Return the Load for given values of the drive, in the direction of the regime; feedback is not added yet.
+    """Return the Load for given values of the drive, in the direction of the regime.
+
+    Force, torque and the slope of the prescribed speed are multiplied by the direction; the slope is that of V or of
+    omega, and the other one is 0.  The torque of the brake has no direction: it gets the sign against omega where
+    forces are applied.  Feedback is not in force and torque; its gains are a field.  ``inverse_mass`` is 0 where V is
+    prescribed, else 1; ``inverse_inertia`` is 0 where omega is prescribed or held by the brake, else 1/j.
 
     values: (force, torque, slope of the prescribed speed, torque of the brake), as :func:`evaluate_drive` returns them.
-    regime: Regime, whose direction orients them and which may hold omega at 0.
+    regime: Regime, of which ``direction`` and ``locked`` are read.
     work: Workspace, with the Drive and j.
     """
     force, torque, rate, brake = values
@@ -145,7 +155,7 @@ def load_from_values(values, regime, work):
 
 @kernel
 def evaluate_load(tau, segment, regime, work):
-    """Return the Load at one time, in the direction of the regime; feedback is not added yet.
+    """Return the Load at one time, in the direction of the regime; its fields are set as by :func:`load_from_values`.
 
     tau: float, the time.
     segment: int, index of the segment that contains tau.
@@ -157,7 +167,8 @@ def evaluate_load(tau, segment, regime, work):
 
 @kernel
 def current_load(regime, step_state, work):
-    """Return the Load at the time reached, in the direction of the regime; feedback is not added yet.
+    """Return the Load at the time reached, in the direction of the regime; its fields are set as by
+    :func:`load_from_values`.
 
     regime: Regime, the present one.
     step_state: StepState, with that time and its segment.
@@ -168,10 +179,13 @@ def current_load(regime, step_state, work):
 
 @kernel
 def store_drive(step, work):
-    """Store the functions of the drive at all nodes of a step.
+    """Store force, torque, slope of the prescribed speed and torque of the brake at all nodes of a step.
+
+    They are in fixed directions, not in those of the regime, and without feedback.
 
     step: Step, within one segment.
-    work: Workspace; the rows from ROW_DRIVE on are written.
+    work: Workspace; the four rows from ROW_DRIVE on are written.  They are left as they are where nothing drives from
+    the first segment on: they are 0 from the start of the motion then.
     """
     nodes = work.nodes
     if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.
@@ -187,12 +201,13 @@ def store_drive(step, work):
 
 @inline_kernel
 def load_at_node(i, regime, work):
-    """Return the Load at a node of a step whose drive is stored, in the direction of the regime; feedback is not added
-    yet.
+    """Return the Load at a node of a step whose drive is stored, in the direction of the regime.
 
-    i: int, the node.
+    Its fields are set as by :func:`load_from_values`.
+
+    i: int, the node, 0 ... N.
     regime: Regime, that of the step.
-    work: Workspace, with the drive at the nodes.
+    work: Workspace, with the drive at the nodes (:func:`store_drive`).
     """
     nodes = work.nodes
     values = (
@@ -206,7 +221,9 @@ def load_at_node(i, regime, work):
 
 @kernel
 def segment_end(segment, work):
-    """Return tau at the end of a segment of the drive or of the motion, whichever comes first.
+    """Return tau at the end of a segment of the drive or of the motion, whichever comes first; a float.
+
+    The last segment has no end of its own: it ends with the motion, at the last output time.
 
     segment: int, index of the segment.
     work: Workspace, of the motion.
@@ -217,21 +234,27 @@ def segment_end(segment, work):
 
 @kernel
 def drive_rounding(segment, drive):
-    """Return the rounding error of force, torque and slope of the prescribed speed on a segment, dimensionless.
+    """Return a bound of the rounding errors of force, torque and slope of the prescribed speed on a segment, taken
+    together.
 
-    They are sums of terms that may nearly cancel: the error is relative to the sum of the coefficients' moduli.
+    They are sums of terms that may nearly cancel: the error is a unit of rounding times the sum of the coefficients'
+    moduli.
 
     segment: int, index of the segment.
     drive: Drive, that of the motion.
+    Returns a float, dimensionless; 0 where all of these functions are 0.
     """
     return ROUNDING * _sum_of_moduli(drive.segments[segment], DRIVE_FORCE, DRIVE_RATE + 1)
 
 
 @kernel
 def continues_smoothly(segment, drive):
-    """Return whether no function of the drive jumps or has a kink at the end of a segment.
+    """Return whether the drive continues at the end of a segment without a jump or kink, a bool.
 
-    A jump or kink below _SMOOTH_JUMP does not count: the length of the last step is then a good one for the next.
+    Force, torque, slope of the prescribed speed and torque of the brake are compared; the prescribed speed itself is
+    not.  A jump does not count up to _SMOOTH_JUMP times the sum of the moduli of the function's coefficients on both
+    segments; a kink is compared with that sum divided by half the length of the shorter segment.  If the drive is
+    smooth the length of the last step is a good one for the next.
 
     segment: int, index of a segment that another one follows.
     drive: Drive, that of the motion.
@@ -256,7 +279,10 @@ def continues_smoothly(segment, drive):
 
 @kernel
 def is_constant(segment, drive):
-    """Return whether all functions of the drive but the prescribed speed itself are constant on a segment.
+    """Return whether force, torque, slope of the prescribed speed and torque of the brake are constant on a segment, a
+    bool.
+
+    All their coefficients but the constant ones are exactly 0 then.  The prescribed speed itself may be linear in time.
 
     segment: int, index of the segment.
     drive: Drive, that of the motion.
@@ -270,15 +296,17 @@ def is_constant(segment, drive):
 
 @kernel
 def has_brake(segment, drive):
-    """Return whether a brake acts anywhere on a segment; segment: int, its index; drive: Drive, that of the motion."""
+    """Return whether a brake acts anywhere on a segment, a bool; segment: int, its index; drive: Drive, that of the
+    motion.
+    """
     return _sum_of_moduli(drive.segments[segment], DRIVE_BRAKE, DRIVE_BRAKE + 1) > 0.0
 
 
 @kernel
 def is_unloaded(segment, drive):
-    """Return whether from a segment on there is no force, torque, brake or prescribed speed; feedback may act.
+    """Return whether from a segment on there is no force, torque, brake or prescribed speed; feedback may act; a bool.
 
-    segment: int, index of the segment.
+    segment: int, index of the segment; all later ones are considered too.
     drive: Drive, that of the motion.
     """
     for row in drive.segments[segment:]:
@@ -289,9 +317,9 @@ def is_unloaded(segment, drive):
 
 @kernel
 def is_undriven(segment, drive):
-    """Return whether from a segment on nothing drives, feedback included.
+    """Return whether from a segment on nothing drives, feedback included, a bool.
 
-    segment: int, index of the segment.
+    segment: int, index of the segment; all later ones are considered too.
     drive: Drive, that of the motion.
     """
     gains = drive.gains

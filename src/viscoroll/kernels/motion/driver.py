@@ -74,7 +74,13 @@ def _advance_at_rest(step_state, work):
 
     step_state: StepState, at the time reached.
     work: Workspace, of the motion; outputs are written.
-    Returns (kind, State, Regime, StepState) at that time; kind is STAYS_AT_REST, ROLLS_OFF, SLIDES_OFF or AMBIGUOUS.
+    Returns (kind, State, Regime, StepState):
+
+    - ROLLS_OFF, SLIDES_OFF: it departs now; State with V = 0 and d in partial slip, omega = 0 in full slip; the Regime
+      of the departure; the time stays, the length of the next step is not chosen;
+    - STAYS_AT_REST: State of zeros, REGIME_AT_REST; the StepState at the time at which the drive will move it, or at
+      the end of the segment, with the outputs before that time written, and at the last output time that one too;
+    - AMBIGUOUS: the same at the present time, with an output at that time written.
     """
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
     if kind == ROLLS_OFF or kind == SLIDES_OFF:
@@ -87,10 +93,12 @@ def _advance_at_rest(step_state, work):
 
 @kernel
 def _is_below_rest_speed(moving, state, regime, step_state, work):
-    """Return whether nothing drives any more and both speeds are below the rest threshold.
+    """Return whether nothing drives any more and both speeds are at most the rest threshold; a bool.
+
+    It is False without a threshold and while something drives or will; a cylinder that does not move counts as below.
 
     moving: bool, whether the cylinder moves.
-    state: State, the present one.
+    state: State, the present one; ignored unless it moves.
     regime: Regime, at that state.
     step_state: StepState, with the segment.
     work: Workspace, of the motion.
@@ -103,9 +111,13 @@ def _is_below_rest_speed(moving, state, regime, step_state, work):
 
 @kernel
 def added_mass_exhausted(event, state, regime, work):
-    """Return whether the added mass in partial slip is so large that the equations are no longer regular.
+    """Return whether the added mass in partial slip is so large that the equations are no longer regular; a bool.
 
-    event: int, the last event, or NO_EVENT; an event STICK_EDGE may be due to the added mass.
+    It is so where its margin (:func:`added_mass_margin`) is at most 0, or where the event STICK_EDGE, whose function is
+    the product of the margin and 1 - |d|, is due to the margin, the smaller factor of the two.  In full slip it is
+    False.  A law without added mass has a margin of 1: the result is False then.
+
+    event: int, code of the last event, or NO_EVENT.
     state: State, the present one.
     regime: Regime, at that state.
     work: Workspace, of the motion.
@@ -117,7 +129,9 @@ def added_mass_exhausted(event, state, regime, work):
 
 @kernel
 def _relaxes_within_rounding(state, regime, step_state, work):
-    """Return whether d relaxes within the rounding of time, in partial slip.
+    """Return whether d relaxes, or changes by 1, within the rounding of time, 1e-13 of the time so far; a bool.
+
+    It is False in full slip, and at tau = 0.
 
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
@@ -131,7 +145,9 @@ def _relaxes_within_rounding(state, regime, step_state, work):
 
 @kernel
 def _vanishes_within_rounding(state, regime, step_state, work):
-    """Return whether V falls to 0 within the rounding of time, or counts as 0 where something drives.
+    """Return whether V falls to 0 within the rounding of time, 1e-13 of the time so far, or is negligible; a bool.
+
+    V is negligible at 1e-75 and below, if something drives or will.
 
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
@@ -144,13 +160,19 @@ def _vanishes_within_rounding(state, regime, step_state, work):
 
 @kernel
 def relax_creep(state, regime, step_state, work):
-    """Relax d to its equilibrium at a fixed time and fixed p, by bisection.
+    """Relax d to its equilibrium at a fixed time and fixed p, by bisection, where no step can resolve its relaxation.
 
     state: State, the present one, in partial slip.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
-    Returns (whether the cylinder still moves, State, Regime, StepState); full slip if |d| would exceed 1.
+    work: Workspace, of the motion; it is only read.
+    Returns (moves, State, Regime, StepState):
+
+    - moves: False where V falls to 0 within rounding (:func:`_vanishes_within_rounding`): the other three are unchanged
+      then;
+    - State, Regime: at the equilibrium of d in partial slip, with sigma = 1 for d >= 0 and -1 else, and with the V that
+      keeps p; in full slip with the slip of |d| = 1 where there is no equilibrium with |d| < 1;
+    - StepState: the same time, with the length 1e-11 tau of the next step.
     """
     if _vanishes_within_rounding(state, regime, step_state, work):
         return False, state, regime, step_state
@@ -182,7 +204,10 @@ def _advance_segment(moving, state, regime, step_state, work):
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; a change of direction is recorded.
-    Returns (whether the cylinder moves, State, Regime, StepState), unchanged where no segment ends.
+    Returns (moves, State, Regime, StepState), unchanged where no segment ends.  Where one does, StepState has the next
+    segment and keeps the length of the next step only where the drive continues smoothly, else 0.  Of a cylinder that
+    moves, State and Regime are those of :func:`enter_segment`, and it still moves unless V is 0 in partial slip or both
+    speeds are 0; of one at rest they are unchanged.
     """
     drive = work.drive
     if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:
@@ -204,12 +229,13 @@ def _advance_segment(moving, state, regime, step_state, work):
 def _come_to_rest(code, state, regime, step_state, work):
     """Write the outputs of a motion whose speeds fall below the rest threshold now, up to its last output time.
 
-    The kinetic energy that is left is added to the loss in rolling.
+    The kinetic energy that is left is added to the loss in rolling, and the time is recorded as that of coming to rest.
+    The change of regime to AT_REST is recorded unless ``code`` is -1 or AT_REST.
 
     code: int, regime in the outputs before; -1 before the first one.
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; outputs are written.
+    work: Workspace, of the motion; outputs, switches, REST_TIME and the total of the loss in rolling are written.
     Returns the StepState at the last output time.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
@@ -224,11 +250,14 @@ def _come_to_rest(code, state, regime, step_state, work):
 def _record_regime(code, new_code, stick_formed, step_state, work):
     """Record a change of the regime, and the time at which the stick zone first forms.
 
+    Nothing is recorded if the code stays, as it does while a brake holds omega at 0, in full and in partial slip.
+
     code: int, regime in the outputs before; -1 before the first one, which is no change.
     new_code: int, regime in the outputs from now on.
-    stick_formed: bool, whether the stick zone has just formed.
+    stick_formed: bool, whether the stick zone has just formed; t = tau/gamma is then written to ONSET_TIME if that is
+    NaN.
     step_state: StepState, with the time of the change.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion; switches, their numbers and ONSET_TIME are written.
     Returns ``new_code``.
     """
     if new_code != code:
@@ -243,13 +272,22 @@ def _record_regime(code, new_code, stick_formed, step_state, work):
 def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     """Integrate regime after regime until the last output time.
 
-    moving: bool, whether the cylinder moves.
+    moving: bool, whether the cylinder moves; False: it is at rest, and ``state`` and ``regime`` are ignored.
     stick_formed: bool, whether the stick zone has just formed.
     state: State, at the start.
     regime: Regime, at that state.
     step_state: StepState, at the start.
-    work: Workspace, of the motion; outputs are written.
-    Returns (status of the motion, StepState at its end).
+    work: Workspace, of the motion; outputs, switches and times of events are written.
+    Returns (status, StepState): the StepState at the end of the integration, and why it ended:
+
+    - COMPLETED: the last output time is reached;
+    - CAME_TO_REST: both speeds fell below the rest threshold; all outputs are written;
+    - STEP_LIMIT: the allowed number of trial steps is used up;
+    - STEP_TOO_SMALL: every step, however short, was rejected;
+    - NOT_UNIQUE: the departure from rest is ambiguous;
+    - ADDED_MASS_EXHAUSTED: the added mass leaves the range in which the equations are regular.
+
+    With the last four, outputs behind the end of the integration are not written.
     """
     event, relaxed_at, code = NO_EVENT, -1.0, regime_code(regime) if moving else -1
     while step_state.next_output < work.output_tau.size:
@@ -296,10 +334,15 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
 def integrate_motion(V0, omega0, record):
     """Integrate one motion of Eq. (22) with its drive from t = 0 to its last output time.
 
-    V0, omega0: float, initial speeds, dimensionless.
-    record: Workspace, by value; outputs are written.
-    Returns (status code, number of trial steps, number of regime changes, t of the onset of stick, t of coming to
-    rest); the times are dimensionless, NaN where the event does not occur.
+    Where something drives or will, speeds below 1e-75 count as 0; V0 counts as 0 up to 1e-150 of |omega0|.  From V =
+    omega = 0 the cylinder stays at rest until the drive moves it.
+
+    V0, omega0: float, initial speeds of either sign, dimensionless.
+    record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones.  Outputs, switches and ends of steps
+    are written.
+    Returns (status, number of trial steps, number of regime changes, t of the onset of stick, t of coming to rest): the
+    status is a code of :mod:`records`, COMPLETED ... ADDED_MASS_EXHAUSTED; reversals of direction are no regime
+    changes; the times are dimensionless, tau/gamma, NaN where the event does not occur.
     """
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)

@@ -80,7 +80,7 @@ def _d_weight(d):
     d acts on the motion through omega - V and V', whose error is that of V, and its errors decay.  An error of d is
     measured by the critical creepage, as an error of Q/mu, and less strictly relative to d itself.
 
-    d: float, delta/delta_star.
+    d: float, delta/delta_star, |d| <= 1; the weight is then in [1/6, 1].
     """
     return max(_D_WEIGHT_FLOOR, d * d) / (abs(d) + _D_WEIGHT_FLOOR)
 
@@ -90,10 +90,11 @@ def _rounding_scale_of_V(step, work):
     """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration.
 
     V' = Q - M + f may be a small difference of Q and f.  Its rounding changes V during the step, or during the
-    relaxation time of V if that is shorter.
+    relaxation time of V if that is shorter.  It is used under a drive without feedback of omega on V'.
 
     step: Step, the trial step.
-    work: Workspace, with the drive and the Newton diagonal at its nodes.
+    work: Workspace, with the drive and the Newton diagonal of p at its nodes; those of the last node are read.
+    Returns a float above 0, dimensionless.
     """
     nodes = work.nodes
     V_error = ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h
@@ -105,13 +106,21 @@ def _rounding_scale_of_V(step, work):
 def error_scales(step, regime, work):
     """Return the scales by which errors of V and of the second unknown on a step are divided.
 
-    An error of a speed is divided by the largest speed of the step, that of V in full slip by the largest V; an error
-    of d is multiplied by its weight.
+    In full slip an error of omega is divided by the largest of |V| and |omega| on the step.  An error of V is divided
+    by the largest |V| of the step, and under a drive at least by the V that rounding leaves
+    (:func:`_rounding_scale_of_V`); where a feedback of omega acts on V', it is divided by the largest speed as that of
+    omega.
+
+    In partial slip an error of V is divided by the largest speed.  An error of d is multiplied by its weight
+    (:func:`_d_weight` at the last node), or by the relative change of the speed that a unit of d causes if that is
+    larger.
 
     step: Step, the trial step.
     regime: Regime, that of the step.
-    work: Workspace, with the unknowns at its nodes.
-    Returns (scale of V, scale of the second unknown), dimensionless.
+    work: Workspace, with V and the larger speeds at its nodes; in partial slip also with d at the last one and with the
+    derivatives of p.
+    Returns (scale of V, scale of the second unknown), floats, dimensionless.  A scale of a speed is 0 where that speed
+    is 0 at all nodes: the update or error that is divided by it is then inf or NaN, and the step is rejected.
     """
     nodes, largest_speed, largest_V, V_change = work.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):
@@ -136,10 +145,12 @@ def error_scales(step, regime, work):
 def _defect_at_start(row, slope_row, initial_slope, nodes):
     """Return the defect of an interpolant at the left end of a step.
 
-    It is the slope there less that extrapolated from the nodes, times the length of the step.
+    It is the slope there by the right-hand side, less the slope of the interpolant extrapolated from nodes 1 ... N,
+    times 2, the length of the step in t.
 
     row: int, index in ``nodes`` of the values at all nodes.
-    slope_row: int, index of the row in which the slopes of the interpolant in t on [-1, 1] are written.
+    slope_row: int, index of the row in which the slopes of the interpolant in t on [-1, 1] are written; its entry of
+    node 0 is set to 0.
     initial_slope: float, slope in t at the left end by the right-hand side, in the unit of the row.
     nodes: Workspace.nodes.
     Returns the modulus of the defect, in the unit of the row.
@@ -153,10 +164,11 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
 
 @inline_kernel
 def _variation_of_p_rate(half, nodes):
-    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step; dimensionless.
+    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step; a float >= 0 in the
+    unit of p.
 
     half: float, half the length of the step in tau.
-    nodes: Workspace.nodes.
+    nodes: Workspace.nodes, with p' at nodes 1 ... N.
     """
     smallest = largest = nodes[ROW_P_RATE + 1]
     for i in range(2, N + 1):
@@ -166,12 +178,17 @@ def _variation_of_p_rate(half, nodes):
 
 @kernel
 def _relative_speed_at_first_output(step, work):
-    """Return V at the first output time of a step from V = 0 on, divided by the largest V of the step.
+    """Return V at about the first output time of a step that starts at V = omega = 0, divided by the largest |V| of the
+    step.
 
-    By this the error of the step is divided, so that V is accurate relative to itself at its first output.
+    The error of the step is divided by this number, so that V is accurate relative to itself at its first output.  V is
+    taken at the last node that is not behind the first output time after the left end; at node 1 if all are behind it,
+    or at the next node where V is 0 there.  With all nodes before the output time, V at the end of the step is taken.
 
-    step: Step, from V = 0 on.
+    step: Step, from V = omega = 0 on.
     work: Workspace, with V at its nodes.
+    Returns a float in (0, 1], dimensionless; 1 where V is 0 at all nodes.  It is 0 only if V has come back to exactly 0
+    at the last node, and the step is then rejected.
     """
     nodes, output_time = work.nodes, last_output_tau(work)
     for i in range(work.output_tau.size):
@@ -188,9 +205,10 @@ def _relative_speed_at_first_output(step, work):
 
 @kernel
 def _strong_friction_rounding(regime, work):
-    """Return the rounding error of a defect of V' under strong friction, per unit of tau; 0 elsewhere.
+    """Return the rounding error of a defect of V' under strong friction, per unit of tau, dimensionless; 0 elsewhere.
 
-    V' may be a small difference of Q and f.  Friction is strong only where mu > kappa.
+    V' may be a small difference of Q and f, so that 30 units of rounding of mu are left in it.  Friction is strong
+    (:func:`has_strong_friction`) only where mu > kappa, so that other scenes need not ask.
 
     regime: Regime, that of the step.
     work: Workspace, with the drive at node 0.
@@ -203,12 +221,24 @@ def _strong_friction_rounding(regime, work):
 def estimate_error(step, regime, work):
     """Return the estimated error of the dense output of a step divided by its tolerance; a step is accepted up to 1.
 
-    The error is that of the interpolant of p, by its defect at the left end or by its last coefficient, and that of the
-    second unknown, of which only the part counts that its relaxation leaves at the end of the step.
+    The error is the largest of these, each divided by the scale of its unknown (:func:`error_scales`):
+
+    - that of p, by its defect at the left end or by the last coefficient of V, whichever is larger, less what rounding
+      of the drive and of strong friction causes; a defect above 1/30 of the variation of p' on the step counts more, as
+      the step does not resolve the solution;
+    - the defect of the second unknown, of which only the part counts that its relaxation leaves at the end of the step;
+      left out where its slope at the left end is not known (V = 0 in partial slip);
+    - in partial slip the last coefficient of d.
+
+    The first one is divided by :func:`_relative_speed_at_first_output` where both speeds are 0 at the left end, and
+    else, under a drive, multiplied by the square root of the growth of the larger speed.
 
     step: Step, the solved trial step.
     regime: Regime, that of the step.
-    work: Workspace, with the solution at its nodes and the dense output.
+    work: Workspace, with the solution at its nodes and the dense output; ROW_P_SLOPE and, where its defect is
+    evaluated, ROW_D_SLOPE are written.
+    Returns a float >= 0, dimensionless; inf or NaN, which the caller rejects too, where a scale is 0 or the solution is
+    not finite.
     """
     nodes, half = work.nodes, 0.5 * step.h
     scale_V, scale_d = error_scales(step, regime, work)

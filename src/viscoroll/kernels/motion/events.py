@@ -8,6 +8,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
   whether the brake holds omega at 0.
 - Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
 - v: position on a step, 0 at its left end and 2 at its right end.
+- Event: int, its code, which is also the index in ``nodes`` of the row with the values of its function: STICK_EDGE,
+  DELTA_ZERO, V_ZERO, OMEGA_ZERO, BELOW_REST_SPEED or BRAKE_RELEASE (:mod:`workspace`).
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
@@ -74,10 +76,14 @@ BRANCH_OVERLAP = 1e-8
 
 @inline_kernel
 def is_event_active(event, step, regime, work):
-    """Return whether an event may end the regime on a step.
+    """Return whether an event may end the regime on a step, a bool.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
-    step: Step, the trial step.
+    STICK_EDGE and V_ZERO may always; DELTA_ZERO in partial slip; OMEGA_ZERO where a brake acts against omega;
+    BRAKE_RELEASE where the brake holds omega at 0; BELOW_REST_SPEED where nothing drives and a rest threshold above 0
+    is given.
+
+    event: int, code of the event.
+    step: Step, the trial step; ``undriven`` is read.
     regime: Regime, that of the step.
     work: Workspace, of the motion.
     """
@@ -92,11 +98,22 @@ def is_event_active(event, step, regime, work):
 
 @inline_kernel
 def evaluate_event_functions(step, regime, work):
-    """Store the event functions at all nodes of a solved step: positive within the regime, 0 at its end.
+    """Store the event functions at nodes 0 ... N of a solved step: positive within the regime, 0 at its end.
+
+    - V_ZERO: V.
+    - STICK_EDGE: :func:`stick_edge_function`.
+    - DELTA_ZERO: sigma d + 1e-8, in partial slip only.
+    - OMEGA_ZERO: spin_sign omega in full slip; spin_sign (1 + delta) in partial slip, where omega = V (1 + delta) is 0
+      at V = 0 too, which is another event; spin_sign where V is not above 0 there.
+    - BELOW_REST_SPEED: the larger of |V| and |omega| less the rest threshold.
+    - BRAKE_RELEASE: square of the brake's largest torque less square of the torque that holds omega at 0, if it is
+      held.
+
+    A row whose event is not active (:func:`is_event_active`) may keep the values of an earlier step.
 
     step: Step, the solved one.
     regime: Regime, that of the step.
-    work: Workspace, with the unknowns at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written.
+    work: Workspace, with the unknowns at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written as above.
     """
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):
@@ -120,9 +137,14 @@ def evaluate_event_functions(step, regime, work):
 def _first_negative_node(event, last, nodes):
     """Return the first node at which an event function has fallen below 0, having been positive before; 0 for none.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
-    last: int, the last node that is considered.
+    At node 0 the function counts as positive only above 1e-14 of its largest value on the step: a step that begins on
+    the event does not end there.  The stick edge counts as negative only below -1e-13 of its scale
+    (:func:`_event_scale`).
+
+    event: int, code of the event.
+    last: int, the last node that is considered, 1 ... N.
     nodes: Workspace.nodes, with the event functions.
+    Returns an int, 1 ... ``last``, or 0.
     """
     smallest, largest = row_range(event, nodes)
     if not smallest < 0.0:
@@ -138,12 +160,14 @@ def _first_negative_node(event, last, nodes):
 
 @kernel
 def locate_zero(event, node, nodes):
-    """Return the position at which the interpolant of an event function is 0.
+    """Return the position v at which the interpolant of an event function falls through 0.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
-    node: int, first node at which the function is negative; 0: the zero is sought beyond the right end of the step.
-    nodes: Workspace.nodes, with the event functions; ROW_DENSE_EVENT is written.
-    Returns v in [0, 3]; at least NOT_FOUND if no zero lies within half a step beyond the right end.
+    event: int, code of the event and index in ``nodes`` of the row of its function.
+    node: int, first node at which the function is negative, so that the zero lies between this node and the one before;
+    0: the zero is sought beyond the right end of the step, up to half its length.
+    nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written.
+    Returns a float, v: for ``node`` > 0 in [0, 2]; for ``node`` = 0 in [2, 3], where 2 means that the function is not
+    positive at the right end, and at least NOT_FOUND that it is still positive half a step behind it.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
@@ -155,12 +179,13 @@ def _find_interpolant_zero(start, low, high, nodes):
     """Return the position v at which the stored interpolant of an event function falls through 0, by false position.
 
     The weights of Anderson and Bjorck (BIT 13, 1973) move both ends of the bracket: that needs a sixth of the
-    evaluations of a bisection.  Without a zero in the bracket the result is the end to which a bisection would
-    converge.
+    evaluations of a bisection.
 
     start: float, value of the event function at v = 0, which the interpolant leaves out.
-    low, high: float, ends of the bracket in v, positive and negative values of the function there.
+    low, high: float, ends of the bracket in v; the function should be positive at ``low`` and negative at ``high``.
     nodes: Workspace.nodes, with the interpolant at ROW_DENSE_EVENT.
+    Returns a float in [low, high]: ``low`` if the function is not positive there, else ``high`` if it is positive
+    there; else the end of the last bracket with the smaller modulus of the function, which is a zero to rounding.
     """
     f_low = start + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT)
     f_high = start + evaluate_dense_output(high, nodes, ROW_DENSE_EVENT)
@@ -185,12 +210,14 @@ def _find_interpolant_zero(start, low, high, nodes):
 
 @kernel
 def _locate_double_crossing(event, nodes):
-    """Return the v at which an event function falls through 0 between nodes at which it is positive; 0 for none.
+    """Return the v at which an event function falls through 0 between nodes at which it is positive; 0.0 for none.
 
-    The minimum of the interpolant next to a node with a local minimum is located by a ternary search.
+    At each of nodes 1 ... N - 1 at which the function is positive and smaller than at both neighbours, the minimum of
+    the interpolant between these is located by a ternary search.  The first minimum below 0 counts, with the zero
+    before it.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
-    nodes: Workspace.nodes, with the event functions; ROW_DENSE_EVENT is written.
+    event: int, code of the event and index in ``nodes`` of the row of its function.
+    nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written.
     """
     for i in range(1, N):
         if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
@@ -213,12 +240,14 @@ def _locate_double_crossing(event, nodes):
 def find_first_event(step, regime, work):
     """Return the event whose function falls below 0 first on a solved step, and its position by the interpolant.
 
-    Between the same two nodes the zeros of the interpolants decide which event is first.
+    Only active events count (:func:`is_event_active`).  Between the same two nodes the zeros of the interpolants decide
+    which event is first.  If no function is negative at a node, in full slip the stick edge is also searched between
+    the nodes.
 
     step: Step, the solved one.
     regime: Regime, that of the step.
-    work: Workspace, with the event functions.
-    Returns (event, v in [0, 2]); (NO_EVENT, 2) for none.
+    work: Workspace, with the event functions; the row ROW_DENSE_EVENT is written.
+    Returns (event, v in [0, 2]), an int and a float; (NO_EVENT, 2.0) for none.
     """
     event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
@@ -237,13 +266,17 @@ def find_first_event(step, regime, work):
 
 @inline_kernel
 def find_missed_event(step, regime, work):
-    """Return the event whose function begins at 0 and is negative at all nodes; NO_EVENT for none.
+    """Return the event whose function is 0 at the left end of the step and negative from there on; NO_EVENT for none.
 
-    The regime has then ended before the first node.
+    The regime has then ended before the first node.  The function must exceed 1e-14 of its scale at no node and be
+    below 0 by more than the tolerance of events at the last one.  The scale of V = 0 contains the larger speed too,
+    unless V is prescribed.  BELOW_REST_SPEED is left out, and in partial slip STICK_EDGE, as the equations of partial
+    slip continue into full slip.
 
     step: Step, the solved one.
     regime: Regime, that of the step.
     work: Workspace, with the event functions.
+    Returns an int, the first such event in the order of the codes.
     """
     nodes = work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
@@ -262,10 +295,10 @@ def find_missed_event(step, regime, work):
 
 @kernel
 def _event_function(event, v, regime, work):
-    """Return an event function at a position of a step, by the dense output of the unknowns.
+    """Return an event function at a position of a step, by the dense output of the unknowns; a float, dimensionless.
 
-    event: int, STICK_EDGE, BELOW_REST_SPEED or OMEGA_ZERO.
-    v: float, position in [0, 2].
+    event: int, STICK_EDGE; BELOW_REST_SPEED, in full slip only; or OMEGA_ZERO, in partial slip only.
+    v: float, position on the step, in [0, 2] or a little outside.
     regime: Regime, that of the step.
     work: Workspace, with the dense output.
     """
@@ -281,14 +314,15 @@ def _event_function(event, v, regime, work):
 def refine_event(event, v, regime, work):
     """Refine the position of an event whose function is no polynomial of the unknowns, by the function itself.
 
-    Such functions are the stick edge and the larger speed in full slip, and omega in partial slip.  The iteration is
-    Newton's, with a difference quotient in place of the slope.
+    Such functions are the stick edge and the larger speed in full slip, and 1 + delta, whose zero is that of omega, in
+    partial slip.  The iteration is Newton's, with one difference quotient in place of the slope.  It ends after 5
+    corrections, or before one of 0.1 or more.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    event: int, code of the event.
     v: float, position of the event by the interpolant.
     regime: Regime, that of the step.
     work: Workspace, with the dense output.
-    Returns the position v in [0, 2]; unchanged for other functions.
+    Returns the position v, a float in [0, 2]; for all other events ``v`` unchanged.
     """
     if event not in ((STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)):
         return v
@@ -306,10 +340,13 @@ def refine_event(event, v, regime, work):
 def _event_scale(event, nodes):
     """Return the scale of an event function on a step, in the unit of the function.
 
-    It is the largest modulus of the quantities of which the function is a difference.
+    It is the largest modulus of the function at the nodes, or that of the quantities of which the function is a
+    difference if it is larger: the largest of |V| and |omega| on the step for STICK_EDGE, OMEGA_ZERO and
+    BELOW_REST_SPEED, in partial slip too; the square of the brake's largest torque for BRAKE_RELEASE.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    event: int, code of the event and index in ``nodes`` of the row of its function.
     nodes: Workspace.nodes, with event functions, speeds and drive.
+    Returns a float, at least 0.
     """
     smallest, largest = row_range(event, nodes)
     largest = max(largest, -smallest)
@@ -328,11 +365,15 @@ def _event_tolerance(rtol):
 
 @kernel
 def ends_at_event(event, nodes, rtol):
-    """Return whether a step ends at an event: its function has fallen to 0 at the right end.
+    """Return whether a step ends at an event: its function has fallen to 0 at the right end; a bool.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    At the right end its modulus is at most max(0.01 rtol, 4e-15) times its scale (:func:`_event_scale`) and the
+    function is smaller than at another node.  Its largest value must exceed 1e-13 of the scale, so that a step along
+    which it is 0 but for rounding does not end at it.
+
+    event: int, code of the event and index in ``nodes`` of the row of its function.
     nodes: Workspace.nodes, with the event functions.
-    rtol: float, relative tolerance, dimensionless.
+    rtol: float, relative tolerance of the motion, dimensionless.
     """
     scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
     return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

@@ -27,10 +27,14 @@ from ..rows.evaluate import body_moments, free_creep_and_slopes, length_and_mome
 def evaluate_moments(u, scene):
     """Evaluate what the law gives at one speed: critical creepage, Eq. (9), and rolling moments, Eq. (18).
 
-    u: float, kappa |V|, dimensionless.
-    scene: Scene, parameters of Eq. (22).
-    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), dimensionless; L = lam (1 +
-    epsilon) and its derivatives in u.
+    All seven numbers are finite at u = 0 too, where they are the limits of slow rolling.  The added mass is not in the
+    moments.  They are 0 where both bodies are elastic (alpha = 1).
+
+    u: float, kappa |V|, dimensionless, at least 0.
+    scene: Scene, parameters of Eq. (22); with ``moments_differ`` False each body takes half of the moment.
+    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), floats, dimensionless; L = lam
+    (1 + epsilon) = 2 kappa delta_star/mu and its derivatives in u.  The quotients and the slopes are even in V, so that
+    the moment of either body at a V of any sign is V times its quotient.
     """
     law = by_value(scene.law)
     index = locate_row(u, law)
@@ -55,10 +59,13 @@ def rest_limits(scene):
 
 @kernel
 def low_speed_limits(work):
-    """Return moments, force and torque divided by V in the limit V -> 0 of free rolling.
+    """Return moments, force and torque divided by V in the limit V -> 0 of free rolling, omega = V (1 + delta_0).
 
-    work: Workspace, of the motion.
-    Returns (M_half_space, M_cylinder, force of feedback, torque of feedback), each divided by V, dimensionless.
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read, not its force and torque over
+    time.
+    Returns (M_half_space, M_cylinder, force of feedback, torque of feedback), each divided by V, floats, dimensionless.
+    The moments are at least 0, and 0 where alpha = 1; force and torque are positive where they drive, and 0 without
+    feedback.
     """
     _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
     gains = work.drive.gains
@@ -71,7 +78,9 @@ def low_speed_limits(work):
 def critical_creepage(V, scene):
     """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips, dimensionless.
 
-    V: float, speed of the axis, dimensionless.
+    On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V and finite at V = 0.
+
+    V: float, speed of the axis of either sign, dimensionless.
     scene: Scene, parameters of Eq. (22).
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)
@@ -80,11 +89,13 @@ def critical_creepage(V, scene):
 
 @inline_kernel
 def creepage(V, d, scene):
-    """Return the creepage delta, Eq. (5), in partial slip; on a cover it includes that of free rolling.
+    """Return the creepage delta, Eq. (5), in partial slip: d delta_star, and on a cover delta_0 of free rolling added.
 
-    V: float, speed of the axis, dimensionless.
-    d: float, delta/delta_star of the excess over free rolling, |d| <= 1.
+    V: float, speed of the axis of either sign, dimensionless; V = 0: the limit.
+    d: float, delta/delta_star of the excess over free rolling; |d| <= 1 in partial slip, beyond it the result is linear
+    in d too.
     scene: Scene, parameters of Eq. (22).
+    Returns a float, dimensionless.
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)
     delta = critical_creepage(V, scene) * d
@@ -93,11 +104,12 @@ def creepage(V, d, scene):
 
 @inline_kernel
 def excess_slip(slip, V, scene):
-    """Return the slip omega - V less that of free rolling, dimensionless; for half-spaces the slip itself.
+    """Return the slip less that of free rolling, omega - V - delta_0 V; delta_0 = 0 for half-spaces.
 
-    slip: float, omega - V, dimensionless.
-    V: float, speed of the axis, dimensionless.
+    slip: float, omega - V, signed, dimensionless.
+    V: float, speed of the axis of either sign, dimensionless.
     scene: Scene, parameters of Eq. (22).
+    Returns a float, signed, dimensionless; full slip begins where its modulus is delta_star |V|.
     """
     law = by_value(scene.law)
     if law.cover_rows is None:
@@ -109,11 +121,12 @@ def excess_slip(slip, V, scene):
 def added_inertia(V, scene):
     """Return the factor n = gamma N of the added mass N V', with its derivative and its integral.
 
-    The equations are in docs/theory_materials.md, Slowly changing speed; all are 0 for a law without added mass.
+    The equations are in docs/theory_materials.md, Slowly changing speed.
 
-    V: float, speed of the axis, dimensionless.
+    V: float, speed of the axis of either sign, dimensionless.
     scene: Scene, parameters of Eq. (22).
-    Returns (n, its derivative in V, its integral over V from 0), dimensionless.
+    Returns (n, its derivative in V, its integral over V), floats, dimensionless; all are 0 for a law without added
+    mass.  The integral begins at V = 0, but at infinity where n < -4 at V = 0, as V = 0 is not reached then.
     """
     return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
 
@@ -123,9 +136,11 @@ def omega_and_delta(state, regime, scene):
     """Return angular velocity and creepage, Eq. (5), of a state.
 
     state: State, the unknowns.
-    regime: Regime, which tells what the second unknown is.
+    regime: Regime, whose ``full_slip`` tells what the second unknown is.
     scene: Scene, parameters of Eq. (22).
-    Returns (omega, delta), dimensionless; delta is infinite at V = 0 in full slip.
+    Returns (omega, delta), floats, dimensionless, omega in the direction of the regime.  On a cover delta contains the
+    creepage of free rolling.  At V = 0 delta is the limit in partial slip; in full slip it is infinite with the sign of
+    omega - V, and +inf where omega is 0 too.
     """
     if not regime.full_slip:
         delta = creepage(state.V, state.omega_or_d, scene)
@@ -138,26 +153,30 @@ def omega_and_delta(state, regime, scene):
 def added_mass_margin(n, j):
     """Return the margin of the added mass, above 0 while the equations are regular, dimensionless.
 
-    It is 1 without added mass, 0 where n = 1 + j, and 0 where a negative n takes half of the inertia 1 + j or of the
-    factor 1 + n/2 of V'.
+    It is 1 without added mass.  It is 0 where n = 1 + j, and 0 where a negative n takes half of the inertia 1 + j, or
+    half of 1, from the factor 1 + n/2 of V', whichever comes first as n falls; beyond these two zeros it is negative.
 
-    n: float, gamma N, dimensionless.
-    j: float, moment of inertia, dimensionless.
+    n: float, gamma N, signed, dimensionless.
+    j: float, moment of inertia J/(m R^2), above 0, dimensionless.
     """
     return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
 
 
 @inline_kernel
 def stick_edge_function(V, omega_or_d, regime, scene):
-    """Return the event function of the edge of the stick zone, dimensionless: positive within the regime, 0 at its end.
+    """Return the event function of the edge of the stick zone: positive within the regime, 0 at its end.
 
-    In full slip it is |omega - V| less its limit delta_star |V|, Eq. (9); in partial slip 1 - |d|, times the margin of
-    the added mass.
+    In full slip it is sigma times the slip omega - V, on a cover less the slip delta_0 V of free rolling, minus the
+    limit delta_star |V|, Eq. (9): it is 0 where a stick zone forms, and negative too where the slip has the sign
+    opposite to sigma.  In partial slip it is the product of 1 - sigma d and the margin of the added mass,
+    :func:`added_mass_margin`: it is 0 where the stick zone vanishes, d = sigma, or where the margin is 0.  Without
+    added mass the margin is 1.
 
     V: float, speed of the axis, dimensionless.
-    omega_or_d: float, second unknown, dimensionless.
-    regime: Regime, the present one.
+    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
+    regime: Regime, the present one; ``full_slip`` and ``sigma`` are read.
     scene: Scene, parameters of Eq. (22).
+    Returns a float, dimensionless.
     """
     if not regime.full_slip:
         n, _, _ = added_inertia(V, scene)

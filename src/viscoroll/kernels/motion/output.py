@@ -60,7 +60,8 @@ def requested_groups(rows):
     """Return which groups of outputs are requested, as each costs time.
 
     rows: (k,) int, the requested output rows, numbered as in the module.
-    Returns (whether a quadrature is requested, whether force or torque is).
+    Returns (quadratures, forces), two bools: whether a row of x, angle, works or losses is among them; whether force or
+    torque is.
     """
     quadratures = forces = False
     for row in rows:
@@ -71,13 +72,13 @@ def requested_groups(rows):
 
 @kernel
 def write_column(column, speeds, code, forces, work):
-    """Write speeds, regime and forces to one output column.
+    """Write V, omega, delta, regime, force and torque to one output column.
 
     column: int, index of the output time.
-    speeds: (V, omega, delta), dimensionless, in fixed directions, not in those of the regime.
+    speeds: (V, omega, delta), dimensionless; V and omega in fixed directions, not in those of the regime.
     code: int, regime in the outputs: FULL_SLIP, PARTIAL_SLIP, AT_REST, OMEGA_LOCKED or HELD_AT_REST (:mod:`.records`).
     forces: (force, torque), dimensionless, in fixed directions too.
-    work: Workspace, whose outputs are written.
+    work: Workspace, of whose ``outputs`` rows 0, 1, 4, 5, 6 and 7 are written at ``column``.
     """
     out, (V, omega, delta), (force, torque) = work.outputs, speeds, forces
     out[0, column], out[1, column], out[4, column], out[5, column] = V, omega, delta, code
@@ -89,9 +90,10 @@ def write_quadrature(column, n, increase, work):
     """Write one quadrature to one output column: its total up to the last accepted step plus an increase.
 
     column: int, index of the output time.
-    n: int, the quadrature: 0 distance, 1 angle, 2 ... 6 energies in the order of :mod:`records`.
+    n: int, the quadrature: 0 distance, 1 angle, 2 loss in slip, 3 loss in rolling, 4 work of the force, 5 work of the
+    torque, 6 loss in the brake; their output rows differ from this order.
     increase: float, since the last accepted step, dimensionless.
-    work: Workspace, with the totals; its outputs are written.
+    work: Workspace, with the totals; one number of its ``outputs`` is written.
     """
     work.outputs[_OUT_QUADRATURES[n], column] = work.nodes[QUADRATURE_TOTALS + n] + increase
 
@@ -107,9 +109,11 @@ def _write_totals(column, work):
 def record_switch(code, step_state, work):
     """Record a change of regime, or of the sign of V, at the time reached.
 
-    code: int, regime behind it, or DIRECTION_REVERSED.
+    code: int, regime behind it in the outputs (:mod:`.records`), or DIRECTION_REVERSED.
     step_state: StepState, with that time.
-    work: Workspace, whose ``switches`` and counts are written.
+    work: Workspace: t = tau/gamma and ``code`` are written to the next row of ``switches`` if it has one.  The number
+    of entries, N_RECORDED in ``nodes``, grows in any case; the number of regime changes, N_SWITCHES, grows unless the
+    code is DIRECTION_REVERSED.
     """
     nodes, switches = work.nodes, work.switches
     n = int(nodes[N_RECORDED])
@@ -121,14 +125,17 @@ def record_switch(code, step_state, work):
 
 @kernel
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
-    """Write the outputs of a cylinder at rest up to a time.
+    """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, and the quadratures keep their
+    totals.
+
+    Force and torque are those of the drive at the output times, not those that hold a prescribed speed.
 
     end: float, that time in tau.
     inclusive: bool, whether an output at ``end`` itself is written too.
-    code: int, regime in the outputs.
+    code: int, regime in the outputs, AT_REST or HELD_AT_REST.
     step_state: StepState, at the present time.
     work: Workspace, of the motion; outputs are written.
-    Returns the StepState at ``end``, with one trial step more.
+    Returns the StepState at ``end``, with one trial step more and the length of the next step not chosen.
     """
     column, tau = step_state.next_output, work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
@@ -141,10 +148,12 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
 
 @kernel
 def _write_state(column, state, segment, regime, work):
-    """Write speeds, regime and, if requested, forces at one output time; the quadratures are written elsewhere.
+    """Write speeds, regime and forces at one output time; the quadratures are written elsewhere.
+
+    Force and torque are those that act (:func:`required_forces`) if a force or torque is requested, else 0.
 
     column: int, index of the output time.
-    state: State, at that time.
+    state: State, at that time, in the direction of the regime; it is written in fixed directions.
     segment: int, index of the segment of the drive at that time.
     regime: Regime, at that time.
     work: Workspace, of the motion; column ``column`` of its outputs is written.
@@ -163,11 +172,15 @@ def _write_state(column, state, segment, regime, work):
 def write_due_outputs(state, regime, step_state, work):
     """Write the outputs at times up to the time reached, times (1 + rtol), by the state reached.
 
+    They are those at the end of the last step, which :func:`accept_step` leaves to the next one.  The quadratures keep
+    their totals.
+
     state: State, at the time reached.
     regime: Regime, at that state.
     step_state: StepState, with that time and the next output.
     work: Workspace, of the motion; outputs are written.
-    Returns the StepState behind these outputs, with the length of the next step not chosen.
+    Returns the StepState at the same time with ``next_output`` behind these outputs, and the length of the next step
+    not chosen.
     """
     column = step_state.next_output
     while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (1.0 + work.options.rtol):
@@ -179,12 +192,12 @@ def write_due_outputs(state, regime, step_state, work):
 
 @inline_kernel
 def _quadrature_at(n, v, step, nodes):
-    """Return the increase of a quadrature from the left end of a step to a position, dimensionless.
+    """Return the increase of a quadrature from the left end of a step to a position, a float, dimensionless.
 
     n: int, index of the quadrature, as of :func:`write_quadrature`.
     v: float, position in [0, 2].
     step: Step, the accepted one.
-    nodes: Workspace.nodes, with the integrands and their dense output.
+    nodes: Workspace.nodes, with the integrand at node 0 and the coefficients of its integral (:func:`fit_integral`).
     """
     first = nodes[ROW_INTEGRANDS + ROW_LENGTH * n]
     return 0.5 * step.h * evaluate_integral(v, first, nodes, ROW_DENSE_QUADRATURES + ROW_LENGTH * n)
@@ -194,10 +207,13 @@ def _quadrature_at(n, v, step, nodes):
 def _evaluate_integrands(regime, work):
     """Store the integrands of the quadratures at all nodes of an accepted step (docs/theory_motion.md, Energy).
 
-    Distance and angle are integrals over t, the energies over tau.
+    In the order of :func:`write_quadrature`, with the traction Q, the moments and the forces that act
+    (:func:`required_forces`): V/gamma and omega/gamma in fixed directions; (omega - V) Q; V M_half_space + omega
+    M_cylinder; force V; torque omega; less the torque of the brake times omega.  All are integrated over tau: distance
+    and angle thus become integrals over t.
 
     regime: Regime, that of the step.
-    work: Workspace, with unknowns and drive at the nodes; rows from ROW_INTEGRANDS on are written.
+    work: Workspace, with unknowns and drive at the nodes; N_QUADRATURES rows from ROW_INTEGRANDS on are written.
     """
     nodes, values = work.nodes, by_value(work)
     direction_over_gamma = regime.direction / values.scene.gamma
@@ -218,10 +234,12 @@ def _evaluate_integrands(regime, work):
 
 @kernel
 def _integral_over_step(row, step, nodes):
-    """Return the integral over tau of a row along a whole step, by Radau quadrature; dimensionless.
+    """Return the integral over tau of a row along a whole step, by Radau quadrature; a float, dimensionless.
+
+    Its N nodes are 1 ... N: the value at node 0 is not read.
 
     row: int, index in ``nodes`` of the values.
-    step: Step, the accepted one.
+    step: Step, the accepted one, whose length is read.
     nodes: Workspace.nodes.
     """
     total = 0.0
@@ -234,16 +252,21 @@ def _integral_over_step(row, step, nodes):
 def accept_step(end, v, step, regime, step_state, work):
     """Accept a step up to a position on it: write the outputs before its end and add up the quadratures.
 
-    An output at the end itself is written with the next step, as the drive may jump there; the last output of the
-    motion is written now.
+    An output at the end itself is written with the next step, as the drive may jump there.  If the end is the last
+    output time, all outputs that are left are written now.
+
+    Quadratures are evaluated only if one is requested.  If nothing drives they are distance, angle and the losses in
+    slip and in rolling; works and the loss in the brake keep their totals.
 
     end: float, tau at that position.
     v: float, the position in [0, 2]; 2: the whole step.
     step: Step, the solved one.
     regime: Regime, that of the step.
     step_state: StepState, at its left end.
-    work: Workspace, with the solution and its dense output; outputs and totals are written.
-    Returns the StepState at ``end``.
+    work: Workspace, with the solution and its dense output; outputs, totals, the integrands and the next entry of
+    ``step_ends``, t = tau/gamma, if it has one, are written.
+    Returns the StepState at ``end``, with one accepted step more; the number of trial steps and the length of the next
+    step stay.
     """
     tau, column = work.output_tau, step_state.next_output
     is_last = end == last_output_tau(work)

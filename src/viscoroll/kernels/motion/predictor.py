@@ -49,15 +49,20 @@ _SHORTER_STEP = 1e-3
 def predict(step, relaxation, dense_step, regime, work):
     """Store the unknowns at nodes 1 ... N from which Newton's iteration of a step starts.
 
-    They are extrapolated from the stored dense output where that is near enough; else V is linear and the second
-    unknown relaxes exponentially, or the motion starts from V = 0.
+    The first of these that applies is taken:
+
+    - the stored dense output, where the step ends at most 1.5 lengths of the dense step beyond its right end; not if
+      the step has the same left end and is shorter than a thousandth of it;
+    - V linear in time and the second unknown relaxing exponentially (:func:`_predict_relaxation`), from V > 0 on, or in
+      full slip if V or omega is not 0;
+    - the departure from rest (:func:`_predict_from_rest`).
 
     step: Step, the trial step.
     relaxation: float, derivative of the slope of the second unknown in itself at the left end, per unit of tau.
     dense_step: Step, whose dense output is stored: the last accepted one, or a longer one that was rejected; h = 0:
-        none.
+    none.
     regime: Regime, that of the step.
-    work: Workspace, with node 0 of the step; nodes 1 ... N are written.
+    work: Workspace, with node 0 of the step; V and the second unknown are written at nodes 1 ... N.
     """
     usable = step.tau > dense_step.tau or step.h > _SHORTER_STEP * dense_step.h
     if usable and dense_step.h > 0.0 and step.tau + step.h <= dense_step.tau + (1.0 + _EXTRAPOLATION) * dense_step.h:
@@ -74,9 +79,9 @@ def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
 
     i: int, the node.
     V: float, speed of the axis, dimensionless.
-    omega_or_d: float, second unknown, dimensionless.
-    full_slip: bool, whether the whole contact slips.
-    nodes: Workspace.nodes.
+    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
+    full_slip: bool, whether the whole contact slips; True: both are stored as they are.
+    nodes: Workspace.nodes; entry ``i`` of ROW_V and ROW_OMEGA_OR_D is written.
     """
     nodes[ROW_V + i] = V if full_slip else max(V, 0.0)
     nodes[ROW_OMEGA_OR_D + i] = omega_or_d if full_slip else min(max(omega_or_d, -1.0), 1.0)
@@ -84,12 +89,15 @@ def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
 
 @kernel
 def _extrapolate(step, dense_step, regime, nodes):
-    """Store the unknowns of a step by the dense output of another one, extrapolated beyond its right end.
+    """Store the unknowns of a step by the dense output of another one, usually extrapolated beyond its right end.
 
-    step: Step, the one to predict.
+    Both are shifted by constants, so that they continue the values at node 0.
+
+    step: Step, the one to predict; its left end lies on ``dense_step`` or at either of its ends.
     dense_step: Step, whose dense output is stored.
     regime: Regime, that of both steps.
-    nodes: Workspace.nodes, with node 0 of ``step`` and the dense output; nodes 1 ... N are written.
+    nodes: Workspace.nodes, with node 0 of ``step`` and the dense output; V and the second unknown are written at nodes
+    1 ... N, limited as by :func:`_store_unknowns`.
     """
     v_start = dense_position(step.tau, dense_step)
     V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
@@ -105,10 +113,13 @@ def _extrapolate(step, dense_step, regime, nodes):
 def _predict_relaxation(step, relaxation, regime, nodes):
     """Store the unknowns with V linear in time and the second unknown relaxing exponentially from the left end on.
 
+    Where the second unknown does not relax, ``relaxation`` times the time being above -1e-8, it is linear in time too.
+
     step: Step, the one to predict, with V > 0 or in full slip at its left end.
-    relaxation: float, derivative of the slope of the second unknown in itself, per unit of tau.
+    relaxation: float, derivative of the slope of the second unknown in itself, per unit of tau; below 0 it relaxes.
     regime: Regime, that of the step.
-    nodes: Workspace.nodes, with node 0; nodes 1 ... N are written.
+    nodes: Workspace.nodes, with node 0; V and the second unknown are written at nodes 1 ... N, limited as by
+    :func:`_store_unknowns`.
     """
     omega_or_d_rate = nodes[ROW_WEIGHTED_RATE] if regime.full_slip else nodes[ROW_WEIGHTED_RATE] / nodes[ROW_V]
     for i in range(1, N + 1):
@@ -120,14 +131,16 @@ def _predict_relaxation(step, relaxation, regime, nodes):
 
 @kernel
 def _predict_from_rest(step, regime, work):
-    """Store the unknowns of a step that starts at V = 0.
+    """Store the unknowns of a step that starts at V = 0, in full slip at V = omega = 0.
 
-    V' changes linearly from its value at the left end, which may be 0, to that of the drive at the right end; d changes
-    linearly to its value at departure under that drive.
+    V' changes linearly from its value at the left end, which may be 0, to that of the drive at the right end.  In full
+    slip omega' does the same.  In partial slip d changes linearly to its value at a departure under the drive at the
+    right end; it stays if no departure in partial slip is possible there.
 
     step: Step, the one to predict.
     regime: Regime, that of the step.
-    work: Workspace, with node 0; nodes 1 ... N are written.
+    work: Workspace, with node 0; V and the second unknown are written at nodes 1 ... N, limited as by
+    :func:`_store_unknowns`.
     """
     nodes = work.nodes
     load, d = evaluate_load(step.tau + step.h, step.segment, regime, work), 0.0

@@ -52,7 +52,7 @@ ZERO_SPEED = 1e-200
 class Scene(NamedTuple):
     """Parameters of Eq. (22) of one motion, dimensionless.
 
-    law : rows of polynomials of the contact law of one material (:mod:`..rows.evaluate`)
+    law : :class:`..rows.record.Law`, rows of polynomials of the contact law of one material
     moments_differ : whether half-space and cylinder take unequal parts of the rolling moment M
     kappa : R/l0, radius of the cylinder divided by the length of the contact at rest
     mu : coefficient of friction
@@ -100,9 +100,9 @@ class Load(NamedTuple):
     V' = inverse_mass (Q - M_half_space + force) + prescribed_V_rate
     omega' = inverse_inertia (-Q - M_cylinder + torque) + prescribed_omega_rate
 
-    force, torque : force on the axis and torque of the motor, without feedback
+    force, torque : force on the axis and torque of the motor, without feedback, which depends on V and omega
     prescribed_V_rate, prescribed_omega_rate : slope in tau of a prescribed speed; 0 where the speed is free
-    brake : largest torque of the brake, at least 0; it enters ``torque`` with the sign against omega
+    brake : largest torque of the brake, at least 0, not signed; it is added to ``torque`` with the sign against omega
     inverse_mass : 1, or 0 where V is prescribed
     inverse_inertia : 1/j, or 0 where omega is prescribed or held at 0 by the brake
     gains : Gains, the feedback
@@ -123,8 +123,9 @@ class Regime(NamedTuple):
 
     full_slip : whether the whole contact slips
     direction : 1 or -1; speeds, forces and torques times this are those of the regime, with V >= 0
-    sigma : 1 or -1, sign of omega - V in full slip, sign of d of the branch of the law in partial slip
-    spin_sign : sign of omega where a brake acts, 0 where none does
+    sigma : 1 or -1; in full slip the sign of the slip omega - V, of a cover less delta_0 V of free rolling; in partial
+        slip the sign of d of the branch of the law
+    spin_sign : sign of omega where a brake acts, 0 where none does; without effect while ``locked``
     locked : whether a brake holds omega at 0
     """
 
@@ -204,10 +205,11 @@ class Workspace(NamedTuple):
 
     scene, drive, options : Scene, Drive and Options, the problem
     output_tau : (k,), times tau of the outputs, increasing
-    outputs : [quantity, time], filled; rows as in :mod:`output`
+    outputs : (13, k), [quantity, time], filled as far as the motion goes, NaN behind it; rows as in :mod:`output`
     with_quadratures : whether distance, angle and energies are requested
     with_forces : whether force and torque are requested
-    switches : (m, 2), filled with t and the code of the regime behind each regime change
+    switches : (m, 2), filled with t and the code of the regime behind each regime change, or DIRECTION_REVERSED, as far
+        as it has room
     step_ends : filled with the end t of each accepted step, as far as it has room
     nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`workspace`)
     p_matrix, d_matrix : pointers to the inverse Newton matrices of p and of the second unknown, column by column

@@ -92,8 +92,11 @@ def _start_step(state, regime, step_state, work):
     state: State, at the time reached.
     regime: Regime, at that state.
     step_state: StepState, with that time and its segment.
-    work: Workspace; node 0 is written.
-    Returns the Regime; at d = 0 in partial slip its sigma is the sign of d', toward which d moves.
+    work: Workspace; node 0 of V, the second unknown, p, p', the weighted rate, the larger speed, V', the relaxation
+    rate and dp'/dp is written.  At V = 0 in partial slip V' is that of p' at fixed d, and the relaxation rate is not
+    finite.
+    Returns the Regime; at d = 0 in partial slip its sigma is the sign of d', toward which d moves, else it is
+    unchanged.
     """
     nodes = work.nodes
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
@@ -112,14 +115,15 @@ def _start_step(state, regime, step_state, work):
 def _end_at_V_zero(step, remaining, state, regime, work):
     """Shorten a trial step to the time at which V is expected to be 0, if that lies on it.
 
-    A prescribed V that comes to 0 at the end of the segment needs no shorter step.
+    A prescribed V that comes to 0 at the end of the segment, or behind it, needs no shorter step.
 
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
     state: State, at the left end.
     regime: Regime, at that state.
     work: Workspace, with node 0.
-    Returns (Step, whether it ends at the time of V = 0).
+    Returns (Step, whether it ends at the expected time of V = 0); the Step is unchanged where that time is behind its
+    end, or inf.
     """
     time = time_to_V_zero(step, state, regime, work)
     if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
@@ -137,7 +141,7 @@ def _find_crossed_event(step, remaining, regime, work):
     remaining: float, time in tau to the end of the segment.
     regime: Regime, that of the step.
     work: Workspace, with the event functions.
-    Returns (event, v in [0, 2]); NO_EVENT for none.
+    Returns (event, v): code of the event and its position in [0, 2]; NO_EVENT for none, and v has no meaning then.
     """
     event, v = find_first_event(step, regime, work)
     at_segment_end = step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
@@ -156,11 +160,18 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
     targets_V_zero: bool, whether the length was chosen to reach V = 0.
-    dense_step: Step, whose dense output is stored.
+    dense_step: Step, whose dense output is stored; h = 0: none.
     regime: Regime, that of the step.
-    work: Workspace, with node 0; nodes and dense output are written.
-    Returns (event, v at which the regime ends, Step, its error divided by its tolerance, Step of the stored dense
-    output).
+    work: Workspace, with node 0; nodes, event functions and dense output are written.
+    Returns (event, v, Step, error, dense_step):
+
+    - event: code of the event that ends the regime, NO_EVENT for none;
+    - v: position at which the regime ends: on the step, or 2, its right end;
+    - Step: the last one tried, whose solution is at the nodes;
+    - error: its error divided by its tolerance; the caller rejects a step above 1, whatever the event.  It is inf where
+      Newton's iteration did not converge; at least 10, or NaN, where no trial ended at the event; at most 1 where the
+      event was missed by the shortest step that time resolves;
+    - dense_step: the Step whose dense output is stored now: the last one whose iteration converged.
     """
     nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
     for _ in range(_MAX_TRIALS):
@@ -206,14 +217,21 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
 def integrate_regime(stick_formed, state, regime, step_state, work):
     """Integrate one regime, step after step, to an event or to the end of the segment.
 
-    stick_formed: bool, whether the stick zone has just formed.
+    A step whose error exceeds its tolerance is repeated shorter.  One that cannot be shortened is accepted with up to
+    ten times its tolerance.  At an equilibrium under a constant drive the rest of the segment is one step in closed
+    form.
+
+    stick_formed: bool, whether the stick zone has just formed; it matters to the first step alone.
     state: State, at the start.
     regime: Regime, to integrate.
-    step_state: StepState, at the start.
-    work: Workspace, of the motion; outputs are written.
-    Returns (event, State, Regime, StepState) at its end; the event is NO_EVENT at the end of the segment, if the
-    allowed steps are used up, or if the rest of the motion is known in closed form, and STEP_FAILED if no step was
-    short enough.
+    step_state: StepState, at the start; h = 0: the length of the first step is chosen here.
+    work: Workspace, of the motion; outputs, quadratures and ends of steps are written.
+    Returns (event, State, Regime, StepState) at the end of the last accepted step.  The Regime is still the one that
+    ends, but sigma may have changed at d = 0.  The event is its code (:mod:`workspace`), or
+
+    - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the motion is exponential
+      (:func:`is_coasting`);
+    - STEP_FAILED if every step was rejected, however short.
     """
     nodes, segment, drive = work.nodes, step_state.segment, work.drive
     end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0

@@ -10,6 +10,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
   the next step.
 - Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
+- Event: int, its code, which is also the index in ``nodes`` of the row with the values of its function: STICK_EDGE,
+  DELTA_ZERO, V_ZERO, OMEGA_ZERO, BELOW_REST_SPEED or BRAKE_RELEASE (:mod:`workspace`).
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
   step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
 """
@@ -52,13 +54,15 @@ _START_ON_EDGE = 2e-14
 
 @kernel
 def _torque_at_locked_wheel(state, regime, step_state, work):
-    """Return the torque that would accelerate a wheel with omega = 0, and the limit of the brake, dimensionless.
+    """Return the torque that would accelerate a wheel with omega = 0, and the largest torque of the brake against it.
 
     state: State, with omega = 0.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
-    Returns (torque of the motor less that of the contact, largest torque of the brake).
+    Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q and M_cylinder,
+    signed, in the direction of the regime; the largest torque of the brake at that time, at least 0, and 0 where no
+    brake acts.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     _, torque, _ = applied_forces(state.V, 0.0, load, regime)
@@ -67,18 +71,20 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
 
 @kernel
 def change_brake(regime, spin_sign, locked):
-    """Return the Regime with another state of its brake; slip and direction stay.
+    """Return the Regime with another state of its brake; full_slip, direction and sigma stay.
 
     regime: Regime, the present one.
-    spin_sign: float, sign of omega where a brake acts, 0 where none does.
-    locked: bool, whether the brake holds omega at 0.
+    spin_sign: float, 1 or -1, sign of omega where a brake acts; 0 where none does.
+    locked: bool, whether the brake holds omega at 0; spin_sign has no effect on the rates then.
     """
     return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, locked)
 
 
 @kernel
 def brake_holds_omega(state, regime, step_state, work):
-    """Return whether the brake holds omega at 0.
+    """Return whether the brake can hold omega at 0 against the torque that would accelerate the wheel; a bool.
+
+    It can if that torque is at most the largest one of the brake; without a brake, only if it is exactly 0.
 
     state: State, with omega = 0.
     regime: Regime, at that state.
@@ -97,6 +103,9 @@ def release_brake(state, regime, step_state, work):
     regime: Regime, the one before.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
+    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque that
+    accelerates the wheel from omega = 0 (1, -1, or 0 for no torque) where the segment has a brake, to 0 where it has
+    none.
     """
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
@@ -107,10 +116,17 @@ def release_brake(state, regime, step_state, work):
 def comes_to_rest(state, regime, step_state, work):
     """Return whether full slip ends at rest: V is 0 where the stick zone would form, so that omega is 0 too.
 
+    V counts as 0 by one of two thresholds:
+
+    - omega is 0, as the brake holds it or it is prescribed to be 0 at this time: V is at most max(1e-14, 10 rtol) times
+      the largest V at the nodes of the step, as the event is located with the error of the step.
+    - in all other cases: V is at most 1e-14 times V at the left end of the step, as rounding leaves it.
+
     state: State, at the event.
     regime: Regime, of full slip.
     step_state: StepState, at the event.
     work: Workspace, with V at the nodes of the step that ends there.
+    Returns a bool.
     """
     prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
     omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
@@ -124,6 +140,9 @@ def comes_to_rest(state, regime, step_state, work):
 def reverse_direction(regime):
     """Return the Regime with the opposite direction, in which the signs of slip and omega are opposite too.
 
+    ``direction``, ``sigma`` and ``spin_sign`` change their signs, ``full_slip`` and ``locked`` stay.  The caller
+    changes the signs of V and omega.
+
     regime: Regime, the present one.
     """
     return Regime(regime.full_slip, -regime.direction, -regime.sigma, -regime.spin_sign, regime.locked)
@@ -135,15 +154,20 @@ def impose_prescribed_speed(state, regime, step_state, work):
     forms.
 
     The error of the integration so far is small relative to the speeds so far, but may be large relative to the speed
-    prescribed from here on.  In partial slip V follows a prescribed omega at fixed d, except where friction is so
-    strong that omega is far below V.
+    prescribed from here on.  With s the prescribed speed in the direction of the regime:
+
+    - no speed prescribed: both are returned unchanged;
+    - omega in full slip: omega becomes s;
+    - omega in partial slip: V is multiplied by max(s/omega, 0) at fixed d; both are unchanged where omega is at most
+      V/2, as under strong friction omega may be far below V;
+    - V in full slip: V becomes s; where s < 0, V becomes -s, omega changes its sign, and the direction is reversed;
+    - V in partial slip: V becomes max(s, 0) at fixed d.
 
     state: State, as integrated, with V >= 0.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
-    Returns (State, Regime) with the prescribed speed; the direction is reversed where V < 0 is prescribed in full slip,
-    in partial slip V is at least 0.
+    Returns (State, Regime), with V >= 0.
     """
     drive, full_slip = work.drive, regime.full_slip
     if drive.prescribed == NOT_PRESCRIBED:
@@ -164,12 +188,27 @@ def impose_prescribed_speed(state, regime, step_state, work):
 def apply_event(event, state, regime, step_state, work):
     """Return state and regime behind an event, in the unknowns of the new regime.
 
-    event: int, STICK_EDGE ... BRAKE_RELEASE.
+    - STICK_EDGE in full slip: the cylinder comes to rest (:func:`comes_to_rest`), or partial slip begins with d =
+      sigma; a prescribed omega is then imposed (:func:`impose_prescribed_speed`) where V changes at least as fast as
+      omega.
+    - STICK_EDGE in partial slip: full slip begins with the same sigma and with the omega of the state.
+    - DELTA_ZERO: sigma changes its sign, d stays.
+    - V_ZERO: the cylinder comes to rest in partial slip, or if omega is 0; else V becomes exactly 0, omega changes its
+      sign, and the direction is reversed.
+    - OMEGA_ZERO: omega is set to 0 in full slip, V and d stay in partial slip; then the brake holds omega, ``locked``
+      is True, or ``spin_sign`` becomes the sign of the torque that accelerates it (:func:`release_brake`).
+    - BRAKE_RELEASE: the brake lets go, :func:`release_brake`.
+
+    BELOW_REST_SPEED does not occur here: it ends the motion.
+
+    event: int, its code, STICK_EDGE ... BRAKE_RELEASE of :mod:`workspace`.
     state: State, at the event.
     regime: Regime, the one that ends.
     step_state: StepState, at the event.
     work: Workspace, with the step that ends there.
-    Returns (whether the cylinder moves, State, Regime).
+    Returns (whether the cylinder moves, State, Regime): it does not move where it comes to rest, or where V is 0 in the
+    partial slip that begins; where it comes to rest by V_ZERO or by :func:`comes_to_rest`, State and Regime are those
+    that were passed.
     """
     full_slip, sigma = regime.full_slip, regime.sigma
     if event == STICK_EDGE and full_slip:
@@ -203,9 +242,15 @@ def enter_segment(state, regime, step_state, work):
     """Return state and regime at the start of a segment of the drive, where a brake may take hold or let go and V may
     reverse.
 
+    In this order: a prescribed speed is imposed (:func:`impose_prescribed_speed`), except at the start of the motion,
+    whose given speeds stay; full slip at V = 0 with V' < 0 gets the opposite direction, so that V grows in it; the
+    state of the brake is set.  On a segment with a brake it holds omega if omega is 0 and the brake is strong enough;
+    else it acts against the sign of omega or, where omega is 0, against the torque that accelerates the wheel.  On a
+    segment without a brake ``spin_sign`` is 0 and ``locked`` False.
+
     state: State, at the end of the segment before, or the start of the motion.
     regime: Regime, at that state.
-    step_state: StepState, with the index of the new segment.
+    step_state: StepState, with the time and the index of the new segment.
     work: Workspace, of the motion.
     Returns (State, Regime).
     """
@@ -226,12 +271,19 @@ def enter_segment(state, regime, step_state, work):
 def initial_regime(V, omega, step_state, work):
     """Return state and regime at the start of a motion from V or omega other than 0; a brake is considered later.
 
-    The regime is full slip where |omega - V| is at least delta_star |V|, Eq. (9).
+    It is partial slip where the excess slip (:func:`.law.excess_slip`; omega - V for half-spaces) is below delta_star
+    |V| in modulus, Eq. (9), full slip where it is above.  Where both differ by rounding, up to 2e-14 of the larger
+    speed, it is partial slip with d = +-1 if |d| would fall from there, else full slip.  From V = 0 it is full slip.
 
-    V, omega: float, initial speeds, dimensionless.
+    If nothing drives and both speeds are below 1e-150, both are first replaced by (V + j omega)/(1 + j), to which
+    sliding brings them at once.
+
+    V, omega: float, initial speeds of either sign, dimensionless.
     step_state: StepState, at the start.
     work: Workspace, of the motion.
-    Returns (State, Regime, whether the stick zone just forms).
+    Returns (State, Regime, stick_formed): the State in the direction of the Regime, which is that of V, or of omega
+    where V is 0; the Regime with the sign of the excess slip as ``sigma`` (1 for 0) and without a brake;
+    ``stick_formed`` is True only for a start in partial slip with d = +-1.
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
         # Sliding ends within a time of that order, at constant V + j omega.
@@ -261,7 +313,10 @@ def regime_code(regime):
 
 @kernel
 def rest_code(step_state, work):
-    """Return the code of V = omega = 0 in the outputs: held by brake or prescribed speed, or at rest.
+    """Return the code of V = omega = 0 in the outputs, an int.
+
+    It is HELD_AT_REST if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
+    AT_REST.
 
     step_state: StepState, with the segment.
     work: Workspace, of the motion.

@@ -1,4 +1,6 @@
-"""Right-hand side of a motion in unknowns in which the law is explicit and that pass V = 0; all derivatives exact.
+"""Right-hand side of a motion in unknowns in which the law is explicit and that pass V = 0.
+
+All derivatives are exact, but that of p' in d in partial slip leaves out the feedback of omega (:class:`Rates`).
 
 In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a direction with V >= 0.  On rows
 of the law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w = (1 - |d|) L, s = sign d and
@@ -30,7 +32,9 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
   whether the brake holds omega at 0.
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
   the next step.
-- Load: force, torque, largest torque of the brake and prescribed slopes at one time, in the direction of the Regime.
+- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
+  torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
+  prescribed or held by the brake) and the gains of the feedback.
 - p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
   (:mod:`rhs`).  p' is its slope in tau.
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
@@ -63,18 +67,15 @@ _SMALL_D = 1e-4
 class Rates(NamedTuple):
     """The right-hand side at a state and its derivatives in V and the second unknown (_dd), dimensionless.
 
-    omega : angular velocity
-    Q : traction, Eq. (17)
-    M_half_space, M_cylinder : the parts of the rolling moment, Eq. (18), that half-space and cylinder take
-    V_rate : V'
-    p : the collocated unknown; V in full slip and under strong friction
-    p_rate : p'
-    weighted_rate : ``weight`` times the slope of the second unknown
-    weight : V in partial slip, 1 in full slip
-    dp_dV, dp_dd : derivatives of p
-    dp_rate_dV, dp_rate_dd : derivatives of p'
-    drate_dV, drate_dd : derivatives of ``weighted_rate``
-    dweight_dV : derivative of ``weight``
+    Derivatives are partial ones: those in V at fixed omega or d, those in the second unknown at fixed V.
+
+    omega : angular velocity Q : traction, Eq. (17); signed, |Q| <= mu M_half_space, M_cylinder : the parts of the
+    rolling moment, Eq. (18), that half-space and cylinder take; in partial slip each contains n V'/2 of the added mass
+    V_rate : V' p : the collocated unknown; V in full slip and under strong friction p_rate : p' weighted_rate :
+    ``weight`` times the slope of the second unknown: V d' in partial slip, omega' in full slip weight : V in partial
+    slip, 1 in full slip dp_dV, dp_dd : derivatives of p dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip
+    without strong friction dp_rate_dd is set to 0, which leaves out the feedback of omega through d drate_dV, drate_dd
+    : derivatives of ``weighted_rate`` dweight_dV : derivative of ``weight``: 1 in partial slip, 0 in full slip
     """
 
     omega: float
@@ -100,9 +101,12 @@ def applied_forces(V, omega, load, regime):
     """Return the applied force and torques, feedback included, in the direction of the regime, dimensionless.
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
-    load: Load, the drive.
-    regime: Regime, with the sign of omega under a brake.
-    Returns (force, torque of the motor, torque of motor and brake together).
+    load: Load, the drive at the time.
+    regime: Regime, of which ``spin_sign`` is read, the sign of omega against which a brake acts; 0: no torque of the
+    brake.
+    Returns (force, torque of the motor, torque of motor and brake together), floats, signed.  Where a speed is
+    prescribed or the brake holds omega at 0, these are not the force and torque that act: those are given by
+    :func:`required_forces`.
     """
     gains = load.gains
     force = load.force + gains.force_V * V + gains.force_omega * omega
@@ -112,14 +116,20 @@ def applied_forces(V, omega, load, regime):
 
 @inline_kernel
 def required_forces(V, omega, rates, load, regime, j):
-    """Return the forces and torques that act: the applied ones, or those that hold a prescribed speed by Eq. (22).
+    """Return the forces and torques that act: the applied ones, or those that Eq. (22) requires of a prescribed speed.
+
+    Force and torque are the applied ones with their feedback, and the brake acts with its largest torque against omega,
+    with three exceptions.  If the brake holds omega at 0 its torque is the one that makes omega' = 0.  Else, if omega
+    is prescribed, the torque of the motor is the one that gives omega' its prescribed slope.  If V is prescribed, the
+    force is the one that gives V' its prescribed slope.
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
-    rates: Rates, at these speeds.
-    load: Load, the drive.
-    regime: Regime, at that state.
-    j: float, moment of inertia, dimensionless.
-    Returns (force, torque of the motor, torque of the brake), in the direction of the regime, dimensionless.
+    rates: Rates, at these speeds; Q and the moments are read.
+    load: Load, the drive at the time.
+    regime: Regime, at that state; ``locked`` and ``spin_sign`` are read.
+    j: float, moment of inertia J/(m R^2), dimensionless.
+    Returns (force, torque of the motor, torque of the brake), floats, signed, in the direction of the regime,
+    dimensionless; the torque of the brake is 0 without one.
     """
     force, torque, _ = applied_forces(V, omega, load, regime)
     brake = -load.brake * regime.spin_sign
@@ -134,10 +144,13 @@ def required_forces(V, omega, rates, load, regime, j):
 
 @inline_kernel
 def has_strong_friction(load, regime, scene):
-    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate.
+    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate; a bool.
 
-    load: Load, with the inverse masses.
-    regime: Regime; only d < 0 in partial slip is concerned.
+    With k = mu/(2 kappa) it is where k inverse_mass > 0.8 (inverse_mass + inverse_inertia), in partial slip with sigma
+    < 0: only there may dp/dV vanish.  It is False in full slip and where V is prescribed.
+
+    load: Load, whose ``inverse_mass`` and ``inverse_inertia`` are read.
+    regime: Regime, that of the state.
     scene: Scene, parameters of Eq. (22).
     """
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
@@ -147,17 +160,20 @@ def has_strong_friction(load, regime, scene):
 
 @inline_kernel
 def partial_slip_rates(V, d, load, regime, scene):
-    """Evaluate the right-hand side in partial slip, with all derivatives, by the equations of the module.
+    """Evaluate the right-hand side in partial slip, with its derivatives, by the equations of the module.
+
+    Trial states of Newton's iteration may lie outside the regime: where sigma d >= 1, Q is sigma mu; where sigma d < 0,
+    the branch of sigma is continued beyond d = 0; V may be below 0.  At V = 0 all values are finite.
 
     Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L, dVdelta_star = d(V
     delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives of x in V and d.
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
-    d: float, delta/delta_star, dimensionless.
-    load: Load, the drive.
-    regime: Regime, of partial slip.
-    scene: Scene, parameters of Eq. (22), by value.
-    Returns Rates, dimensionless.
+    d: float, delta/delta_star, of a cover that of the excess over free rolling; dimensionless.
+    load: Load, the drive at the time.
+    regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under a brake.
+    scene: Scene, parameters of Eq. (22), by value; mu > 0.
+    Returns Rates, dimensionless, with the derivatives of partial slip: the second unknown is d and the weight V.
     """
     law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
     u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
@@ -218,13 +234,16 @@ def partial_slip_rates(V, d, load, regime, scene):
 
 @inline_kernel
 def full_slip_rates(V, omega, load, regime, scene):
-    """Evaluate the right-hand side in full slip, where Q = +-mu, with all derivatives, Eqs. (17), (22).
+    """Evaluate the right-hand side in full slip, where Q = sigma mu, with all derivatives, Eqs. (17), (22).
+
+    V may have either sign, as the moments are odd in V.  The added mass of slow speed changes does not act in full
+    slip.
 
     V, omega: float, the speeds in the direction of the regime, dimensionless.
-    load: Load, the drive.
-    regime: Regime, of full slip.
+    load: Load, the drive at the time.
+    regime: Regime, of full slip; sigma is the sign of Q, spin_sign that of omega under a brake.
     scene: Scene, parameters of Eq. (22), by value.
-    Returns Rates, dimensionless.
+    Returns Rates, dimensionless: the second unknown is omega, the weight is 1, p is V.
     """
     u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
@@ -241,10 +260,12 @@ def full_slip_rates(V, omega, load, regime, scene):
 
 @inline_kernel
 def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
-    """Evaluate the right-hand side of the regime; inlined in Newton's iteration.
+    """Evaluate the right-hand side of the regime: :func:`full_slip_rates` or :func:`partial_slip_rates`.
 
-    V: float, speed of the axis, dimensionless.
-    omega_or_d: float, second unknown, dimensionless.
+    It is inlined in Newton's iteration and in the quadratures, so that the compiler leaves out what they do not read.
+
+    V: float, speed of the axis in the direction of the regime, dimensionless.
+    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
     load: Load, the drive at the time.
     regime: Regime, full or partial slip.
     scene: Scene, parameters of Eq. (22), by value.
@@ -257,14 +278,14 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
 
 @kernel
 def evaluate_rhs(state, load, regime, scene):
-    """Evaluate the right-hand side of the regime, as a function that is compiled once and called.
+    """Evaluate the right-hand side of the regime by a function that is compiled once and called.
 
-    Newton's iteration takes :func:`evaluate_rhs_inline` instead.
+    The values are those of :func:`evaluate_rhs_inline`, which Newton's iteration takes instead.
 
-    state: State, the unknowns.
+    state: State, the unknowns, in the direction of the regime.
     load: Load, the drive at the time.
     regime: Regime, full or partial slip.
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, parameters of Eq. (22), by reference.
     Returns Rates, dimensionless.
     """
     return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
@@ -272,11 +293,11 @@ def evaluate_rhs(state, load, regime, scene):
 
 @kernel
 def current_rates(state, regime, step_state, work):
-    """Return the right-hand side, Rates, at a state and the time reached.
+    """Return the right-hand side at a state and the time reached, :class:`Rates`, dimensionless.
 
-    state: State, the unknowns.
-    regime: Regime, the present one.
-    step_state: StepState, with that time and its segment.
+    state: State, the unknowns, in the direction of the regime.
+    regime: Regime, the present one, which tells what the second unknown is.
+    step_state: StepState, with that time and its segment of the drive.
     work: Workspace, of the motion.
     """
     return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
@@ -286,10 +307,11 @@ def current_rates(state, regime, step_state, work):
 def rhs_and_forces_at_node(i, regime, work):
     """Evaluate the right-hand side and the forces that act at a node of a step.
 
-    i: int, the node.
+    i: int, the node, 0 ... N.
     regime: Regime, that of the step.
     work: Workspace, with unknowns and drive at the nodes.
-    Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless.
+    Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the direction of the regime,
+    as :func:`required_forces` returns them.
     """
     state, load = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i]), load_at_node(i, regime, work)
     rates = evaluate_rhs(state, load, regime, work.scene)

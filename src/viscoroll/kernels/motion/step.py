@@ -91,9 +91,10 @@ _QUADRATIC_CONTRACTION = 10.0
 def store_rhs(i, rates, nodes):
     """Store p, p', the weighted rate of the second unknown and max(|V|, |omega|) at a node.
 
-    i: int, the node.
+    i: int, the node, 0 ... N.
     rates: Rates, the right-hand side at the node.
-    nodes: Workspace.nodes, with V at the node.
+    nodes: Workspace.nodes, with V at the node; entry ``i`` of ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED is
+    written.
     """
     nodes[ROW_P_RATE + i], nodes[ROW_WEIGHTED_RATE + i] = rates.p_rate, rates.weighted_rate
     nodes[ROW_P + i], nodes[ROW_SPEED + i] = rates.p, max(abs(nodes[ROW_V + i]), abs(rates.omega))
@@ -103,10 +104,15 @@ def store_rhs(i, rates, nodes):
 def _evaluate_residuals(refactor, step, regime, work):
     """Evaluate the right-hand side and the residuals of both collocation equations at nodes 1 ... N.
 
+    With h half the length of the step and D the differentiation matrix, the residuals are h p' - D p, and h b - weight
+    (D x) for the second unknown x with its weighted rate b.  They are in the units of p and of weight times x.
+
     refactor: bool, whether the derivatives that the Newton matrices consist of are stored too.
     step: Step, the trial step.
     regime: Regime, that of the step.
-    work: Workspace, with the unknowns and the drive at the nodes; rows of residuals are written.
+    work: Workspace, with the unknowns and the drive at the nodes.  The rows of the residuals and slopes, ROW_P,
+    ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED are written; with ``refactor`` also ROW_DV_DP, ROW_DP_DD, ROW_COUPLING,
+    ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK and the two diagonals.
     """
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
@@ -133,7 +139,8 @@ def _evaluate_residuals(refactor, step, regime, work):
 def _add_feedback_to_matrix(work):
     """Add the effect of the second unknown on p', diag(F) S^-1 diag(c) of the module, to the Newton matrix of p.
 
-    work: Workspace, with S^-1 in ``d_matrix``; ``p_matrix`` is changed.
+    work: Workspace, with S^-1 in ``d_matrix``, F in ROW_FEEDBACK and c in ROW_COUPLING; rows and columns 1 ... N of
+    ``p_matrix`` are changed.
     """
     for k in range(1, ROW_LENGTH):
         for i in range(1, ROW_LENGTH):
@@ -145,12 +152,14 @@ def _add_feedback_to_matrix(work):
 def _newton_iteration(refactor, coupled, step, regime, work):
     """Do one Newton iteration of both collocation equations at nodes 1 ... N, and update the unknowns.
 
-    refactor: bool, whether to evaluate and invert the Newton matrices again.
+    refactor: bool, whether to evaluate and invert the Newton matrices again; False: the stored inverses are used.
     coupled: bool, whether p' depends on the second unknown, so that the system of p contains feedback.
     step: Step, the trial step.
     regime: Regime, that of the step.
-    work: Workspace, with the unknowns and the drive at the nodes; the unknowns are changed.
-    Returns the largest update of an unknown divided by its error scale, dimensionless; NaN if an update is.
+    work: Workspace, with the unknowns and the drive at the nodes; V, the second unknown and p are changed at nodes 1
+    ... N, and with ``refactor`` the two matrices.
+    Returns the largest update of an unknown divided by its error scale (:func:`error_scales`, of the updated unknowns),
+    a float >= 0, dimensionless; NaN if an update is NaN.
     """
     nodes, p_matrix, d_matrix = work.nodes, work.p_matrix, work.d_matrix
     if refactor:
@@ -190,12 +199,20 @@ def _newton_iteration(refactor, coupled, step, regime, work):
 def solve_step(step, relaxation, dense_step, regime, work):
     """Solve a trial step from node 0 on by a simplified Newton iteration and store its dense output.
 
+    The iteration has converged when the last update times the ratio of the last two updates, an estimate of the error
+    that is left, is at most 0.016 times the tolerance of the step, max(0.25 rtol, 1e-14), or at most 1e-14.  At the
+    first iteration the ratio is taken to be at most 0.1, less for a small update.
+
     step: Step, the trial step.
-    relaxation: float, derivative of the slope of the second unknown in itself at node 0, per unit of tau.
-    dense_step: Step, whose dense output is stored on entry, for the predictor.
+    relaxation: float, derivative of the slope of the second unknown in itself at node 0, per unit of tau; only the
+    predictor reads it.
+    dense_step: Step, whose dense output is stored on entry, for the predictor; one with h = 0 if none is.
     regime: Regime, that of the step.
-    work: Workspace, with node 0; the nodes and the dense output are written.
-    Returns whether the iteration converged within _MAX_ITERATIONS.
+    work: Workspace, with node 0; the drive, nodes 1 ... N and the Newton matrices are written.
+    Returns True if the iteration converged: the dense output of V and of the second unknown is then that of ``step``.
+    Returns False if it did not within _MAX_ITERATIONS, or if an update was 1e6 or more times its scale, twice the one
+    before or larger, or NaN: nodes 1 ... N then hold the last iterate, and the dense output is still that of
+    ``dense_step``.
     """
     nodes, tolerance = work.nodes, max(ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
     stop = max(NEWTON_FRACTION * tolerance, LEAST_TOLERANCE)

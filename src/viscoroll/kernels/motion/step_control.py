@@ -82,10 +82,10 @@ _LATER_REJECTION = 0.4
 
 @inline_kernel
 def moderate_speed(scene):
-    """Return the V that divides slow from fast rolling, dimensionless.
+    """Return the V that divides slow from fast rolling, a float above 0, dimensionless.
 
-    It is between 0.5 and 1 times 1/kappa divided by the longest time of the material, by the octave of the first row of
-    the law.
+    It is between 0.5 and 1 times 1/kappa divided by the longest time of the material in units of T_epsilon, by the
+    octave of the first row of the law.
 
     scene: Scene, parameters of Eq. (22).
     """
@@ -96,10 +96,15 @@ def moderate_speed(scene):
 def _time_to_reach_V(V_change, step_state, regime, work):
     """Return the time in tau in which V rises from 0 to a small value, with V' linear as the drive makes it.
 
-    V_change: float, that V, dimensionless.
+    V' is V'(0) of node 0, at least 0, plus a slope from a second V' a thousandth of the segment later, in which d is
+    that of a departure under the drive there, or that of node 0 if the equation of d has no root.
+
+    V_change: float, that V, above 0, dimensionless.
     step_state: StepState, at V = 0.
     regime: Regime, at that state.
     work: Workspace, with node 0.
+    Returns a float, at least 0: the time at which V has its maximum if V does not reach V_change, which is 0 if V'
+    falls from 0; a very large number or inf if V' and its slope are 0.
     """
     lookahead, V_rate = _LOOKAHEAD * (segment_end(step_state.segment, work) - step_state.tau), work.nodes[ROW_V_RATE]
     load = evaluate_load(step_state.tau + lookahead, step_state.segment, regime, work)
@@ -117,11 +122,18 @@ def _time_to_reach_V(V_change, step_state, regime, work):
 def first_step_length(stick_formed, step_state, regime, work):
     """Return the length in tau of the first step of a regime; inf if nothing limits it.
 
+    In full slip the larger speed changes by 0.4 of itself at the rates of the start, and V by V plus the moderate speed
+    at most.  In partial slip the step is three relaxation times of d, and V changes by 0.4 of itself at most; if the
+    stick zone has just formed, d changes by a small part instead, as d' bends there.  From V = 0 on in partial slip the
+    step ends at a small V (:func:`_time_to_reach_V`).
+
     stick_formed: bool, whether the stick zone has just formed: then d' changes within a small part of the remaining
-    slip.
+    slip; ignored in full slip and at V = 0.
     step_state: StepState, at the start of the regime.
     regime: Regime, the new one.
     work: Workspace, with node 0.
+    Returns a float, at least 0; it is 0 where the stick zone has just formed and d' is exactly 0, and inf in full slip
+    at rest or without any rate.
     """
     nodes, scene = work.nodes, work.scene
     V, V_rate, rate = nodes[ROW_V], abs(nodes[ROW_V_RATE]), abs(nodes[ROW_WEIGHTED_RATE])
@@ -146,14 +158,17 @@ def first_step_length(stick_formed, step_state, regime, work):
 
 @inline_kernel
 def time_to_V_zero(step, state, regime, work):
-    """Return the time in tau until V = 0 at the initial V'; inf if V does not decrease.
+    """Return the time in tau until V = 0 at the initial V', which is V/|V'|; inf if V does not decrease.
 
-    At V = 0 the law has a kink, which no step may contain.  In partial slip V only comes to 0 against the drive.
+    At V = 0 the law has a kink, which no step may contain.  In partial slip V comes to 0 only against the drive: there
+    the result is inf too if nothing drives, and if the prescribed slopes or, where they are 0, force plus torque
+    without feedback do not act against V.
 
     step: Step, the trial step.
     state: State, at its left end.
     regime: Regime, that of the step.
-    work: Workspace, with node 0.
+    work: Workspace, with V' at node 0.
+    Returns a float, at least 0.
     """
     V_rate = work.nodes[ROW_V_RATE]
     if not V_rate < 0.0:
@@ -173,12 +188,14 @@ def time_to_V_zero(step, state, regime, work):
 def step_length_after_relaxation(step, regime, work):
     """Return the length in tau of the step after one along which d has relaxed.
 
-    Behind it d follows V, which changes slowly.
+    Behind it d follows V, which changes slowly: V may change by 4 rtol^(1/8) of itself, at the rate p' dV/dp or, if
+    that is larger, at the rate V dp'/dp.
 
     step: Step, the accepted one.
     regime: Regime, that of the step.
-    work: Workspace, with its nodes.
-    Returns 0 in full slip, or if d has not relaxed.
+    work: Workspace, with the rates and derivatives at its last node.
+    Returns a float: 0 in full slip, or if the step spans six relaxation times of d or fewer; inf where V' and dp'/dp
+    are 0.
     """
     nodes = work.nodes
     if regime.full_slip or not nodes[ROW_RELAXATION + N] * step.h < -_RELAXED_TIMES:
@@ -192,13 +209,17 @@ def step_length_after_relaxation(step, regime, work):
 def next_step_length(step, error, n_rejected, last_h, last_error):
     """Return the length in tau of the step after a trial step, by its error.
 
-    Behind a boundary layer errors stay small although steps grow: then they may grow faster.
+    The length is that of the trial step times 0.9 error^(-1/7), in [0.1, 6].  Behind a boundary layer errors stay small
+    although steps grow: behind an accepted step the length may then be up to 1.3 times larger still.  Behind a rejected
+    one it is at most 0.7 of that of the trial step at the first rejection and 0.4 at later ones.
 
     step: Step, the trial step.
-    error: float, its error divided by its tolerance; inf if Newton's iteration did not converge.
+    error: float, its error divided by its tolerance, accepted up to 1; inf or NaN if Newton's iteration did not
+    converge: the length is then multiplied by 0.3.
     n_rejected: int, number of rejected trial steps with the same left end before it.
     last_h: float, length in tau of the last accepted step; 0 without one.
-    last_error: float, error of that step divided by its tolerance.
+    last_error: float, error of that step divided by its tolerance; ignored without one.
+    Returns a float above 0.
     """
     h = _NEWTON_FAILURE * step.h
     if error < 1e300:

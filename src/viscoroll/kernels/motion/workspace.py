@@ -116,11 +116,11 @@ WORKSPACE_SIZE = N_SWITCHES + 4
 
 @inline_kernel
 def change_slip(regime, full_slip, sigma):
-    """Return the Regime with full or partial slip and another sigma; direction and brake stay.
+    """Return the Regime with full or partial slip and another sigma; direction, spin_sign and locked stay.
 
     regime: Regime, the present one.
     full_slip: bool, whether the whole contact slips.
-    sigma: float, 1 or -1, sign of omega - V in full slip, of d in partial slip.
+    sigma: float, 1 or -1, sign of the excess slip (:func:`.law.excess_slip`) in full slip, of d in partial slip.
     """
     return Regime(full_slip, regime.direction, sigma, regime.spin_sign, regime.locked)
 
@@ -145,7 +145,7 @@ def node_time(step, i):
 
 @inline_kernel
 def dense_position(tau, step):
-    """Return the position of a time on a step, in [0, 2]: 0 at its left end, 2 at its right end, more beyond it.
+    """Return the position v of a time on a step: 0 at its left end, 2 at its right end, more beyond it; a float.
 
     tau: float, the time; times before the left end count as the left end.
     step: Step, with a length above 0.
@@ -155,11 +155,11 @@ def dense_position(tau, step):
 
 @inline_kernel
 def set_step_length(h, n_trials, step_state):
-    """Return the StepState with another length of the next trial step and a new count of trial steps.
+    """Return the StepState with another length of the next trial step and a larger count of trial steps.
 
     h: float, that length in tau; 0 if it is not chosen yet.
     n_trials: int, number added to the count: 1 after a trial step, 0 where only the length changes.
-    step_state: StepState, the present one.
+    step_state: StepState, the present one; its other fields stay.
     """
     tau, next_output, segment, n_steps, n_accepted, _ = step_state
     return StepState(tau, next_output, segment, n_steps + n_trials, n_accepted, h)
@@ -169,7 +169,7 @@ def set_step_length(h, n_trials, step_state):
 def dense_state(v, nodes):
     """Return the State at a position of a step by its dense output.
 
-    v: float, position in [0, 2].
+    v: float, position: 0 at the left end, 2 at the right end; outside the polynomials are extrapolated.
     nodes: Workspace.nodes, with node 0 and the dense output of the step.
     """
     return State(

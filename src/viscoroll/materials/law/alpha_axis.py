@@ -26,12 +26,14 @@ OCTAVES = math.frexp(HIGHEST_ALPHA)[1]
 class LawAxis:
     """The law of one relaxation time, with unit of time T_epsilon, for all alpha of some octaves; arrays are read only.
 
+    alpha is the instantaneous divided by the long-time modulus, dimensionless.
+
     Attributes
     ----------
     coefficients : (octaves of alpha, 16 terms, rows, 24 powers, 6 functions), the functions as
-        :data:`.pack.AXIS_FUNCTIONS`.  For alpha in [2^n, 2^(n+1)) a row is the sum of its terms times
-        T_j(2 log2(alpha/2^n) - 1).  All octaves have equal numbers of rows: those beyond the last of an octave, in the
-        fast limit, are zero.
+        :data:`.pack.AXIS_FUNCTIONS`, of which epsilon, M/V and N are divided by (alpha - 1)/alpha.  For alpha in [2^n,
+        2^(n+1)) a row is the sum of its terms times T_j(2 log2(alpha/2^n) - 1).  All octaves have equal numbers of
+        rows: those beyond the last of an octave, in the fast limit, are zero.
     rows : number of rows of each octave of alpha.
     first : log2 of the lowest alpha.
     e0 : exponent of the end of the first row.
@@ -50,13 +52,15 @@ class LawAxis:
     def at(self, alpha: float) -> LawTable:
         """Return the law of one ``alpha``, with T_epsilon for the unit of time.
 
-        alpha: instantaneous divided by long-time modulus, dimensionless, in the range of the axis.
-        Returns the :class:`LawTable`, whose rows are interpolated in ln alpha to rounding.
+        alpha: instantaneous divided by long-time modulus, dimensionless, from the lowest to the highest alpha of the
+            axis (:attr:`alpha`), both included.
+        Returns the :class:`LawTable`, whose rows are interpolated in ln alpha to rounding; of 1 that of elastic bodies,
+        a single row of constants.
 
         Raises
         ------
         ParameterError
-            An alpha outside the axis.
+            An alpha outside the axis, or no finite number.
         """
         low, high = self.alpha
         alpha = check_number("alpha", alpha, low=low, high=high)
@@ -72,7 +76,8 @@ def law_axis(low: float, high: float) -> LawAxis:
     """Compute the law of one relaxation time for all alpha of the octaves in which two values lie.
 
     low, high: alpha, dimensionless, 1 <= low < high <= 1e12.
-    Returns the :class:`LawAxis`, from the octave [2^n, 2^(n+1)) of ``low`` to that which ends at or above ``high``.
+    Returns the :class:`LawAxis`, from the octave [2^n, 2^(n+1)) of ``low`` to that which ends at or above ``high``: its
+    range includes both values and is mostly wider.
 
     Raises
     ------
@@ -96,12 +101,20 @@ def law_axis(low: float, high: float) -> LawAxis:
 
 
 def tables_of_octave(octave: int) -> list[LawTable]:
-    """Return the tables at the 16 nodes of the octave [2^octave, 2^(octave+1)) of alpha; all have as many rows."""
+    """Return the tables at the 16 Chebyshev nodes of an octave of alpha, from which it is interpolated.
+
+    octave: n of the octave [2^n, 2^(n+1)), from 0 to 39.
+    Returns a list of :class:`.table.LawTable`, in the order of the nodes, all with equal numbers of rows.
+    """
     return [make_table(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
 
 
 def alpha_terms(values: Floats) -> Floats:
-    """Return the Chebyshev terms of functions given by their ``values`` at the nodes of an octave, [node, ...]."""
+    """Return the Chebyshev terms of functions of alpha, by :func:`numpy.einsum`.
+
+    values: values of the functions at the nodes of an octave, (16, ...).
+    Returns the coefficients of T_0 to T_15 in s = 2 log2(alpha/2^n) - 1, in the same shape.
+    """
     return np.einsum("jk,k...->j...", _nodes()[1], values)
 
 

@@ -1,4 +1,9 @@
-"""The pressure of a cover along its contact, and the mean strain of the surface that it makes as on half-spaces."""
+"""The pressure of a cover along its contact, and the mean strain of the surface that it makes as on half-spaces.
+
+Notation as in :mod:`.cover_solve`: z is half the contact length over V T_ref, with T_ref the unit of time of the
+cover's series; x is the position from the middle of the contact over half its length, 1 at the front edge; the pressure
+p is sqrt(1 - x^2) sum q_m U_(m-1)(x).
+"""
 
 from __future__ import annotations
 
@@ -18,11 +23,12 @@ _DECAYED = 700.0
 def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
     """Return the pressure along the contact, divided by 2 P/(pi a), the largest pressure of Hertz on half length a.
 
-    modes: of the cover.
-    z: a divided by V T_ref, > 0; infinite for V = 0.
-    theta: a divided by the thickness.
+    modes: :class:`CoverModes` of the cover and the other body.
+    z: a divided by V T_ref, dimensionless, > 0; infinite for V = 0, where the bodies are taken as elastic with their
+        long-time moduli.
+    theta: a divided by the thickness, dimensionless, in (0, 6].
     x: positions divided by a, from the middle of the contact, positive along V, any shape.
-    Returns the pressure, dimensionless, in the shape of x; 0 outside [-1, 1].
+    Returns the pressure, dimensionless, in the shape of x; 0 at the ends of and outside [-1, 1].
     """
     from numpy.polynomial.chebyshev import chebder, chebval
 
@@ -39,13 +45,15 @@ def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
 
 
 def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) -> Floats:
-    """Return the first coefficients of the pressure, q_m for m = 1, 2, ..., (count,).
+    """Return the first coefficients of the pressure, more of them than the solve has.
 
     The pressure is sqrt(1 - x^2) sum q_m U_(m-1)(x), x in [-1, 1].
-    modes: of the cover.
-    z: half contact length divided by V T_ref.
-    state: contact of that length; its own coefficients are taken, further ones follow from its relaxation modes.
+    modes: :class:`CoverModes` of the cover and the other body.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    state: :class:`CoverState` of the contact of that length; its own coefficients are taken, further ones follow from
+        its relaxation modes and are 0 without such modes.
     count: number of coefficients, not below that of ``state``.
+    Returns q_m for m = 1, 2, ..., (count,).
     """
     from scipy.special import ive
 
@@ -56,14 +64,16 @@ def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) 
 
 
 def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:
-    """Return the mean strain by the coupling of half-spaces, -C J p at each point, less that of the other body.
+    """Return the mean strain of the layer's surface by the coupling of half-spaces, less that of the other body.
 
-    The mean over the contact has the pressure as weight.  It is 0 for nu = 1/2 of both bodies, and accurate to 1e-5 of
-    itself: the pressure is taken as linear between points.
-    modes: of the cover.
-    z: half contact length divided by V T_ref.
-    state: contact of that length.
-    Returns the strain in units of V T_ref/R, positive where the surface is stretched.
+    The strain at each point is -C J p: C = (1 - 2 nu)/(2 - 2 nu), J the compliance of the body with its memory, p the
+        pressure; the mean over the contact has the pressure as weight.  It is accurate to 1e-5 of itself, as the
+        pressure is taken as linear between points.
+    modes: :class:`CoverModes` of the cover and the other body.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    state: :class:`CoverState` of the contact of that length.
+    Returns a float, the strain in units of V T_ref/R, positive where the layer's surface is stretched relative to the
+    other.  It is exactly 0.0 for nu = 1/2 of the layer beside a rigid body or one of nu = 1/2.
     """
     local = modes.nodes.local
     if local == 0.0 and modes.other_local == 0.0:
@@ -74,14 +84,15 @@ def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:
 
 
 def _pressure_products(modes: CoverModes, z: float, state: CoverState) -> tuple[float, Floats]:
-    """Return int p^2 dx, and int p f_j dx with f_j = int_0^inf beta_j exp(-beta_j s) p(x + s) ds of each creep mode.
+    """Return the integrals over the contact of p^2, and of p times the memory of p of each creep mode of the layer.
 
-    p is linear between points that are equidistant in arccos x; the memory runs from the front edge x = 1 to the rear.
-    modes: of the cover.
-    z: half contact length divided by V T_ref.
-    state: contact of that length.
-    Returns (the first integral; the second ones, (creep modes of the layer,)), with p in the unit of the coefficients
-    q.
+    The memory is f_j(x) = int_0^inf beta_j exp(-beta_j s) p(x + s) ds with beta_j = b_j z; it runs from the front edge
+    x = 1 to the rear.  p is linear between 513 points that are equidistant in arccos x.
+    modes: :class:`CoverModes` of the cover and the other body.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    state: :class:`CoverState` of the contact of that length.
+    Returns (int p^2 dx, a float; int p f_j dx, (creep modes of the layer,), empty for an elastic layer), x from -1 to
+    1, with p in the unit of the coefficients q.
     """
     from scipy.fft import dst
 

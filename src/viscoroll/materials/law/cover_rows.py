@@ -6,6 +6,10 @@ from a start that is extrapolated from the nodes before.  Octaves are interpolat
 octave there is a polynomial of u, beyond the last one a polynomial of 1/u, both with the limits of elastic layers.
 Beside a half-space that relaxes too, that of 1/u has a second one times ln u: long waves then have a memory of their
 own, which the core does not cut off.
+
+The five quantities of a node, in the order of the indices below, are lam, L = 2 kappa delta_star/mu, 2 kappa delta_0,
+epsilon and M/V, dimensionless, with M in units of P R, V in units of R/T_ref, and T_ref the unit of time of the cover's
+series.  Until :func:`cover_rows` has set its sign, delta_0 is that of a cover on the base.
 """
 
 from __future__ import annotations
@@ -71,11 +75,13 @@ _EXTRAPOLATION = np.array([(-1.0) ** (k + 1) * math.comb(8, k) for k in range(8,
 def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     """Compute the law of a cover over all speeds; takes 0.1 to 0.3 s.
 
-    cover: one cover.
-    thickest: thickness divided by l0 that determines the number of rows, for several covers to have as many; None:
-        that of the cover.
-    Returns the polynomials and their limits of fast rolling, as :class:`CoverRows`; of elastic bodies a single row.
-    Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
+    cover: one :class:`..cover.Cover`, of a single thickness and Poisson's ratio.
+    thickest: thickness divided by l0 that determines the number of rows in place of that of the cover, for several
+        covers to have as many; None: that of the cover.  It has no effect for elastic bodies.
+    Returns the polynomials and their limits of fast rolling, as :class:`.pack.CoverRows`; of elastic bodies a single
+    row of constants, with epsilon = M = 0.
+    Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses, and where at
+    some speed no contact length that carries the load is found.
     """
     # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder
     modes, thickness, side = CoverModes(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
@@ -116,14 +122,14 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
 
 
 def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
-    """Solve one state of a cover, without rows; the rows are compared with it.
+    """Solve one state of a cover, without rows; the rows are compared with it in tests.
 
-    cover: one cover.
+    cover: one :class:`..cover.Cover`.
     u: kappa |V|, dimensionless, > 0.
-    orders: terms of the pressure; None: as many as rows are made with.
+    orders: number of terms of the pressure; None: as many as rows are made with (:func:`.cover_solve.solve`).
     Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, dimensionless,
-    (5,).
-    Raises ParameterError where no contact length carries the load.
+    (5,).  For a cover on the cylinder delta_0 has the other sign.
+    Raises ParameterError where no contact length that carries the load is found.
     """
     return _solve_node(CoverModes(cover), u, orders=orders)[0]
 
@@ -136,17 +142,21 @@ def _solve_node(
     orders: int | None = None,
     stiffness: float = 1.0,
 ) -> tuple[Floats, float, float]:
-    """Solve for the half contact length that carries the load, ln H = -ln(4 stiffness u^2), by the secant method.
+    """Solve for the half contact length that carries the load at one speed, by the secant method.
 
-    The unknown is ln z, z the half contact length divided by V T_ref.
-    modes: of the cover.
+    The unknown is ln z, z the half contact length divided by V T_ref; the equation is ln H = -ln(4 stiffness u^2) with
+    the load H of :class:`.cover_solve.CoverState`.  At the end all quantities are extrapolated by the last secant step.
+    modes: :class:`CoverModes` of the cover and the other body.
     u: kappa |V|, dimensionless, > 0.
-    start: first approximation of ln z; None: that of a half-space of a stiffness between slow and fast.
-    slope: first approximation of d ln H/d ln z.
-    orders: terms of the pressure; None: the default of the solve.
-    stiffness: stiffness of the bodies divided by their long-time stiffness.
-    Returns (lam, L, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,); ln z; d ln H/d ln z).
-    Raises ParameterError where the secant method reaches its limit of steps.
+    start: first approximation of ln z; None: that of a half-space of a stiffness between slow and fast, shortened for a
+        thin cover.
+    slope: first approximation of d ln H/d ln z, > 0; 2 is that of a half-space.
+    orders: number of terms of the pressure; None: the default of the solve.
+    stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the ``modes`` of elastic bodies;
+        1: the modes have their own stiffness.
+    Returns (lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,),
+    dimensionless; ln z; d ln H/d ln z).
+    Raises ParameterError where the secant method reaches its limit of 40 steps.
     """
     goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
     if start is None:
@@ -174,11 +184,15 @@ def _solve_node(
 
 
 def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
-    """Solve the states of a cover at increasing speeds, each from a start that is extrapolated from those before.
+    """Solve the states of a cover at increasing speeds, each from a start that is extrapolated from the eight before.
 
-    modes: of the cover.
-    u: kappa |V|, evenly spaced in ln u, ascending, (n,).
-    Returns lam, L, 2 kappa delta_0 of a cover on the base, epsilon and M/V at each node, (5, n).
+    The first eight nodes have no extrapolation and take the start of :func:`_solve_node`; the slope of the secant
+    method is passed from node to node.
+    modes: :class:`CoverModes` of the cover and the other body.
+    u: kappa |V|, dimensionless, evenly spaced in ln u, ascending, (n,).
+    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V at each node, (5,
+    n), dimensionless.
+    Raises ParameterError where no contact length that carries the load is found.
     """
     values, logs, slope = np.empty((5, u.size)), np.empty(u.size), 2.0
     for n, speed in enumerate(u.tolist()):
@@ -188,13 +202,19 @@ def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
 
 
 def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
-    """Solve the cover as an elastic layer, the limit of slow or of fast rolling.
+    """Solve the cover with elastic bodies: the limit of slow rolling, all relaxation completed, or of fast rolling.
 
-    Slopes and creep depend on the shape of the contact alone.
-    modes: of the cover.
-    share: the layer's part of the compliance, in (0, 1].
-    stiffness: stiffness of the bodies divided by their long-time stiffness: 1 for slow, alpha for fast rolling.
-    Returns lam, L, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,), the last two 0.
+    lam, L and delta_0 of elastic bodies do not depend on the speed, so that one solve, at u = 1/2, gives them.  In fast
+    rolling all compliances are divided by alpha.  Then the length that carries the load is that of a load alpha times
+    smaller on bodies of the long-time stiffness, and the slopes and creep of elastic bodies depend on that length and
+    the layer's part of the compliance alone: both limits are solved with the long-time stiffness.
+    modes: :class:`CoverModes` of the viscoelastic bodies, of which the Poisson's ratios and the thickness are taken.
+    share: the layer's part of the compliance of both bodies, in (0, 1]: of long times for slow rolling, of the
+        instantaneous compliance for fast rolling.
+    stiffness: stiffness of the bodies divided by their long-time stiffness: 1 for slow rolling, alpha for fast rolling.
+    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,),
+    dimensionless, the last two exactly 0.
+    Raises ParameterError where no contact length that carries the load is found.
     """
     values = _solve_node(modes.elastic(share), 0.5, stiffness=stiffness)[0]
     values[[_EPSILON, _MOMENT]] = 0.0
@@ -204,14 +224,17 @@ def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
 def _fit_fast_rows(
     u: Floats, values: Floats, limits: Floats, x: Floats, begin: float, log_terms: int
 ) -> tuple[Floats, Floats]:
-    """Fit the rows beyond the last octave, where limits, epsilon u and M u^2/V are polynomials of 1/u.
+    """Fit the rows beyond the last octave, where lam, L, 2 kappa delta_0, epsilon and M u/V are polynomials of 1/u.
 
-    u, values: last nodes, (n,), and lam, L, 2 kappa delta_0, epsilon and M/V there, (5, n).
-    limits: of these for u -> infinity, (5,); NaN: not known.
+    u: last nodes of the solve, ascending, (n,), dimensionless.
+    values: lam, L, 2 kappa delta_0, epsilon and M/V there, (5, n); not changed.
+    limits: of these for u -> infinity, (5,); NaN (delta_0): not known, then the value of a fitted polynomial at 1/u = 0
+        is taken.  Those of epsilon and M/V are 0.
     x: nodes of these rows in u, (rows, nodes).
-    begin: u where they begin.
-    log_terms: terms in ln u, as of :func:`_fit_end`.
-    Returns (values and slopes over ln u at x, (2, 5, rows, nodes); :attr:`.pack.CoverRows.limits`, (8,)).
+    begin: u where these rows begin, the end of the last octave.
+    log_terms: number of terms in ln u, as of :func:`_fit_end`.
+    Returns (values and slopes over ln u at x, of the five quantities, (2, 5, rows, nodes);
+    :attr:`.pack.CoverRows.limits`, (8,)).
     """
     y, x_inverse = begin / u, (begin / x).ravel()
     values = values.copy()
@@ -228,23 +251,30 @@ def _fit_fast_rows(
 def _fit_end(
     y: Floats, values: Floats, limits: Floats, wanted: Floats, log_terms: int = 0
 ) -> tuple[Floats, Floats, Floats]:
-    """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares.
+    """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares, at one end of the speeds.
 
-    y: nodes in [0.05, 1], (n,).
-    values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes, (5, n).
-    limits: for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
+    The degree of P is 18 for 2 kappa delta_0 and 12 for the others.
+    y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
+    values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes (at the fast end M/(V y)), (5, n).
+    limits: values for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
     wanted: points in (0, 1], (m,).
-    log_terms: terms of R; 0: none.
-    Returns (limits, (5,); P + R ln y at the last of the points, (5,); values and derivatives with respect to ln y at
-    the points, (2, 5, m)).
+    log_terms: number of terms of R; 0: none.
+    Returns (limits, (5,), without NaN; P + R ln y at the last of the points, (5,); values and derivatives with respect
+    to ln y at the points, (2, 5, m)).
     """
     from numpy.polynomial.chebyshev import chebvander
 
     def basis(y: Any, n: int, log_terms: int) -> Any:
+        """Return the terms of quantity ``n`` at points ``y``, real or complex: polynomials, then those times ln y,
+        (points, terms).
+        """
         terms = chebvander(2.0 * y - 1.0, _STRAIN_DEGREE if n == _FREE else _END_DEGREE)
         return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
     def fit(values: Floats, at: Any, log_terms: int) -> Any:
+        """Fit each quantity to its ``values`` at the nodes y, (5, n), and return the fits at the points ``at``, (5,
+        points).
+        """
         fits = (np.linalg.lstsq(basis(y, n, log_terms), row, rcond=None)[0] for n, row in enumerate(values))
         return np.array([basis(at, n, log_terms) @ terms for n, terms in enumerate(fits)])
 
@@ -258,10 +288,12 @@ def _fit_end(
 def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
     """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes, barycentric.
 
-    values: at the nodes of the solve, which are evenly spaced in log2 u, 12 an octave, (5, n).
-    begin: index of the node where the first octave begins; 18 nodes before it and behind the last octave are used.
+    values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes of the solve, which are evenly spaced in log2 u, 12 an
+        octave, (5, n).
+    begin: index of the node where the first octave begins, at least 18; 18 nodes before each octave and 18 behind it
+        are used.
     count: number of octaves.
-    Returns values and slopes over ln u at the nodes of the octaves, (2, 5, octaves, nodes).
+    Returns values and slopes over ln u at the 24 nodes of each octave, (2, 5, octaves, 24).
     """
     points = PER_OCTAVE + 2 * _ASIDE + 1
     nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
@@ -275,15 +307,17 @@ def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
 
 
 def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
-    """Return eta/F and H/F^2 at the nodes of v = 2 u/L(u), and their derivatives with respect to ln v.
+    """Return eta/F and H/F^2 of a cover at the nodes of v = 1/F(eta), and their derivatives with respect to ln v.
 
-    Where the stick zone has the creep limit F' = w/(2 u), its law is that of the whole contact at the speed u' with
-    L(u')/(2 u') = F': H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').  That u' is found by Newton's method.
+    Where the stick zone has the creep limit F' = w/(2 u), w = L - 2 kappa |delta - delta_0|/mu, its law is taken as
+    that of the whole contact at the speed u' with L(u')/(2 u') = F'.  So v = 2 u'/L(u'), H/F^2 = 1/L(u')^2 and eta/F =
+    lam(u')/L(u').  That u' is found by Newton's method in ln u', from u' = v, until all steps are below 1e-15, in at
+    most 60 steps; nothing is raised if it takes more.
 
-    rows: octaves of u and of v.
-    powers: coefficients of lam, L, 2 kappa delta_0, epsilon and M/V, (5, rows, 24).
-    limits: :attr:`.pack.CoverRows.limits`, used beyond the last row.
-    Returns two arrays (2, rows, nodes): (eta/F, H/F^2), and their derivatives.
+    rows: octaves of u and of v, as :class:`.rows.Rows`.
+    powers: coefficients of lam, L, 2 kappa delta_0, epsilon and M/V over u, (5, rows, 24); lam and L are read.
+    limits: :attr:`.pack.CoverRows.limits`, (8,), which with the first order in 1/u give lam and L beyond the last row.
+    Returns two arrays (2, rows, 24 nodes), dimensionless: (eta/F, H/F^2), and their derivatives.
     """
     v = rows.x.ravel()
     u, end = v.copy(), math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)

@@ -1,21 +1,23 @@
 """Steady rolling on a bonded viscoelastic layer of finite thickness, solved by Chebyshev polynomials.
 
 Plane strain, a constant Poisson's ratio, one Prony series; the layer is bonded to a rigid core or bed and the other
-body is rigid or an elastic half-space.  The pressure is not changed by shear, as everywhere in this package.
+body is rigid or a half-space.  The pressure is not changed by shear, as everywhere in this package.
 
-Notation.  z is the half length of the contact over V T_ref, theta the half length over the thickness h, u = k h the
-wave number times the thickness, v = u theta.  Slopes and creep are over V T_ref/R.  The pressure over E'/(4 pi) is
-sqrt(1 - x^2) sum q_m U_{m-1}(x) for x in [-1, 1].  With relaxation rates a_i and creep rates b_j the exponents on the
-contact are alpha_i = a_i z and beta_j = b_j z.
+Notation.  All quantities are dimensionless.  T_ref is the unit of time of the material, in which its rates are given;
+kappa = R/l0, with l0 the contact length at rest of the same bodies as half-spaces.  z is the half length of the contact
+over V T_ref (zeta of the paper, > 0), theta the half length over the thickness h, u = k h the wave number times the
+thickness, v = u theta.  Slopes and creep are over V T_ref/R.  The pressure over E'/(4 pi) is sqrt(1 - x^2) sum q_m
+U_{m-1}(x) for x in [-1, 1], positive x towards the front edge.  With relaxation rates a_i and creep rates b_j, in
+1/T_ref, the exponents on the contact are alpha_i = a_i z and beta_j = b_j z.
 
 The transforms of the surface displacements of the layer are those of a half-space times L (normal displacement by
-pressure), T (tangential displacement by shear) and C (tangential displacement by pressure).  L - 1 decays like
-exp(-2 u): the layer adds a smooth operator S to the Hilbert transform, and to the memory of each creep mode an excess
-c.  The unknowns are the coefficients q up to order N = 14 + 6 theta; the exponentials of the relaxation modes enter by
-their first N coefficients, so that alpha may be arbitrarily large.
+pressure), T (tangential displacement by shear) and C (tangential displacement by pressure).  L - 1 decays like exp(-2
+u): the layer adds a smooth operator S to the Hilbert transform, and to the memory of each creep mode an excess c.  The
+unknowns are the coefficients q up to order N = 14 + 6 theta; the exponentials of the relaxation modes enter by their
+first N coefficients, so that alpha may be arbitrarily large.
 
 Sources of the method: the law of the half-space in closed form (:mod:`.evaluate`), and the layer's kernels as in
-Johnson, Contact Mechanics (1985), Sect. 5.8.
+    Johnson, Contact Mechanics (1985), Sect. 5.8.
 """
 
 from __future__ import annotations
@@ -61,11 +63,13 @@ _LARGE_BETA = 1e12
 class LayerNodes(NamedTuple):
     """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on Poisson's ratio alone.
 
-    u : nodes, wave number times thickness, (n,).
+    All are dimensionless, (n,) each but ``local``; "the weights" are those of the integral over u.
+
+    u : nodes, wave number times thickness, > 0, ascending.
     L : (L - 1)/u times the weights.
     shear : (T - L)/u times the weights.
     C : C less its limit for short waves, times the weights.
-    local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu).
+    local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu), a float.
     """
 
     u: Floats
@@ -76,16 +80,19 @@ class LayerNodes(NamedTuple):
 
 
 class CoverState(NamedTuple):
-    """The contact at one half length z and one theta; slopes and creep in units of V T_ref/R.
+    """The contact at one half length z and one theta, dimensionless; slopes and creep in units of V T_ref/R.
 
-    load : H = P/(pi/2) in the unit of the pressure; z^2 for an elastic half-space.
-    shift : g, the shift of the contact ahead of the axis.
-    moment : M/(P V).
-    creep_limit : delta_star/(mu V), the creep from which on the whole contact slips.
+    load : H = z q_1, the integral of the pressure over the contact divided by pi/2, in the unit of the pressure and
+        with lengths over V T_ref; z^2 for an elastic half-space.  At the speed u' = kappa |V| the contact carries the
+        load where H = 1/(4 u'^2).
+    shift : g = epsilon z, the shift of the contact ahead of the axis divided by V T_ref.
+    moment : M/V, with M divided by P R and V by R/T_ref.
+    creep_limit : delta_star/mu in units of V T_ref/R: the creep from which on the whole contact slips.
     strain : part of the mean strain of the layer's surface by the pressure (weighted with the pressure) that is due to
         the finite thickness; positive where the surface is stretched.  :func:`.cover_pressure.local_strain` is the
         rest.
-    q, X : terms of the pressure, and amplitudes of the relaxation modes.
+    q : terms of the pressure q_1 ... q_N, (N,).
+    X : amplitudes of the relaxation modes, (modes,); from them follow terms of any higher order.
     """
 
     load: float
@@ -98,11 +105,23 @@ class CoverState(NamedTuple):
 
 
 class CoverModes:
-    """The series of a ``cover``, which is one, in the form that the solve uses; compliances as parts of the long-time
-    compliance of both bodies.
+    """The series of a cover and its Poisson's ratio in the form that :func:`solve` uses.
+
+    Compliances are parts of the long-time compliance of both bodies as half-spaces.
+
+    series : record of the modes of both bodies together (:func:`.evaluate.modes_record`); its rates are in 1/T_ref.
+    J : creep strengths of both bodies together, (modes,).
+    alpha : instantaneous divided by long-time stiffness of both together, float >= 1.
+    cover : the :class:`..cover.Cover`.
+    share : the layer's part of the long-time compliance, in (0, 1].
+    nodes : :class:`LayerNodes` of the layer's Poisson's ratio.
+    layer_J, layer_b : creep strengths and rates of the layer alone, (its modes,).
+    layer_instant : instantaneous compliance of the layer.
+    other_local : coupling C of the other body as a half-space times its part of the compliance; 0 beside a rigid body.
     """
 
     def __init__(self, cover: Cover) -> None:
+        """Compute the modes of one ``cover``, a :class:`..cover.Cover` of a single thickness and Poisson's ratio."""
         modes, layer = cover.total.modes, cover.layer
         self.series, self.J, self.alpha = modes_record(modes), modes.J, float(cover.total.alpha)
         self.cover, self.share, self.nodes = cover, cover.part, layer_nodes(cover.nu)
@@ -111,20 +130,23 @@ class CoverModes:
         self.other_local = (1.0 - self.share) * _half_space_coupling(cover.other_nu)
 
     def elastic(self, share: float) -> CoverModes:
-        """Return the same bodies without relaxation.
+        """Return the same bodies without relaxation: both elastic, with the Poisson's ratios and the thickness of this
+        cover.
 
-        share: the layer's part of the compliance, in (0, 1].
+        share: the layer's part of the compliance of both bodies, in (0, 1].
+        Returns a new :class:`CoverModes` without modes, of alpha = 1.
         """
         cover = self.cover
         return CoverModes(Cover(1.0, nu=cover.nu, thickness=cover.thickness, part=share, other_nu=cover.other_nu))
 
 
 def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
-    """Return the complex compliance of a series for exp(i k Y), (n,).
+    """Return the complex compliance of a series for exp(i k Y), Y being the position along the rolling direction.
 
-    instant: instantaneous compliance.
-    J, b: strengths and rates of creep, (modes,).
+    instant: instantaneous compliance, in any unit.
+    J, b: strengths, in that unit, and rates of creep, in 1/T_ref, (modes,).
     k: wave numbers in units of 1/(V T_ref), (n,).
+    Returns complex numbers (n,) in the unit of ``instant``; without modes they all are ``instant``.
     """
     return instant + (J * b / (b - 1j * k[:, None])).sum(axis=1)
 
@@ -135,14 +157,14 @@ def _half_space_coupling(nu: float) -> float:
 
 
 def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Return nodes and weights of an integral over [0, inf): the trapezoidal rule in s, scale ln(1 + e^s) the
+    """Return nodes and weights of an integral over [0, inf), by the trapezoidal rule in s with scale ln(1 + e^s) as
     variable.
 
     Nodes are dense towards 0; for the integrands here the rule converges exponentially.
-    step: distance of the nodes in s.
-    scale: factor of ln(1 + e^s).
+    step: distance of the nodes in s, > 0.
+    scale: factor of ln(1 + e^s), > 0.
     ends: first and last s; the last one is left out.
-    Returns (nodes in the variable, ascending; weights), (n,) each.
+    Returns (nodes in the variable, ascending; weights), (n,) each, n the number of steps between the ends.
     """
     s = np.arange(*ends, step)
     return scale * np.logaddexp(0.0, s), step * scale / (1.0 + np.exp(-s))
@@ -150,11 +172,11 @@ def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tup
 
 @lru_cache(maxsize=64)
 def layer_nodes(nu: float) -> LayerNodes:
-    """Return the kernels of a layer at the nodes of the integrals over the wave number.
+    """Return the kernels of a layer at the nodes of the integrals over the wave number; kept for the next call.
 
     Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
     nu: Poisson's ratio of the layer, in [0, 0.5].
-    Returns :class:`LayerNodes`, kept for the next call.
+    Returns :class:`LayerNodes`, of about 245 nodes.
     """
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
@@ -169,10 +191,10 @@ def layer_nodes(nu: float) -> LayerNodes:
 def bessel(v: Floats, order: int) -> Floats:
     """Return J_0 ... J_order at v, each with the sign (-1)^(n//2), accurate to 1e-15 absolute.
 
-    They are the Chebyshev coefficients of cos(v x) and sin(v x), without the factor 2, by a discrete sum long enough
-    for aliases to vanish.
-    v: arguments >= 0, (n,).
-    order: highest order.
+    They are the Chebyshev coefficients of cos(v x) (even n) and of sin(v x) (odd n), but for the factor 2 from n = 1
+    on, by a discrete sum long enough for aliases to vanish.
+    v: arguments >= 0, (n,), at least one.
+    order: highest order, >= 0.
     Returns (order + 1, n).
     """
     count = (int(v.max() + 0.5 * order) + 24) & ~1
@@ -186,17 +208,24 @@ def bessel(v: Floats, order: int) -> Floats:
 
 @lru_cache(maxsize=1)
 def _decay_nodes() -> tuple[Floats, Floats]:
-    """Return 2 sinh^2(t/2) at the nodes of t, (n,), and the weights times sinh(t) exp(-n t), [order, node]."""
+    """Return the rule of the integrals D_n of :func:`_decays`, kept for all calls.
+
+    Returns (x - 1 = 2 sinh^2(t/2) at the nodes of t, (n,); the weights times sinh(t) exp(-n t), [order, node], for
+    orders from 0 to 100).
+    """
     t, weights = _half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
     orders = np.arange(_term_count(LARGEST_THETA) * 2 + 1)[:, None]
     return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
 
 
 def _decays(beta: Floats, order: int) -> Floats:
-    """Return D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx for n from 0, (order + 1, modes).
+    """Return the memory of the Chebyshev series of an exponential behind the front edge, for each creep mode.
 
-    beta: b_j z, rates of creep times the half contact length over V, dimensionless, (modes,).
-    order: highest n.
+    It is D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx, which goes to 1 for large beta.
+    beta: b_j z, rates of creep times the half contact length over V, dimensionless, > 0, (modes,); above 1e12 the value
+        at 1e12 is taken, as nothing then changes.
+    order: highest n, at most 100.
+    Returns D_n for n from 0, (order + 1, modes).
     """
     beta = np.minimum(beta, _LARGE_BETA)
     x, weights = _decay_nodes()
@@ -209,14 +238,14 @@ def _term_count(theta: float) -> int:
 
 
 class _Exponentials(NamedTuple):
-    """The relaxation and creep modes on a contact of half length z, as for a half-space.
+    """The relaxation and creep modes on a contact of half length z, as for a half-space; dimensionless.
 
     ratio : I_n/I_0 of alpha_i, [order, mode].
     root : sqrt(I_1/I_0), (modes,).
     k : K_0/K_1 of beta_j, (modes,).
-    x : B^-1 sqrt(r) (e, Q^T), the matching at the front edge, of the half-space and of a source by each creep mode,
-        (modes, 1 + modes).
-    sigma : source that an excess memory of 1 is, (modes,).
+    x : B^-1 sqrt(r) (e, Q^T), r = I_1/I_0, B = 1 + sqrt(r) Q^T k Q sqrt(r): the matching at the front edge, of the
+        half-space (column 0) and of a source by each creep mode, (modes, 1 + modes).
+    sigma : source that an excess memory of 1 is, for each creep mode, (modes,).
     """
 
     ratio: Floats
@@ -227,12 +256,13 @@ class _Exponentials(NamedTuple):
 
 
 def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
-    """Evaluate the modes on a contact.
+    """Evaluate the relaxation and creep modes on a contact, as for a half-space.
 
-    modes: of the cover.
-    z: half contact length divided by V T_ref, > 0.
-    N: highest order of the terms of the pressure.
-    Returns ratios of Bessel functions and the matching at the front edge, as :class:`_Exponentials`.
+    modes: :class:`CoverModes` of the cover and the other body; without modes all arrays are empty along that axis.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    N: highest order of the Bessel functions, the number of terms of the pressure, >= 1.
+    Returns ratios of Bessel functions, (N + 1, modes), and the matching at the front edge, as :class:`_Exponentials`.
+    For a_i z above 1e8 the ratios are those at 1e8, corrected to first order, as scipy has no values there.
     """
     from scipy.special import ive, k0e, k1e
 
@@ -249,12 +279,13 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
 def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[Floats, Floats]:
     """Return the contributions of the layer to the slope and to the memory, beyond those of a half-space.
 
-    v: u theta at the nodes, wave number times half contact length, (n,).
+    v: u theta at the nodes of the rule, wave number times half contact length, dimensionless, (n,).
     A: signed Bessel functions there, as of :func:`bessel`, (N + 1, n).
-    beta: b_j z, (modes,).
-    weights: (L - 1)/u times the weights of the rule and the layer's complex part of the compliance, (n,).
-    Returns (S, c): the slope is sum (S q)_n T_n, S (N + 1, N); c q, c (modes, N), is the excess memory of that slope
-    in each creep mode.
+    beta: b_j z of the creep modes of both bodies together, dimensionless, (modes,).
+    weights: (L - 1)/u times the weights of the rule and times the complex compliance of the layer divided by that of
+        both bodies, (n,).
+    Returns (S, c).  S (N + 1, N) maps the coefficients q to those of the slope: the slope is sum (S q)_n T_n(x), n from
+    0.  c (modes, N): c q is the excess memory of that slope in each creep mode.
     """
     N = len(A) - 1
     n, m = np.arange(N + 1), np.arange(1, N + 1)
@@ -271,14 +302,17 @@ def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[F
 
 
 def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) -> CoverState:
-    """Solve the contact of a given half length, by one linear system.
+    """Solve the contact of a given half length, by one linear system of N unknowns, the terms of the pressure.
 
-    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 it is that of a half-space.
-    modes: of the cover.
-    z: half contact length divided by V T_ref, > 0.
-    theta: half contact length divided by the thickness, in (0, 6].
-    orders: terms of the pressure; None: 14 + 6 theta.
-    Returns load, shift, moment, creep limit, strain and the terms of the pressure, as :class:`CoverState`.
+    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 the contact is that of a
+    half-space.
+    modes: :class:`CoverModes` of the cover and the other body; with those of :meth:`CoverModes.elastic` the result is
+        that of elastic bodies: ``X`` is empty, and shift and moment are 0 to rounding.
+    z: half contact length divided by V T_ref, dimensionless, > 0 and finite.
+    theta: half contact length divided by the thickness, dimensionless, in (0, 6]; not checked.
+    orders: number of terms of the pressure, at most 100; None (or 0): 14 + 6 theta, rounded up.
+    Returns a :class:`CoverState`: load, shift, moment, creep limit, strain without its local part, terms of the
+    pressure, amplitudes of the relaxation modes.
     """
     nodes, N = modes.nodes, orders or _term_count(theta)
     v = nodes.u * theta

@@ -1,4 +1,8 @@
-"""Values of the law by its modes, without a table: from these all rows are made."""
+"""Values of the law by its modes, without a table: from these all rows are made.
+
+T_ref is the unit of time of a material, in which its rates and times are given; for a material that is given by alpha
+alone it is T_epsilon.  z is half the transit time of the contact in units of T_ref (zeta of the paper).
+"""
 
 from __future__ import annotations
 
@@ -17,10 +21,10 @@ _LONGEST = 1e100
 
 
 def refuse_distant_times(slowest: float, fastest: float) -> None:
-    """Raise ParameterError for times that rows cannot hold.
+    """Raise ParameterError for times that rows cannot hold: shorter than 1e-100 T_ref or longer than 1e100 T_ref.
 
-    slowest: slowest rate of creep, in units of 1/T_ref.
-    fastest: fastest rate of relaxation, in units of 1/T_ref.
+    slowest: slowest rate of creep b_1, > 0, in units of 1/T_ref.
+    fastest: fastest rate of relaxation a_N, >= ``slowest``, in units of 1/T_ref.
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
         allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref"
@@ -30,9 +34,13 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
 def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
     """Return the record of a series that kernels read (:class:`...kernels.rows.series.Series`).
 
-    modes: strengths and rates of relaxation and of creep of one series, or of many along leading axes.
+    modes: :class:`..prony_forms.Modes`, strengths and rates of relaxation and of creep of one series, or of many along
+        leading axes.
     weights: part of each creep mode that is the half-space's, 0 to 1, (..., modes), for two bodies that differ; None:
-        they are alike.
+        they are alike, and the record has an empty array of weights.
+    Returns a Series with rates a and b in units of 1/T_ref, vectors e = sqrt(E_i/a_i) and t = sqrt(J_j/b_j), (...,
+    modes) each, and the matrix Q, (..., modes, modes), [..., j, i] for creep mode j and relaxation mode i; all empty
+    along these axes for an elastic material.
     """
     from ...kernels.rows.series import Series
 
@@ -44,9 +52,11 @@ def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
 def series_record(material: Any) -> tuple[Any, Floats]:
     """Return the arguments of the kernel that evaluates a law by its modes, for use by one thread.
 
-    material: a series, two bodies, or alphas, one or one for each element.
-    Returns (record of the series; alphas, (n,)): for a series or bodies an empty array of alphas; for alphas the
-    record of one mode, which the kernel overwrites with each alpha in turn.
+    material: a :class:`..prony.Prony` of one material, a :class:`..bodies.Bodies` of one pair, or alphas >= 1: a
+        number, or one for each element that the kernel is called for, (n,).
+    Returns (record of the series, :class:`...kernels.rows.series.Series`; alphas).  For a series or bodies the alphas
+    are an empty array.  For alphas they are a copy, (n,), (1,) of a number, and the record has one mode, which the
+    kernel overwrites with each alpha in turn.
     """
     from ...kernels.rows.series import Series
 
@@ -62,9 +72,9 @@ def series_record(material: Any) -> tuple[Any, Floats]:
 class ModesValues(NamedTuple):
     """Functions of z = zeta from which rows are made, dimensionless, T_ref being the unit of time.
 
-    values : g/z, h/z, and M/V of half-space and cylinder, (4, n).
+    values : g/z, h/z, and M/V of half-space and cylinder (in units of P T_ref), (4, n).
     slopes : their derivatives with respect to ln(1/z), (4, n).
-    N : factor of dV/dt in M = M(V) + N dV/dt, (n,).
+    N : factor of dV/dt in M = M(V) + N dV/dt, in units of P T_ref^2, (n,).
     """
 
     values: Floats
@@ -75,9 +85,11 @@ class ModesValues(NamedTuple):
 def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
     """Evaluate the law by the formulas of its modes.
 
-    material: a series, two bodies, or alphas, one or one for each z.
-    z: half contact length divided by V T_ref, zeta of the paper, > 0 (infinite at rest), (n,).
-    Returns :class:`ModesValues`; of elastic bodies all 0.
+    material: a :class:`..prony.Prony` of one material, a :class:`..bodies.Bodies` of one pair, or alphas >= 1: a
+        number, or one for each z, (n,).
+    z: half contact length divided by V T_ref, zeta of the paper, > 0, (n,); infinite for the limit at rest.
+    Returns :class:`ModesValues`.  Where z is infinite, values and N are the limits at rest and slopes are NaN.  Of
+    elastic bodies all are 0 (alpha = 1 has slopes NaN at infinite z too).
     """
     from ...kernels.rows.modes import modes_loop
     from ...kernels.rows.series import FUNCTIONS, new_workspace

@@ -1,7 +1,9 @@
 """Rows of the law of one material or pair, fitted to the formulas of its modes.
 
-The formulas are evaluated once, at 24 nodes an octave of w = 1/z.  The polynomials of w are then inverted: for the
-functions of u, w = 2 u (1 + 2 h/z)^(1/2), for those of v, w = v (1 + g/z).
+The formulas are evaluated once, at 24 nodes an octave of w = 1/z, with z half the transit time of the contact in units
+of T_ref, the unit of time of the material.  The polynomials of w are then inverted: for the functions of u = kappa |V|,
+w = 2 u (1 + 2 h/z)^(1/2), for those of v = 1/F(eta), w = v (1 + g/z), with the functions g and h of the material
+(:mod:`...kernels.rows.series`).  All quantities are dimensionless; M/V is in units of P T_ref.
 """
 
 from __future__ import annotations
@@ -26,9 +28,9 @@ _NEWTON_STEPS = 2
 
 @dataclass(frozen=True)
 class _FunctionsOfW:
-    """Polynomials of w = 1/z for g/z, h/z, and M/V of half-space and cylinder.
+    """Polynomials of w = 1/z for g/z, h/z, and M/V of half-space and cylinder; dimensionless.
 
-    rows : octaves of w.
+    rows : octaves of w, as :class:`.rows.Rows`.
     powers : coefficients, (4, rows, 24 powers).
     values : values at the nodes, (4, nodes), the nodes of all rows one after another.
     """
@@ -40,7 +42,7 @@ class _FunctionsOfW:
     def at_speed(self, u: Floats) -> tuple[Floats, Floats]:
         """Return lam, epsilon, and M/V of half-space and cylinder at u, and their derivatives with respect to ln u.
 
-        u: kappa |V|, shape (n,).
+        u: kappa |V|, dimensionless, > 0, shape (n,).
         Returns (values of the four functions, their derivatives), (4, n) each, dimensionless.
         """
         (shift, rise, *parts), (d_shift, d_rise, *d_parts) = self._solve(u, 1, lambda whole: 2.0 * np.sqrt(whole))
@@ -50,7 +52,7 @@ class _FunctionsOfW:
     def at_stick_limit(self, v: Floats) -> tuple[Floats, Floats]:
         """Return eta/F and H/F^2 at v, and their derivatives with respect to ln v.
 
-        v: 1/F(eta), shape (n,).
+        v: 1/F(eta), dimensionless, > 0, shape (n,); eta is half the transit time of the stick zone.
         Returns (values of both functions, their derivatives), (2, n) each, dimensionless.
         """
         (shift, rise, *_), (d_shift, d_rise, *_) = self._solve(v, 0, lambda whole: whole)
@@ -61,11 +63,13 @@ class _FunctionsOfW:
     def _solve(self, x: Floats, which: int, factor: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
         """Return the functions where w = x factor(1 + g/z) or w = x factor(1 + 2 h/z), by Newton's method.
 
-        x: u = kappa |V| or v = 1/F(eta), (n,).
-        which: 0 for g/z, 1 for 2 h/z.
+        Two steps are made from an interpolated start; the error that is left is subtracted to first order from the
+        values.
+        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), within the octaves of w.
+        which: index into ``powers`` of the function in the equation: 0 for g/z, 1 for h/z, of which twice is taken.
         factor: function of the sum in brackets, an array of any shape, that returns an array of that shape.
-        Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with respect to ln x), (4,
-        n) each.
+        Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with respect to ln x), (4, n)
+        each, dimensionless.
         """
         nodes = self.rows.x.ravel()
         x_of_nodes = nodes * (1.0 / factor(1.0 + (1 + which) * self.values[which]))
@@ -83,11 +87,14 @@ class _FunctionsOfW:
 def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     """Fit the rows of the law of steady rolling, one polynomial for each function and octave.
 
-    material: an alpha, a series, or two bodies, not elastic.
-    rows: octaves of u = kappa |V| and of v = 1/F(eta).
-    alpha: instantaneous divided by long-time stiffness.
+    material: alpha > 1 as a float, a :class:`..prony.Prony` of one material or a :class:`..bodies.Bodies` of one pair;
+        not elastic, as without modes there is nothing to fit.
+    rows: octaves of u = kappa |V| and of v = 1/F(eta), as :class:`.rows.Rows`.
+    alpha: instantaneous divided by long-time stiffness, > 1.
     T_mean: sums J_j T_j of half-space and cylinder, in units of T_ref, (2,): the limits of M/V at rest.
-    Returns the table (rows, 24 powers, 7 functions) with NaN for N; functions as :data:`.pack.FUNCTIONS`.
+    Returns the table (rows, 24 powers, 7 functions) with NaN for N; functions as :data:`.pack.FUNCTIONS`.  In the first
+    row the limits at rest are set, not fitted: lam = eta/F = H/F^2 = 1, epsilon = 0 with its slope T_mean, and M/V =
+    ``T_mean``.
     """
     e0, mean = rows.e0, float(T_mean.sum())
     w = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(alpha)))
@@ -102,12 +109,14 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
 
 
 def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
-    """Return a table with the coefficients of N, which the rows of steady rolling do not have.
+    """Return a table with the coefficients of N in M = M(V) + N dV/dt, which the rows of steady rolling do not have.
 
-    material: an alpha, a series, or two bodies.
-    table: rows of its steady rolling, (rows, 24 powers, 7 functions); not changed.
+    material: alpha > 1 as a float, a :class:`..prony.Prony` of one material or a :class:`..bodies.Bodies` of one pair;
+        not elastic, and no cover.
+    table: rows of its steady rolling, (rows, 24 powers, 7 functions), of which lam is read; not changed.
     e0: exponent of the end of the first row, which is [0, 2^e0).
-    Returns a copy of the table with the column of N.
+    Returns a copy of the table with the column of N, in units of P T_ref^2; its value at rest is set to the exact
+    limit.
     """
     rows, whole = Rows(e0, len(table)), table.copy()
     (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())

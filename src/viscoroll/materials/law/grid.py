@@ -1,4 +1,8 @@
-"""The law of a grid: splines of Q over V and delta and of M over V, from a file of this package or another program."""
+"""The law of a grid: splines of Q over V and delta and of M over V, from a file of this package or another program.
+
+A grid is in SI units where its V has a unit, else dimensionless as a :class:`viscoroll.Scene`: V over R/T_epsilon, Q
+over the load, M over load times radius, delta = (omega R - V)/V in both.
+"""
 
 from __future__ import annotations
 
@@ -37,14 +41,14 @@ class LawGrid:
     Attributes
     ----------
     splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline, as
-        :func:`viscoroll.materials.law.splines.pack_spline` writes it; Q divided by the load and M divided by load
-        times radius, or Q in N/m and M/R in N/m.
+        :func:`viscoroll.materials.law.splines.pack_spline` writes it; Q divided by the load and M divided by load times
+        radius, or Q in N/m and M in N (N m per m of length).
     V : slowest and fastest speed, > 0; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
-    slips : whether the contact slips fully at both ends of delta, at every speed, so that abs(Q) is known beyond
-        them.
+    slips : whether the contact slips fully at both ends of delta, at every speed: abs(Q) is at least 1 - 1e-5 of its
+        limit there, and so is known beyond the ends.  False without a mu.
     R : radius in m; 1 for a dimensionless grid.
-    title : title of the file.
+    title : title of the file; "of another program" without one.
     """
 
     splines: dict[str, Floats]
@@ -58,11 +62,13 @@ class LawGrid:
         return f"LawGrid(for vr.law alone: {self.title})"
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
-        """Raise OutOfTableError for a state outside the axes, for a call that has found it to be outside.
+        """Raise the OutOfTableError of a state that the caller has found to be outside the axes.
 
-        V: speed in the unit of the grid, a number or an array of one.
+        It always raises: for V if |V| is beyond the fastest speed, else for delta, without comparing delta with its
+            axis.
+        V: speed in the unit of the grid, a number or an array of one; of V = 0 the error states an infinite or NaN
+            delta.
         omega: angular velocity in the unit of the grid, likewise.
-        The error names V if |V| is beyond the fastest speed, else delta.
         """
         if np.abs(V) > self.V[1]:
             raise OutOfTableError("V", float(V), -self.V[1], self.V[1])
@@ -72,8 +78,10 @@ class LawGrid:
 def friction_limit(attributes: Any) -> float:
     """Return the largest |Q| that the law allows, Eq. (15): mu, or in SI units mu times the load.
 
-    attributes: attributes of a grid, of which "mu" and "load" (N/m; without it 1) are used.
-    Returns a number in the unit of Q: dimensionless, or N/m; infinite without a mu.
+    attributes: mapping of the attributes of a grid, of which "mu" (dimensionless) and "load" (N/m; without it 1) are
+        used.
+    Returns a float in the unit of Q: dimensionless, or N/m; infinite without a mu.
+    Raises ValueError for a text that is no number.
     """
     return float(attributes.get("mu", np.inf)) * float(attributes.get("load", 1.0))
 
@@ -83,24 +91,25 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 
     Parameters
     ----------
-    path : file with variables V(V) > 0, delta(delta), Q over both and M over V, optionally M_half_space and
-        M_cylinder, each with an attribute ``units``; all over alpha too where there is an axis of that name.  Its
-        global attributes are mu, and where V has a unit R in m and the load in N/m.
-    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.  None: not
-        given.
+    path : file with variables V(V) > 0, delta(delta), Q over both and M over V, each with an attribute ``units`` ("1"
+        for none); all over alpha too where there is an axis of that name.  In place of M there may be M_half_space and
+        M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q has no bound), and
+        where V has a unit R in m and the load in N/m.
+    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.  It must be
+        left out, or None, for a grid without that axis.
 
     Returns
     -------
     LawGrid or None
-        None for a file that is no netCDF or has no Q over V and delta.
+        None for a file that is no netCDF or has no variables V, delta and Q.
 
     Raises
     ------
     FileError
-        A damaged file; a variable that is missing, has other dimensions or other units, is not finite or does not
-        increase; no R beside speeds with a unit.
+        A file that cannot be read or differs from its seal; a variable that is missing, has other dimensions or other
+        units, is not finite or does not increase; no R beside speeds with a unit.
     ParameterError
-        An alpha outside the grid, or none for a grid with that axis.
+        An alpha outside the grid, or none for a grid with that axis; an alpha for a grid without it.
     """
     import xarray as xr
 
@@ -124,10 +133,13 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
     table: dataset of a grid, with or without an axis alpha; without it the grid is returned as it is.
     path: path of the file, for errors.
     alpha: wanted value; None: not given.
-    Returns the dataset without that axis; between nodes interpolated in ln alpha, cubic from four nodes on.
-    Raises ParameterError for an alpha outside the axis, or none for a grid that has one.
+    Returns the dataset without that axis: of a single node as it is, else interpolated in ln alpha, linear between two
+    nodes, quadratic between three, cubic from four on.
+    Raises ParameterError for an alpha outside the axis, none for a grid that has one, and one for a grid without.
     """
     if "alpha" not in table.dims:
+        if alpha is not None:
+            raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} has no axis alpha")
         return table
     low, high = table["alpha"].values[[0, -1]]
     if alpha is None or not low <= check_number("alpha", alpha) <= high:
@@ -141,8 +153,9 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
 def _in_si(table: xr.Dataset) -> xr.Dataset:
     """Return a grid in SI units if its V has a unit, else without dimension.
 
-    table: dataset of a grid whose variables have an attribute ``units``; "1" is no unit.
-    Returns the dataset with numbers in the units of :data:`UNITS`; a dimensionless one with the attribute R = 1.
+    table: dataset of a grid whose variables V, delta, Q and M have an attribute ``units``; "1" is no unit.
+    Returns a dataset with doubles in the units of :data:`UNITS`; if the unit of V is "1" all must be dimensionless, and
+    the attribute R is 1.
     Raises ParameterError for a unit that is missing or of another dimension.
     """
     names = [name for name in UNITS if name in table.variables]
@@ -159,13 +172,14 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
 
 
 def _law_of(table: xr.Dataset) -> LawGrid:
-    """Return the law of a grid, as splines.
+    """Return the law of a grid, as splines: cubic, in ln V, and Q in delta too, clipped to |Q| <=
+    :func:`friction_limit`.
 
-    table: dataset of a grid at one alpha, in SI units or dimensionless; without M_half_space or M_cylinder each body
+    table: dataset of a grid at one alpha, in SI units or dimensionless; without M_half_space or M_cylinder that body
         has half of M.
     Returns the :class:`LawGrid`.
     Raises KeyError for a missing variable, and ValueError, of which ParameterError is one, for values that are not
-    finite, axes that do not increase, other dimensions, or no R.
+    finite, speeds that are not positive, axes that do not increase, other dimensions, or no R > 0.
     """
     V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
     axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}

@@ -42,11 +42,12 @@ _COVER_NUMBERS = ("e0", "alpha", "T_ref")
 def law_table_of(material: Any, base: Any = None) -> LawTable:
     """Return the :class:`LawTable` of any kind of material that a user may give.
 
-    material: Prony, Bodies, alpha, Material, Pair, or a LawTable, which is returned.
+    material: a :class:`..prony.Prony`, a :class:`..bodies.Bodies` or :class:`..cover.Cover`, an alpha >= 1 as a number,
+        a :class:`..material.Material`, a :class:`..pair.Pair`, or a LawTable, which is returned.
     base: Material of the half-space, only beside a Material; None: that of the cylinder.
-    Returns the table; of a Material or a Pair with its T_ref in s and the bodies.
-    Raises ParameterError for another type, an alpha out of range, a base beside anything but a Material, many
-    materials.
+    Returns the table; of a Material or a Pair with its T_ref in s and the bodies as ``pair``, of others with T_ref = 1.
+    Raises ParameterError for another type, an alpha out of [1, 1e12], a base beside anything but a Material, a Material
+    or Pair with a thickness (its law depends on load and radius), many materials, and as :func:`.table.law_table`.
     """
     if base is not None and not isinstance(material, Material):
         raise described_error("base", "is given", "left out unless material is a Material")
@@ -65,10 +66,11 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
 def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
     """Return the content of the file of a law.
 
-    law: the law of one material, or of all alpha.
-    errors: name of a function, as "lam" -> its largest relative error, dimensionless.
+    law: the law of one material or cover, :class:`LawTable`, or of all alpha, :class:`LawAxis`.
+    errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind of
+        file (:data:`..law_file.KINDS`), else KeyError.
     Returns the dataset, with the coefficients of each function, and with what :func:`load_law` needs to make the law
-    again.
+    again, of a table the text of its material.
     Raises ParameterError for a layer beside a body that relaxes too.
     """
     if isinstance(law, LawAxis):
@@ -88,7 +90,7 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
 
 
 def _title(table: LawTable) -> str:
-    """Return the bodies of a ``table`` in words."""
+    """Return the bodies of a ``table`` in words: names of a pair in SI units, else alpha and the number of times."""
     if table.pair is None:
         return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
     bodies = (table.pair.cylinder, table.pair.base)
@@ -103,21 +105,22 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``; or a grid of Q and M over V and
         delta, of ``viscoroll tables build`` or of another program (``viscoroll.materials.law.grid.load_grid``).
     alpha : of a file of every alpha of one relaxation time, or of a grid over alpha: that which is wanted, with
-        T_epsilon for the unit of time.
+        T_epsilon for the unit of time.  It must be left out for any other file.
 
     Returns
     -------
     LawTable, or of a grid LawGrid
-        A LawGrid is for :func:`viscoroll.law` alone: motions are integrated from rows.  A LawTable is bit for bit
-        that of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of
-        :class:`viscoroll.Cylinder`, it stands for its :class:`viscoroll.Material`, and for the base where it has one.
+        A LawGrid is for :func:`viscoroll.law` alone: motions are integrated from rows.  A LawTable is bit for bit that
+        of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of :class:`viscoroll.Cylinder`, it
+        stands for its :class:`viscoroll.Material`, and for the base where it has one.
 
     Raises
     ------
     FileError
-        A file that is missing, cut or damaged in any byte, no law, or of another schema; an alpha beyond the file's.
+        A file that is missing, cut or damaged in any byte, no law, or of another schema; a grid that is incomplete.
     ParameterError
-        An alpha beside the file of one material, or none for that of every alpha.
+        An alpha beside the file of one material or a grid without an axis alpha; for the file of every alpha, or a grid
+        over alpha, none, or one beyond the range of the file.
 
     Examples
     --------
@@ -146,11 +149,12 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
 
 
 def parse_law(content: Content, path: Any) -> LawTable:
-    """Return the law of one material.
+    """Return the law of one material or cover.
 
-    content: content of the file, verified.
+    content: :class:`..law_file.Content` of the file, verified.
     path: path of the file, for errors.
-    Returns the :class:`LawTable`, with the coefficients of the file.
+    Returns a new :class:`LawTable`, with the coefficients, e0 and T_ref of the file, and the bodies as ``pair`` if it
+    states them in SI units.
     Raises FileError for the law of every alpha, and for a file that does not state its material or is incomplete.
     """
     numbers, attributes = content
@@ -174,10 +178,10 @@ def parse_law(content: Content, path: Any) -> LawTable:
 def parse_axis(content: Content, path: Any) -> LawAxis:
     """Return the law of all alpha.
 
-    content: content of the file, verified.
+    content: :class:`..law_file.Content` of a file of the kind :data:`..law_file.AXIS`, verified.
     path: path of the file, for errors.
     Returns the :class:`LawAxis`, with the coefficients of the file.
-    Raises FileError for an incomplete file.
+    Raises FileError for an incomplete file, and where the number of octaves or of dimensions does not fit.
     """
     with _refuse_incomplete(path):
         coefficients, numbers = _coefficients(content), content.numbers
@@ -188,14 +192,22 @@ def parse_axis(content: Content, path: Any) -> LawAxis:
 
 
 def _coefficients(content: Content) -> Floats:
-    """Return the coefficients of all functions of a file, (..., functions), read only; ``content``: of the file."""
+    """Return the coefficients of all functions of a file as one read-only array of doubles, (..., functions).
+
+    content: :class:`..law_file.Content` of the file, whose kind states the names and the order of the functions.
+    Raises KeyError for a function that is missing.
+    """
     names = KINDS[content.attributes[KIND]].functions
     return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(np.float64))
 
 
 @contextmanager
 def _refuse_incomplete(path: Any) -> Iterator[None]:
-    """Raise FileError in place of any error of parsing an incomplete file; ``path``: of the file."""
+    """Raise FileError in place of the errors that parsing an incomplete file ends with; a context manager.
+
+    path: path of the file, for the error.
+    Replaces FileError, ParameterError, KeyError, TypeError and ValueError, whose text is quoted; other exceptions pass.
+    """
     try:
         yield
     except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
@@ -206,8 +218,11 @@ def _refuse_incomplete(path: Any) -> Iterator[None]:
 def bodies_as_toml(given: Any) -> str:
     """Return TOML that :func:`_parse_bodies` reads back to the bit.
 
-    given: Pair (in SI units, as in scene files), or Cover, Bodies, Prony or alpha (dimensionless).
-    Returns a text with the sections [material] and [base] and the key plane, or [cover], [bodies] or [scene].
+    given: :class:`..pair.Pair` (in SI units, as in scene files), or :class:`..cover.Cover`, :class:`..bodies.Bodies`,
+        :class:`..prony.Prony` or alpha as a float (dimensionless), each of one material.  Of a cover the series of the
+        other body is not written: it must be elastic.
+    Returns a text with the key plane and the sections [material] and, unless the base is that of the cylinder, [base];
+    or with the section [cover], [bodies] or, of a Prony or alpha, [scene].
     """
     if isinstance(given, Pair):
         text = material_as_toml(given.cylinder)
@@ -227,8 +242,10 @@ def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
 
     text: TOML.
     path: path of the file, for errors.
-    Returns (Cover, Bodies, Prony or alpha, dimensionless; the :class:`Pair` in SI units, None if the text has none).
-    Raises FileError for a section that is wrong, KeyError for one that is missing.
+    Returns (Cover, Bodies, Prony or alpha, dimensionless: that of the section of it, else the law of the pair; the
+    :class:`Pair` in SI units, None if the text has none).
+    Raises FileError for a section that is wrong, KeyError for one that is missing, and ValueError for text that is not
+    TOML.
     """
     content = tomllib.loads(text)
     pair = None

@@ -2,6 +2,20 @@
 
 A table is an array (rows, 24 powers, 7 functions) with the functions in the order of :data:`FUNCTIONS`.  Kernels read
 the same rows from a record (:mod:`...kernels.rows.record`), where functions that are needed together lie side by side.
+
+Terms of this file (docs/symbols.md has the symbols of the paper).  All quantities are dimensionless: times are divided
+by T_ref, the unit of time of the material.
+
+- Row: the polynomial of one interval of a variable, in powers of its argument t.  Row 0 is the interval [0, 2^e0), with
+  t in [0, 1); row n > 0 is the octave [2^(e0+n-1), 2^(e0+n)), with t in [-1, 1) (:class:`.rows.Rows`).
+- u = kappa |V| is the variable of lam, epsilon, M/V and N; v = 1/F(eta) that of share = eta/F and press = H/F^2, with
+  eta half the transit time of the stick zone, and F(z) = z + g(z) and H(z) = z^2 + 2 z h(z) by functions g and h of the
+  material (:mod:`...kernels.rows.series`).
+- L = lam (1 + epsilon) = 2 kappa delta_star/mu of half-spaces; of a cover it is 2 kappa delta_star/mu.
+- Fast limit: the expansion of the functions for large u or v, which replaces the rows beyond the last one.  Its
+  coefficients are W = sum J_j/T_j and C = sum J_j/T_j (ln(2 T_j) - 0.5772...), each of both bodies together, of the
+  half-space and of the cylinder.
+- s: place of alpha in its octave [2^n, 2^(n+1)), s = 2 log2(alpha/2^n) - 1, in [-1, 1].
 """
 
 from __future__ import annotations
@@ -41,13 +55,14 @@ _AXIS_M = AXIS_FUNCTIONS.index("m")
 
 
 class CoverRows(NamedTuple):
-    """The law of a cover over u = kappa |V|.
+    """The law of a cover over u = kappa |V|, by :func:`.cover_rows.cover_rows`; all numbers are dimensionless.
 
-    e0 : exponent of the end of the first row.
+    e0 : exponent of the end of the first row, which is [0, 2^e0); 0 for elastic bodies, which have a single row.
     coefficients : table (rows, 24 powers, 7 functions) with NaN for N, which is not known for covers.
-    creep : rows of L = 2 kappa delta_star/mu and of 2 kappa delta_0, shape (2, rows, 24 powers).
-    limits : for u -> infinity L, lam and 2 kappa delta_0; then the factors of 1/u of their first order; then
-        epsilon u and M u^2/V; shape (8,).
+    creep : rows of L = 2 kappa delta_star/mu and of 2 kappa delta_0 (positive on the base, negative on the cylinder
+        where the surface is stretched), shape (2, rows, 24 powers).
+    limits : shape (8,): limits of L, lam and 2 kappa delta_0 for u -> infinity; then the factors of 1/u in their first
+        order; then the limits of epsilon u and M u^2/V.  The last five are 0 for elastic bodies.
     """
 
     e0: int
@@ -57,11 +72,12 @@ class CoverRows(NamedTuple):
 
 
 def steady_table(powers: Any, N: float = math.nan) -> Floats:
-    """Return a table made of the functions of steady rolling.
+    """Return a table made of the functions of steady rolling, with a constant in the column of N.
 
-    powers: six arrays (rows, 24 powers), of lam, epsilon, m_half_space, m_cylinder, share and press.
-    N: constant that fills the column of N; NaN: N is not known.
-    Returns the table (rows, 24 powers, 7 functions).
+    powers: six arrays (rows, 24 powers), of lam, epsilon, m_half_space, m_cylinder, share and press, as a sequence or
+        as one array (6, rows, 24 powers).
+    N: the number that all entries of the column of N have; NaN (default): N is not known.
+    Returns a new table (rows, 24 powers, 7 functions), functions in the order of :data:`FUNCTIONS`.
     """
     powers = np.stack(powers, axis=-1)
     table = np.full((*powers.shape[:-1], len(FUNCTIONS)), N)
@@ -75,7 +91,11 @@ def steady_columns(table: Floats) -> Floats:
 
 
 def constant_rows(*values: float) -> Floats:
-    """Return one row for each of several constants ``values``, shape (values, 1, 24 powers)."""
+    """Return one row for each of several constants, the polynomials of functions that do not depend on the speed.
+
+    values: the constants.
+    Returns shape (number of values, 1 row, 24 powers): power 0 is the constant, all others are 0.
+    """
     rows = np.zeros((len(values), 1, TERMS))
     rows[:, 0, 0] = values
     return rows
@@ -85,9 +105,10 @@ def to_axis(table: Floats, c: Floats) -> Floats:
     """Convert tables of a standard linear solid to functions that have finite limits for alpha -> 1.
 
     table: coefficients of the functions, (..., rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`; not
-    changed.
-    c: (alpha - 1)/alpha of each table, > 0, in a shape that broadcasts with (..., rows, 24 powers, functions).
-    Returns (..., rows, 24 powers, 6 functions), as :data:`AXIS_FUNCTIONS`: epsilon, M/V and N divided by c.
+        changed.
+    c: (alpha - 1)/alpha of each table, > 0, in a shape that broadcasts with (..., rows, 24 powers, 3 functions).
+    Returns a new array (..., rows, 24 powers, 6 functions), functions as :data:`AXIS_FUNCTIONS`: epsilon, M/V and N are
+    divided by c, and M/V is twice that of the half-space, as both bodies are alike; lam, share and press are copied.
     """
     columns = table[..., _AXIS_COLUMNS]
     columns[..., _AXIS_M] *= 2.0
@@ -98,9 +119,11 @@ def to_axis(table: Floats, c: Floats) -> Floats:
 def from_axis(columns: Floats, c: float) -> Floats:
     """Convert functions over alpha to a table; the reverse of :func:`to_axis`.
 
-    columns: coefficients of the functions over alpha, (rows, 24 powers, 6 functions); changed in place.
-    c: (alpha - 1)/alpha.
-    Returns the table (rows, 24 powers, 7 functions); each body has half of M.
+    columns: coefficients of the functions over alpha, (rows, 24 powers, 6 functions), as :data:`AXIS_FUNCTIONS`;
+        epsilon, M/V and N in it are overwritten.
+    c: (alpha - 1)/alpha, a number.
+    Returns a new table (rows, 24 powers, 7 functions), as :data:`FUNCTIONS`; half-space and cylinder each have half of
+    M/V.
     """
     columns[..., _DIVIDED_BY_C] *= c
     columns[..., _AXIS_M] *= 0.5
@@ -108,19 +131,23 @@ def from_axis(columns: Floats, c: float) -> Floats:
 
 
 def interleave_pairs(a: Floats, b: Floats) -> Floats:
-    """Return rows in which two powers of one function are followed by the same two of the other: a0 a1 b0 b1 a2 ...
+    """Return rows that hold two powers of one function, the same two of the other, and so on: a0 a1 b0 b1 a2 a3 b2 b3
+    ...
 
+    Kernels evaluate two functions at once from this order.
     a, b: coefficients, (rows, powers) each, with an even number of powers.
-    Returns an array with twice as many columns.
+    Returns a new array (rows, 2 * powers).
     """
     both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
     return both.reshape(len(a), -1)
 
 
 def align_vector(numbers: Floats) -> Floats:
-    """Return a copy of a vector ``numbers`` that begins at a line of the cache, 64 bytes.
+    """Return a copy of a vector that begins at a line of the cache, 64 bytes.
 
     Elsewhere every vector of eight numbers that a kernel loads, and up to half of those of four, would span two lines.
+    numbers: doubles, (n,).
+    Returns the copy, (n,), writable: a view into a longer array.
     """
     room = np.empty(numbers.size + 8)
     first = -room.ctypes.data // 8 % 8
@@ -129,7 +156,11 @@ def align_vector(numbers: Floats) -> Floats:
 
 
 def allocate_rows(count: int) -> tuple[Floats, Integers]:
-    """Return numbers and marks of a record of ``count`` rows, with those in front, zeroed; no material is selected."""
+    """Return the two arrays of a record of ``count`` rows, with their heads in front, and no material selected.
+
+    Returns (rows, marks) as in :class:`...kernels.rows.record.Law`: (count + 1) * ROW_SIZE doubles, all 0 and aligned
+    to 64 bytes; (count + 1) * PARTS_PER_ROW integers, all 0 but the mark SELECTED, which is -1.  Both are writable.
+    """
     from ...kernels.rows.record import PARTS_PER_ROW, ROW_SIZE, SELECTED
 
     marks = np.zeros((count + 1) * PARTS_PER_ROW, np.int64)
@@ -138,14 +169,20 @@ def allocate_rows(count: int) -> tuple[Floats, Integers]:
 
 
 def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None) -> Any:
-    """Return the record of a law that kernels read, with all rows in place.
+    """Return the record of a law of steady rolling that kernels read, with all its rows computed.
 
-    table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`.
+    In contrast to the records of :mod:`.per_element`, whose rows kernels compute where they read them, it can be shared
+    by threads.
+    table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`; the column
+        of N is not read.
     e0: exponent of the end of the first row, which is [0, 2^e0).
-    alpha: instantaneous divided by long-time stiffness.
-    fast_limit: W and C of the fast limit (:class:`.table.LawTable`), of both bodies, half-space and cylinder, (3, 2).
-    cover: rows of a cover of finite thickness; None for half-spaces.
-    Returns :class:`...kernels.rows.record.Law`, read-only, without the rows of N.
+    alpha: instantaneous divided by long-time stiffness, >= 1; ignored with a ``cover``.
+    fast_limit: W and C of the fast limit (module docstring), of both bodies together, of the half-space and of the
+        cylinder, (3, 2); ignored with a ``cover``, whose ``limits`` take their place.
+    cover: rows of a cover of finite thickness, as :class:`CoverRows`; None for half-spaces.
+    Returns a :class:`...kernels.rows.record.Law` with read-only arrays.  ``N_rows`` is empty, as N is packed by
+    :func:`pack_unsteady`; ``selector``, ``maker`` and ``source`` are 0, since no row is left to be made; ``cover_rows``
+    is None for half-spaces.
     """
     from ...kernels.rows.record import E0, ROW_COUNT, ROW_SIZE, Law
 
@@ -162,14 +199,16 @@ def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover:
 def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floats | None) -> Floats:
     """Return the rows of a record in the order in which kernels read them (:mod:`...kernels.rows.evaluate`).
 
-    L^2 press(2 u/L) = 1 is made to hold to rounding, as Q would lose digits by an error in it.
-    table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`.
+    L is not taken from the table: two steps of Newton's method from that value make L^2 press(2 u/L) = 1 hold to
+        rounding, as Q would lose digits by an error in it.
+    table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`; N is not
+        read.
     e0: exponent of the end of the first row.
-    alpha: value of press for v -> infinity.
-    fast: W and C of the fast limit of both bodies together, (2,).
+    alpha: value of press for v -> infinity: alpha of half-spaces, 1/L^2 with the limit of L of a cover.
+    fast: W and C of the fast limit of both bodies together, (2,); of a cover 0 and four times the factor of 1/u in L.
     cover_L: rows of L = 2 kappa delta_star/mu of a cover, (rows, 24 powers); None: L = lam (1 + epsilon).
-    Returns (rows, numbers of a row): pairs of powers of L and M/V, lam and epsilon, M/V of half-space and cylinder,
-    then H/F^2 and eta/F.
+    Returns (rows, 192): 48 numbers of L and M/V of both bodies together, interleaved (:func:`interleave_pairs`), 48 of
+    lam and epsilon, 48 of M/V of half-space and cylinder; then 24 each of H/F^2 and eta/F.
     """
     rows = Rows(e0, len(table))
     lam, epsilon, half_space, cylinder, _, share, press = np.moveaxis(table, -1, 0)
@@ -192,8 +231,8 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
 
     rows: octaves of v.
     press: coefficients of H/F^2, (rows, 24 powers).
-    v: 1/F(eta), (n,).
-    alpha: value for v -> infinity.
+    v: 1/F(eta), > 0, (n,).
+    alpha: value for v -> infinity, dimensionless.
     fast: W and C of the fast limit, (2,).
     Returns (values, derivatives), (n,) each, dimensionless.
     """
@@ -206,14 +245,18 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
 
 
 def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
-    """Return the rows of N of a record, with those of its integral over u.
+    """Return the rows of N of a record, with those of its integral over u, from which kernels take the added mass.
 
-    table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).
+    The origin of a row is the place where its argument t is 0: u = 0 in the first row, three quarters of the end of the
+        octave in the others.  Beyond the last row N is (alpha - 1)/(16 alpha u^2), and the origin is infinity.
+    table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).  Of a cover N is NaN, and so is
+        the result.
     e0: exponent of the end of the first row.
     alpha: instantaneous divided by long-time modulus.
-    Returns one vector: rows of N and of its integral from the point t = 0 of each row, two powers of one and two of
-    the other in turn; then the integral from infinity down to that point, for each row, and to the end of the last
-    row; then likewise the integral from u = 0 up to it.
+    Returns one vector of 48 rows + 2 (rows + 1) numbers, N in units of T_ref^2: for each row 48 coefficients of N and
+    of its integral from the origin of the row, two powers of one and two of the other in turn; then, for each row, the
+    integral of N from infinity to its origin, and 0 for the interval beyond the last row; then, for each row, the
+    integral from u = 0 to its origin, and that from 0 to infinity.
     """
     N = table[..., FUNCTIONS.index("N")]
     du_dt, integral = np.ldexp(0.25, e0 + np.arange(len(N))), np.zeros_like(N)
@@ -230,10 +273,14 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
 
 
 def _pack_cover_front(cover: CoverRows) -> Floats:
-    """Return the numbers in front of the rows of a ``cover``, shape (8,).
+    """Return the numbers of a cover that stand in front of the rows of its record.
 
-    With them the formulas of the fast limit of half-spaces give that of the cover, L = L_1 (1 + a/u) and M = b V/u^2,
-    without logarithms.
+    They are chosen so that the formulas of the fast limit of half-spaces give that of the cover, without logarithms: L
+        = L_1 (1 + a/u) and M = b V/u^2, with limits L_1, L_1 a and b of the cover.
+    cover: law of the cover, of which ``limits`` and the value of m_half_space at rest are read; the latter, if it is
+        not 0, says that the cover is on the base.
+    Returns shape (8,), in place of alpha, lam, and W and C of both bodies, of the half-space and of the cylinder:
+    1/L_1^2, L_1, and W = 0 with C proportional to L_1 a and to b.
     """
     L, _, _, L_slope, _, _, _, moment = cover.limits
     on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
@@ -242,7 +289,13 @@ def _pack_cover_front(cover: CoverRows) -> Floats:
 
 
 def _pack_cover(cover: CoverRows) -> Floats:
-    """Return the numbers of a ``cover`` that kernels read in addition to its rows (:mod:`...kernels.rows.cover`)."""
+    """Return the numbers of a cover that kernels read in addition to its rows (:mod:`...kernels.rows.cover`).
+
+    cover: law of the cover, as :class:`CoverRows`.
+    Returns one vector of 8 + 48 rows numbers: limits for u -> infinity of lam and 2 kappa delta_0, each with its factor
+    of 1/u behind it, of epsilon u and of 2 M u^2/(V L), limit of eta/F for v -> infinity with its factor of 1/v; then
+    for each row the 24 coefficients of 2 kappa delta_0 twice, interleaved.
+    """
     L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
     share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
     front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
@@ -250,10 +303,13 @@ def _pack_cover(cover: CoverRows) -> Floats:
 
 
 class AxisRows(NamedTuple):
-    """The rows of an octave of alpha as groups of terms in s (:mod:`...kernels.rows.alpha_axis`).
+    """The rows of an octave of alpha as groups of terms in s (:mod:`...kernels.rows.alpha_axis`), read-only.
 
-    numbers : blocks of eight numbers; of each block its groups of terms in s, the group of the highest degrees first.
-    starts : index of the first group of each function or pair of functions, (rows * functions + 1,).
+    A group is the four coefficients of T_4g(s) s^i, i = 0 to 3, of eight neighbouring numbers of a row (a block).
+    numbers : of each block its groups, that of the highest degrees first; of most blocks fewer than four, as those of
+        high degrees are 0.
+    starts : index of the first group of each function or pair of functions of each row, then the number of all groups,
+        (4 rows + 1,): L with M/V, lam with epsilon, H/F^2, eta/F.
     rows : number of rows.
     """
 
@@ -265,11 +321,13 @@ class AxisRows(NamedTuple):
 def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     """Return the rows of several alphas as the alpha axis of the kernels has them (:mod:`...kernels.rows.alpha_axis`).
 
-    records: records of the laws of standard linear solids at the 16 nodes of an octave of alpha, with equal numbers of
-    rows.
-    c: (alpha - 1)/alpha of each, (16,), by which M/V and epsilon are divided.
-    Returns :class:`AxisRows`: terms of Chebyshev polynomials in s, the place of alpha in its octave, in groups of
-    four; groups of zeros at high degrees are left out.
+    records: records of the laws of standard linear solids (:func:`pack_record`) at the 16 nodes of an octave of alpha,
+        with equal numbers of rows.
+    c: (alpha - 1)/alpha of each, > 0, (16,), by which M/V and epsilon are divided.
+    Returns :class:`AxisRows`: terms of Chebyshev polynomials in s, the place of alpha in its octave, in groups of four.
+    Groups of high degrees are left out where all blocks of the function need no more than
+    :data:`...kernels.rows.alpha_axis.SHORT` states; else all four groups of all its blocks are kept.  M/V of half-space
+    and cylinder are not packed: each is half of M/V.
     """
     from ...kernels.rows.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
     from ...kernels.rows.record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
@@ -302,11 +360,11 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
 
 
 def _grouped_terms(terms: Floats, size: int) -> Floats:
-    """Return sums of T_j(s) as sums of T_4g(s) times cubic polynomials in s.
+    """Return sums of T_j(s) as sums of T_4g(s) times cubic polynomials in s, which kernels evaluate faster.
 
     terms: coefficients of T_0 to T_15, (16, ...); not changed.
-    size: terms of a group; it must be 4.
-    Returns coefficients of the same shape: those of T_4g s^i at index 4 g + i.
+    size: terms of a group; it must be 4, the only size for which the formulas hold.
+    Returns a new array of the same shape: the coefficient of T_4g s^i at index 4 g + i.
     """
     terms = terms.copy()
     for start in range(len(terms) - size, 0, -size):
@@ -324,10 +382,14 @@ def _grouped_terms(terms: Floats, size: int) -> Floats:
 def _significant_terms(values: Floats) -> Floats:
     """Return the terms in Chebyshev polynomials of s of functions of s and t, without terms below their rounding.
 
-    values: powers of t at the nodes of s, (nodes, rows, functions, powers), the functions L, M/V, lam, epsilon, H/F^2
-        and eta/F.
-    Returns (terms of s, rows, functions, powers of t).  A coefficient of the Chebyshev polynomials of both that is
-    negligible is zero, except in the first row, which holds the limits at rest.
+    A coefficient of the product of Chebyshev polynomials T_j(s) T_k(t) is dropped if it is below :data:`_NEGLIGIBLE`
+    times the least absolute value of its function at t = -1, 0 and 1, and of L and H/F^2 also below
+    :data:`_NEGLIGIBLE_SLOPE`/k^2 times that value.  The first row, which holds the limits at rest, keeps all terms.
+    values: coefficients of powers of t at the nodes of s, (nodes, rows, functions, powers), of the functions L, M/V,
+        lam, epsilon, H/F^2 and eta/F, M/V and epsilon divided by (alpha - 1)/alpha; not changed.
+    Returns a new array (terms of s, rows, functions, powers of t).  In each row but the first, powers of t above the
+    last Chebyshev polynomial that is kept are exactly 0; a coefficient that is the same at all nodes has that value as
+    its term T_0, and 0 behind it.
     """
     from numpy.polynomial.chebyshev import poly2cheb
 
@@ -356,10 +418,12 @@ def _significant_terms(values: Floats) -> Floats:
 def pack_materials(block: Block) -> Floats:
     """Return the numbers of materials from which kernels make rows by a grid of z (:mod:`...kernels.rows.z_grid`).
 
-    block: materials of equal numbers of modes; without weights each body has half of each mode.
-    Returns (materials, numbers), of each: alpha, 1/sqrt(alpha); W and C of the fast limit of both bodies, of the
-    half-space, of the cylinder; sums J_j T_j of half-space and cylinder; e0, number of rows, number of modes; then the
-    vectors and the matrix of the modes, as of :func:`.evaluate.modes_record`.
+    block: materials of equal numbers of modes, as :class:`..prony.Block`; without weights each body has half of each
+        mode.
+    Returns (materials, 13 + (5 + modes) modes), of each: alpha, 1/sqrt(alpha); W and C of the fast limit of both
+    bodies, of the half-space, of the cylinder; sums J_j T_j of half-space and cylinder; e0, number of rows, number of
+    modes (0, 1 and 0 for elastic ones); then the vectors a, b, e, t and weights and the matrix Q of the modes, as of
+    :func:`.evaluate.modes_record`.  Times are in units of T_ref.
     """
     modes, count = block.modes, block.rows.size
     weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights

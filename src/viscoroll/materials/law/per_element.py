@@ -1,4 +1,9 @@
-"""Laws of arrays in which every element has its own alpha, material or cover: rows are made where kernels read them."""
+"""Laws of arrays in which every element has its own alpha, material or cover: rows are made where kernels read them.
+
+An element is a state or a motion.  A record (:class:`...kernels.rows.record.Law`) holds the law of one element at a
+time, which :func:`...kernels.rows.record.select_material` selects; the kernel that reads a part of a row has it made if
+it is that of another element.  Such a record belongs to one thread.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...core.array_types import Floats, Integers
+from ...core.errors import ParameterError
 from ..bodies import Bodies
 from ..cover import Cover
 from ..prony import Prony, lock_array
@@ -39,19 +45,20 @@ def record_of_alphas(alpha: Floats) -> Any:
 
     The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
 
-    alpha: one value for each element, or one for all, >= 1.
-    Returns :class:`...kernels.rows.record.Law`.
+    alpha: instantaneous divided by long-time modulus, dimensionless, in [1, 1e12]: one value for each element, (n,), or
+        one for all, (1,).
+    Returns :class:`...kernels.rows.record.Law`, with T_epsilon for the unit of time.
     """
     return records_of_alphas(alpha, 1)[0]
 
 
 def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
-    """Return ``count`` records as of :func:`record_of_alphas`, so that so many elements are evaluated together.
+    """Return several records as of :func:`record_of_alphas`, so that as many elements are evaluated together.
 
-    alpha: one value for each element, (n,), or one for all, (1,), dimensionless, >= 1.
+    alpha: one value for each element, (n,), or one for all, (1,), dimensionless, in [1, 1e12].
     count: number of records, each of which holds the law of one element at a time.
-    Returns a tuple of :class:`...kernels.rows.record.Law`.  Octaves of alpha that this process has not used before are
-    computed and kept.
+    Returns a tuple of ``count`` :class:`...kernels.rows.record.Law`.  Octaves of alpha that this process has not used
+    before are computed and kept until it ends.
     """
     from ...kernels.rows import alpha_axis
     from ...kernels.rows.record import E0
@@ -81,17 +88,20 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
     """Return an order of states in which those of one octave of alpha and one of kappa |V| follow each other.
 
     They then read rows that are close in memory: states in random order take half as long again.
-    alpha, kappa, V: parameters and speed of the states, dimensionless, (n,), or (1,) for all.
-    Returns indices (n,); an empty array, the order given, for a single state.
+    alpha, kappa, V: parameters and speed of the states, dimensionless, (n,), or (1,) for all; contiguous doubles.
+    Returns indices (n,), the states of one octave in the order given; an empty array, which stands for the order given,
+    for a single state.
     """
     octaves = (256 * _exponents(alpha) + np.clip(_exponents(kappa * V), -5, 100)).astype(np.int16)
     return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
 
 
 def _exponents(x: Floats) -> Integers:
-    """Return n with 2^(n-1) <= |x| < 2^n for each x, from its bits; -1022 of 0.  ``np.frexp`` takes four times as long.
+    """Return n with 2^(n-1) <= |x| < 2^n for each x, from its bits; -1022 of 0 and of numbers below the normal ones.
 
-    x: contiguous doubles.
+    ``np.frexp`` takes four times as long.
+    x: contiguous doubles, finite.
+    Returns integers in the shape of x.
     """
     return ((x.view(np.int64) >> 52) & 0x7FF) - 1022
 
@@ -100,10 +110,12 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     """Return the record of the laws of states or motions that have a material each, for use by one thread.
 
     The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
-    materials: many series, pairs or covers.
-    which: index of the material of each element, (n,) or (1,) for all.
-    Returns :class:`...kernels.rows.record.Law`.
-    Raises ParameterError for times beyond 1e-100 to 1e100 times T_ref.
+    materials: :class:`..prony.Prony` of n materials, :class:`..bodies.Bodies` of n pairs, or :class:`..cover.Cover` of
+        n covers; elastic ones may be among them.
+    which: index of the material of each element, (elements,), or (1,) for all.
+    Returns :class:`...kernels.rows.record.Law`.  Of series and pairs nothing is computed before kernels read it; of
+    covers the laws at the nodes of :func:`count_laws` are.
+    Raises ParameterError for times of half-spaces beyond 1e-100 to 1e100 times T_ref, and for a cover that is too thin.
     """
     used, index = np.unique(which, return_inverse=True)
     index = np.ascontiguousarray(index, dtype=np.int64)
@@ -142,13 +154,18 @@ def _lazy_record(
 ) -> Any:
     """Return the record of a law whose rows are made by kernels where they are read.
 
-    kernels: module with the kernel ``make_part`` and the type SOURCE of the data that both kernels read.
-    select: kernel that makes the law of one element the current one.
-    rows, marks: numbers and marks of the record, which the kernels write.
-    cover_rows: the numbers that covers have in addition; None for half-spaces.
-    kept: arrays behind addresses in fields, which live as long as the record.
-    fields: the other fields of SOURCE, numbers or arrays, of which the address is passed.
-    Returns :class:`...kernels.rows.record.Law`.
+    kernels: module with the kernel ``make_part`` and the type SOURCE, a record of numbers and addresses of arrays that
+        both kernels read.
+    select: kernel (index of an element, address of the SOURCE record) that makes the law of that element the current
+        one.
+    rows, marks: numbers and marks of the record (:func:`.pack.allocate_rows`), which the kernels write.
+    cover_rows: array for the numbers that covers have in addition, which the kernels write; None for half-spaces.
+    kept: any objects that own memory whose addresses are among the fields, and that must live as long as the record;
+        None: there are none.
+    fields: the other fields of SOURCE by name, numbers or arrays; of an array the address is passed, and the array is
+        kept alive.
+    Returns :class:`...kernels.rows.record.Law`, without rows of N.  Its arrays are read-only views, which the kernels
+    change through their addresses.
     """
     from ...kernels.compile.intrinsics import function_address
     from ...kernels.rows.record import Law
@@ -168,8 +185,10 @@ def _lazy_record(
 def count_laws(covers: Cover) -> int:
     """Return the number of laws that :func:`record_of_materials` makes for covers; 1 for a single cover.
 
-    covers: one cover, or many, whose laws are interpolated between nodes of thickness, and of Poisson's ratio where
-        that differs too.
+    Many covers have 14 laws for each octave of thickness in which one lies; 12 times as many if ``nu`` is an array.
+    covers: :class:`..cover.Cover`, one cover, or many, whose laws are interpolated between nodes of thickness, and of
+        Poisson's ratio where that differs too.
+    Returns an int; laws that the process has made before are counted too.
     """
     if not covers.shape:
         return 1
@@ -184,10 +203,11 @@ def _octave_of(thickness: Floats) -> Floats:
 def _record_of_covers(covers: Cover, index: Integers) -> Any:
     """Return the record of the laws of covers that differ in thickness, interpolated within octaves of thickness.
 
-    covers: many covers, which may differ in Poisson's ratio too.
-    index: index of the cover of each element, (n,).
+    covers: :class:`..cover.Cover` of n covers, which may differ in Poisson's ratio too.
+    index: index of the cover of each element, (elements,), or (1,) for all.
     Returns :class:`...kernels.rows.record.Law`, which holds the law of one element at a time.
-    Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses.
+    Raises ParameterError for a cover in an octave of thickness whose thinnest cover, which may be thinner than any of
+    ``covers``, is so thin that the half contact at rest is longer than six thicknesses.
     """
     from ...kernels.rows import thickness_axis
     from ...kernels.rows.record import E0, ROW_COUNT
@@ -199,7 +219,12 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
         weights = (of_nu[:, :, None] * weights[:, None]).reshape(len(weights), -1)
     for exponent in np.unique(octave).tolist():
         with _lock:
-            laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent, np.max(covers.nu)), many_nu)
+            try:
+                laws[exponent] = _laws_of_octave(covers.of_thickness(2.0**exponent, np.max(covers.nu)), many_nu)
+            except ParameterError as error:
+                thin, allowed = covers.thickness.min(), 2.0 ** (exponent + 1.0)
+                reason = f"at least {allowed:g} where covers differ: the laws of thinner ones are not interpolated"
+                raise ParameterError("thickness/l0", f"{thin:.3g}", reason) from error
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
     rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
@@ -213,9 +238,12 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
 
 
 def _node_weights(x: Floats, count: int) -> Floats:
-    """Return the weights of values at Chebyshev nodes in the polynomial through them; (points, nodes).
+    """Return the weights of values at Chebyshev nodes in the polynomial through them, whose value is then a weighted
+    sum.
 
-    x: points, in [0, 1].  count: number of nodes.
+    x: points, in [0, 1], (points,).
+    count: number of nodes, the Chebyshev points of [0, 1].
+    Returns (points, nodes); the sum over the nodes is 1.
     """
     from ...kernels.numerics.interpolation import to_chebyshev
 
@@ -224,12 +252,16 @@ def _node_weights(x: Floats, count: int) -> Floats:
 
 @lru_cache(maxsize=32)
 def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
-    """Return the laws at the nodes of an octave of thickness; made once a process.
+    """Return the laws at the nodes of an octave of thickness; the last 32 octaves are kept.
 
-    thinnest: cover at the lower end of the octave.
-    many_nu: whether laws are made at the nodes of Poisson's ratio in [0, 1/2] too; else that of the cover is taken.
-    Returns (numbers of their records, (laws, numbers in front and rows, then those of the cover), the nodes of
-    thickness running fastest; one of these records).
+    thinnest: :class:`..cover.Cover` at the lower end of the octave, of which all but the thickness, and ``nu`` if
+        ``many_nu``, is that of all laws.
+    many_nu: whether laws are made at the 12 nodes of Poisson's ratio in [0, 1/2] too; else at the ``nu`` of
+        ``thinnest`` alone.
+    Returns (numbers of their records, (laws, numbers in front and rows, then those of the cover), 14 laws a Poisson's
+    ratio, with the nodes of thickness running fastest; the record of the last law, :class:`...kernels.rows.record.Law`,
+    from which number of rows and e0, equal for all, are read).
+    Raises ParameterError for a cover at a node that is too thin.
     """
     from ...kernels.numerics.interpolation import chebyshev, to_doubles
 

@@ -1,9 +1,12 @@
 """Polynomials of one variable over octaves: :class:`Rows`, which reads and fits them.
 
+The variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.fit`), dimensionless.  T_ref is the unit of time of the
+material, in which its rates are given.
+
 Slopes are fitted and integrated, and one constant is added: value, slope and secant of a polynomial are then all
-accurate to rounding, where a polynomial fitted to values has lost three digits in its slopes.  Powers are computed from
-the rapidly decreasing Chebyshev coefficients, which keeps rounding errors small.  No library of linear algebra is used:
-its last digits differ from machine to machine.
+    accurate to rounding, where a polynomial fitted to values has lost three digits in its slopes.  Powers are computed
+    from the rapidly decreasing Chebyshev coefficients, which keeps rounding errors small.  No library of linear algebra
+    is used: its last digits differ from machine to machine.
 """
 
 from __future__ import annotations
@@ -39,10 +42,10 @@ class Rows:
     """Octaves of a variable x >= 0 with a polynomial of 24 powers on each.
 
     Row 0 is the interval [0, 2^e0), with t = x 2^-e0 in [0, 1).  Row n > 0 is the octave [2^(e0+n-1), 2^(e0+n)), with t
-    in [-1, 1).
+    = 4 x 2^-(e0+n) - 3 in [-1, 1).
 
-    e0 : exponent of the end of the first row.
-    count : number of rows.
+    e0 : exponent of the end of the first row, an integer of any sign.
+    count : number of rows, row 0 included.
     """
 
     e0: int
@@ -73,7 +76,8 @@ class Rows:
         """Evaluate polynomials and their slopes, by Horner's scheme.
 
         powers: coefficients, (functions, rows, 24 powers).
-        x: points, >= 0, (n,), below the end of the last row.
+        x: points, > 0 and below the end of the last row, (n,).  They are not checked: 0 is not found in row 0 if e0 <
+            0, and a point beyond the last row raises IndexError.
         Returns (values; derivatives with respect to ln x), (functions, n) each.
         """
         mantissa, exponent = np.frexp(x)
@@ -90,13 +94,13 @@ class Rows:
         return value, slope * np.where(slow, t, t + 3.0)
 
     def fit(self, values: Floats, terms: int = TERMS, rounding: float = _ROUNDING) -> Floats:
-        """Fit polynomials to values at the nodes.
+        """Fit polynomials to values at the nodes: of each row the one of degree ``terms`` - 1.
 
-        values: values of the functions at the nodes, (..., rows, nodes).
-        terms: number of Chebyshev coefficients to keep, at most 24.
-        rounding: fraction of the largest coefficient of a function in the first row; the first coefficient there that
-            is smaller, and all behind it, are set to 0.
-        Returns coefficients of powers of t, (..., rows, 24 powers).
+        values: values of the functions at the nodes ``x``, (..., rows, 24 nodes); not changed.
+        terms: number of Chebyshev coefficients to keep, at most 24, with which the polynomial goes through all values.
+        rounding: fraction of the largest coefficient of a function in the first row; there the first coefficient that
+            is smaller, and all behind it, are set to 0.  Other rows keep all ``terms``.
+        Returns coefficients of powers of t, (..., rows, 24 powers); from power ``terms`` on they are 0.
         """
         chebyshev_terms = _multiply(values, _TO_CHEBYSHEV)
         chebyshev_terms[..., terms:] = 0.0
@@ -108,11 +112,13 @@ class Rows:
         return powers
 
     def fit_slopes(self, values: Floats, slopes: Floats) -> Floats:
-        """Fit polynomials to slopes at the nodes, integrate them, and fit the constant to the values in the mean.
+        """Fit polynomials to slopes at the nodes, integrate them over t, and fit the constant to the values in the
+        mean.
 
-        values: values of the functions at the nodes, (..., rows, nodes).
-        slopes: derivatives of the values with respect to ln x, (..., rows, nodes).
-        Returns coefficients, (..., rows, 24 powers).
+        values: values of the functions at the nodes ``x``, (..., rows, 24 nodes); not changed.
+        slopes: derivatives of the values with respect to ln x, in the same shape; of these 23 Chebyshev coefficients
+            are kept.
+        Returns coefficients of powers of t, (..., rows, 24 powers).
         """
         derivative = self.fit(slopes * self.dlnx_dt, TERMS - 1)
         powers = np.zeros_like(derivative)
@@ -128,11 +134,12 @@ class Rows:
 
 
 def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
-    """Return the rows that a law needs; beyond the last one its fast limit is accurate to rounding.
+    """Return the range of the rows of a law, beyond whose last row its fast limit is accurate to rounding.
 
-    slowest: slowest rate of creep, in units of 1/T_ref; a number or an array.
-    fastest: fastest rate of relaxation, in units of 1/T_ref, in the same shape.
-    Returns (e0, number of rows), integers in that shape; the first row is the interval [0, 2^e0).
+    slowest: slowest rate of creep b_1, > 0, in units of 1/T_ref; a number or an array.
+    fastest: fastest rate of relaxation a_N, > 0, in units of 1/T_ref, in the same shape.
+    Returns (e0, number of rows), integers in that shape.  For ``slowest`` in [2^(n-1), 2^n) and ``fastest`` in
+    [2^(m-1), 2^m) the first row is the interval [0, 2^e0) with e0 = n - 5, and the last row ends at 2^(m+34).
     """
     from ...kernels.rows.z_grid import FAST_LIMIT_OCTAVES
 
@@ -141,10 +148,11 @@ def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
 
 
 def _multiply(values: Floats, matrix: Floats) -> Floats:
-    """Return ``values @ matrix``, summed in the order of the terms, [..., column]; the same bits on every machine.
+    """Return ``values @ matrix``, summed in the order of the terms, so that every machine finds the same bits.
 
     values: [..., term].
     matrix: [term, column].
+    Returns [..., column].
     """
     product = values[..., :1] * matrix[0]
     for k in range(1, len(matrix)):

@@ -15,18 +15,19 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 
     Parameters
     ----------
-    values : values at the nodes, (nodes of the first axis, nodes of the second, ...).
-    axes : coordinates of the nodes, increasing, one array for each axis; none for a single value.
+    values : values at the nodes, (nodes of the first axis, nodes of the second, ...); without axes a number or array.
+    axes : coordinates of the nodes, increasing, at least two, one array (nodes,) for each axis of ``values``, in that
+        order; an empty list for a single value.
     degree : 1 or 3; along an axis of fewer than degree + 1 nodes it is the number of nodes less 1.
 
     Returns
     -------
-    scipy.interpolate.NdBSpline, or ``values`` without axes.
+    scipy.interpolate.NdBSpline over all axes, or ``values`` itself without axes.
 
     Raises
     ------
     ValueError
-        Of scipy, for values that are not finite and coordinates that do not increase.
+        Of scipy, for values that are not finite, coordinates that do not increase, and an axis of a single node.
     """
     from scipy.interpolate import NdBSpline, make_interp_spline
 
@@ -41,12 +42,13 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     """Return an axis of a spline in the form that ``kernels.splines.spline`` reads.
 
-    knots: knots of a not-a-knot spline, ascending, with degree + 1 of them before the second node.
-    degree: 0 to 3.
-    log: whether the spline runs in the logarithm of the coordinate.
+    knots: knots of a not-a-knot spline, ascending, with ``degree`` + 1 equal ones at either end.
+    degree: 1 to 3.
+    log: whether the spline runs in the logarithm of the coordinate; the knots are logarithms then.
     stride: number of coefficients that one step along the axis is.
-    Returns the vector: number of intervals, degree + 1, log (0 or 1) and stride; the ends of the intervals; the Taylor
-    coefficients of the basis splines in each interval.
+    Returns one vector of 5 + 17 n numbers for n intervals between the different knots: n, degree + 1, log (0 or 1) and
+    stride; the n + 1 ends of the intervals; then for each interval four basis splines with four Taylor coefficients
+    each about its left end, of which those from ``degree`` + 1 on are 0.
     """
     from scipy.interpolate import BSpline
 
@@ -66,16 +68,18 @@ def pack_spline(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds
 
     Parameters
     ----------
-    found : a spline of :func:`fit_spline`, or the value of a field over no axis.
+    found : a spline of :func:`fit_spline`, or the value, a number, of a field over no axis.
     axes : names of its axes, in their order, of "V", "delta" and "alpha".
-    logs : names of the axes in whose logarithm it runs.
-    bounds : lowest and highest value, to which results are clipped; infinite for none.
+    logs : names of the axes in whose logarithm it runs; other names in it have no effect.
+    bounds : lowest and highest value, to which kernels clip results, in the unit of the values; infinite for none.
 
     Returns
     -------
     vector
-        The bounds; where the axes V, delta and alpha and the coefficients begin; these axes, one interval for an axis
-        that the field is not over; the coefficients.
+        Six numbers: the bounds, and the indices in the vector where the axes V, delta and alpha and the coefficients
+            begin; the three axes as of :func:`_axis`, with no interval and one basis spline, the constant 1, for an
+            axis that the field does not depend on; the coefficients, with zeros behind the last ones of an axis of a
+            degree below 3.
     """
     # an axis that the field is not over: no interval, one basis spline, which is 1
     vectors = dict.fromkeys(("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15))

@@ -30,23 +30,30 @@ _KEPT_TABLES = 32
 class LawTable:
     """The law of one material or pair for any load, speed, creep, radius and friction; arrays are read only.
 
+    The variables are u = kappa |V| and v = 1/F(eta) (:mod:`.pack`).  All numbers are dimensionless, with times in units
+    of ``T_ref``.
+
     Attributes
     ----------
-    material : alpha, series or bodies whose law this is, with times in units of ``T_ref``.
+    material : material whose law this is: alpha as a float, with T_epsilon for the unit of time; a
+        :class:`..prony.Prony` series; or :class:`..bodies.Bodies`, of which :class:`..cover.Cover` is one.  Like bodies
+        and elastic ones are stored as one series or as 1.0.
     steady_coefficients : as :attr:`coefficients`, with NaN where N was not computed yet.
-    e0 : exponent of the end of the first row, which is the interval [0, 2^e0).
+    e0 : exponent of the end of the first row, which is the interval [0, 2^e0); 0 for elastic bodies, which have one
+        row.
     alpha : instantaneous divided by long-time stiffness, dimensionless.
-    T_mean : limit of M/V for V -> 0, in units of ``T_ref``: the sum of J_j T_j, except for a cover against a body that
-        deforms.
-    unlike : whether the bodies differ.
+    T_mean : limit of M/V for V -> 0, in units of P ``T_ref``: the sum of J_j T_j, except for a cover against a body
+        that deforms.
+    unlike : whether the bodies differ; True for a cover.
     fast_limit : W = sum J_j/T_j and C = sum J_j/T_j (ln(2 T_j) - 0.5772...) of both bodies together, of the half-space
-        and of the cylinder, shape (3, 2).
-    relaxation_strength, relaxation_time, creep_strength, retardation_time : both forms of the series, slowest mode
-        first, times in units of ``T_ref``.
-    half_space_weight : part of each creep strength that is the half-space's, dimensionless.
-    T_ref : unit of time, s.
-    pair : the bodies in SI units, if the table was made of such.
-    cover : rows that a cover of finite thickness has in addition; None for half-spaces.
+        and of the cylinder, shape (3, 2); of a cover those of the bodies as half-spaces, which its law does not use.
+    relaxation_strength, relaxation_time, creep_strength, retardation_time : both forms of the series of both bodies
+        together, (modes,), slowest mode first, times in units of ``T_ref``.
+    half_space_weight : part of each creep strength that is the half-space's, dimensionless, (modes,); 0.5 of like
+        bodies.
+    T_ref : unit of time, s; 1 where the material was given without units.
+    pair : the bodies in SI units, if the table was made of such; else None.
+    cover : rows that a cover of finite thickness has in addition, :class:`.pack.CoverRows`; None for half-spaces.
     """
 
     material: float | Prony | Bodies
@@ -72,7 +79,7 @@ class LawTable:
     def coefficients(self) -> Floats:
         """Return the coefficients (rows, 24 powers, 7 functions), functions in the order of :data:`.pack.FUNCTIONS`.
 
-        For a cover N is not known: its column is NaN.
+        Those of N are computed at the first use.  For a cover N is not known: its column is NaN.
         """
         table = self.steady_coefficients
         if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
@@ -93,21 +100,26 @@ class LawTable:
 def law_table(material: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
     """Return the table of the law of a material; it is made once a process and shared by all its threads.
 
+    The last 32 tables are kept.
+
     Parameters
     ----------
-    material : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, which are one material if they
-        are alike or both elastic; or a table, which is returned.
-    coefficients : rows of the law, as read from a file, (rows, 24 powers, 7 functions), from which a new table is
-        made; None: they are computed.
+    material : alpha >= 1 as a number, with T_epsilon for the unit of time; a :class:`..prony.Prony` series;
+        :class:`..bodies.Bodies`, which are one material if they are alike or both elastic, or a :class:`..cover.Cover`;
+        or a :class:`LawTable`, which is returned.
+    coefficients : rows of the law, as read from a file, (rows, 24 powers, 7 functions), from which a new table is made,
+        which is not kept; None: they are computed.  Ignored for a table, a cover and elastic bodies.
 
     Returns
     -------
     LawTable
+        With times in the unit of the material, T_ref = 1 and no ``pair``.
 
     Raises
     ------
     ParameterError
-        Many materials; times beyond 1e-100 to 1e100 of their unit; a cover that is too thin.
+        Many materials; times beyond 1e-100 to 1e100 of their unit (of half-spaces); a cover that is too thin.  An alpha
+        below 1 is not refused here, but by :func:`.netcdf.law_table_of`.
     """
     if isinstance(material, LawTable):
         return material
@@ -133,14 +145,19 @@ def _made(material: float | Prony | Bodies) -> LawTable:
 def make_table(
     material: float | Prony | Bodies, coefficients: Floats | None = None, cover: CoverRows | None = None
 ) -> LawTable:
-    """Make the table of the law of a material; rows that are not given are computed.
+    """Make the table of the law of a material, without looking for one that was kept; rows that are not given are
+    computed.
 
-    material: alpha, a series, two bodies or a cover.
-    coefficients: rows of the law, (rows, 24 powers, 7 functions); None: they are computed.  Not used for a cover and
-        for elastic bodies.
-    cover: rows of the law of a cover; None: they are computed if ``material`` is one.
-    Returns the :class:`LawTable`, whose arrays are read-only; N is computed at first use.
-    Raises ParameterError for times beyond 1e-100 to 1e100 of their unit, and for a cover that is too thin.
+    material: alpha >= 1 as a float, a :class:`..prony.Prony` of one material, :class:`..bodies.Bodies` of one pair, or
+        one :class:`..cover.Cover`.
+    coefficients: rows of the law, (rows, 24 powers, 7 functions); None: they are computed.  Ignored for a cover and for
+        elastic bodies, whose functions are the constants 1 and 0.
+    cover: :class:`.pack.CoverRows`, rows of the law of a cover; None: they are computed if ``material`` is one.
+        Ignored for other materials.
+    Returns the :class:`LawTable`, whose arrays are read-only, with T_ref = 1; N is computed at first use, but of
+    elastic bodies it is 0.
+    Raises ParameterError for times of half-spaces beyond 1e-100 to 1e100 of their unit, and for a cover that is too
+    thin.
     """
     total, unlike = total_series(material), isinstance(material, Bodies)
     modes, alpha = total.modes, total.alpha
