@@ -300,7 +300,9 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     eigenvalues.imag[..., 0], eigenvalues.imag[..., 1] = -imaginary, imaginary
     found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
     found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
-    if labels is not None and labels.shape == loads.shape:
+    if labels is not None and labels.shape != loads.shape:
+        labels = None  # arrays of the scene give further axes, which have no labels
+    if labels is not None:
         behind_them = {"count": (), "eigenvalues": ("equilibrium", "rate")}
         found = {
             name: labels.apply(name, each, *behind_them.get(name, ("equilibrium",))) for name, each in found.items()

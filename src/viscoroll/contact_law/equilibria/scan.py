@@ -143,9 +143,9 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
     law: table of the material.
     loads: the loads with their gains, dimensionless.
     n: index of the load.
-    Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is +infinite for either sense of
-    omega, and whose eigenvalues are those of the slowest speed of the nodes; or an empty list: also where the gains on
-    omega add to 0, and where force + torque are 0 at rest.
+    Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is infinite with the sign of
+    omega, as of :func:`..contact.contact` at V = 0, and whose eigenvalues are those of the slowest speed of the nodes;
+    or an empty list: also where the gains on omega add to 0, and where force + torque are 0 at rest.
     """
     gains, total = loads.gains, loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
@@ -160,7 +160,7 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
     spinning = States.of(loads, np.array([n]), np.array([side]), rows)
     spinning.rows[[Field.V, Field.DELTA, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.OMEGA], 0] = (
         0.0,
-        math.inf,
+        side * math.inf,
         0.0,
         0.0,
         omega,
