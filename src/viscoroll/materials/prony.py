@@ -81,7 +81,7 @@ class Prony(OneOrMany):
     E : strengths of the modes divided by the long-time modulus, >= 0, dimensionless; zeros are dropped.
     tau : their relaxation times in units of T_ref, > 0; strengths of equal times are added.
         Arrays (n, N), one of which may be (N,), are n materials: ``p[i]`` is one of them, ``p[i:k]`` are some.  Where
-        they differ in the number of modes, those of strength 0 stand behind the others.
+        they differ in the number of modes, those of strength 0 stand after the others.
 
     Attributes
     ----------
@@ -255,7 +255,7 @@ class Prony(OneOrMany):
         """Return the modes of the form that was not given: creep if relaxation was given, and the reverse.
 
         Returns read-only arrays (strengths, dimensionless; times in units of T_ref), (modes,) each; for many materials
-        (n, modes), with strength 0 and time 1 behind the last mode.
+        (n, modes), with strength 0 and time 1 after the last mode.
         """
         names = ("E", "a") if self.by_creep else ("J", "b")
         if not self.shape:
@@ -364,7 +364,7 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
     strengths, times: strengths, >= 0, and times, > 0, of the modes, (modes,) or (n, modes), or one of them a number;
         dimensionless, times in units of T_ref.
     Returns (strengths, times) by descending time, (modes,) or (n, modes) with as many modes as the material with most
-    has; modes without strength are dropped or, of many materials, put behind the others.
+    has; modes without strength are dropped or, of many materials, put after the others.
     Raises ParameterError for numbers out of range, shapes that do not fit, more than :data:`MOST_MODES` modes, and
     times that span more than :data:`LARGEST_TIME_RATIO`.
     """
@@ -404,12 +404,12 @@ def series_of_alpha(alpha: float) -> Prony:
 
 
 def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floats]:
-    """Sort modes by descending time, add those of equal times, and put those without strength behind the others.
+    """Sort modes by descending time, add those of equal times, and put those without strength after the others.
 
     strengths, times: strengths and times of the modes, (..., modes), any unit; not changed.
     parts: parts of the strengths, (..., modes) each, which are sorted and added like them.
     Returns a list of new arrays [strengths, times, *parts], each (..., modes).  Of modes of equal times one has the sum
-    of the strengths; the others have strength 0 and stand behind.
+    of the strengths; the others have strength 0 and stand last.
     """
     order = np.argsort(-times, axis=-1, kind="stable")
     values, each, *rest = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts))

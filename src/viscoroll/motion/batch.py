@@ -171,7 +171,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     def work(start: int, stop: int) -> None:
         """Integrate those motions of a block that have no result, and write their results into ``found`` and ``steps``.
 
-        start, stop: index of the first motion of the block, and of the one behind the last.
+        start, stop: index of the first motion of the block, and of the one after the last.
         """
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:

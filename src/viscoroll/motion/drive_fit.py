@@ -181,7 +181,7 @@ class _Sampled:
 
         t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,), n >= 2.
         allowed: absolute error allowed to a fit at its end, dimensionless; a change up to it is no jump.
-        Returns (last time before the jump, first time behind it), in T_ref.  Returns None unless the largest change
+        Returns (last time before the jump, first time after it), in T_ref.  Returns None unless the largest change
         between two neighbouring times exceeds ``allowed`` and half of the sum of all changes, and more than half of it
         is left where the interval has shrunk to two neighbouring doubles.
         """
@@ -206,9 +206,9 @@ def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
     """Return the neighbouring doubles between which a condition of time becomes false, found by halving the interval.
 
     low, high: times, low < high, in T_ref: the condition is true at ``low`` and false at ``high``.
-    is_before: function of a time, in T_ref, that returns whether the change comes behind it.  It is not called at
+    is_before: function of a time, in T_ref, that returns whether the change comes after it.  It is not called at
     ``low`` and ``high``.
-    Returns (last time before the change, first time behind it), in T_ref; (low, high) if these are neighbours already.
+    Returns (last time before the change, first time after it), in T_ref; (low, high) if these are neighbours already.
     """
     low, high = float(low), float(high)
     while low < (middle := 0.5 * (low + high)) < high:
@@ -301,11 +301,11 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     while rest:
         piece = rest.pop()
         if merged and rest:
-            before, behind = merged[-1], rest[-1]
-            if _SHORTER * (piece.stop - piece.start) < min(before.stop - before.start, behind.stop - behind.start):
-                corner = _intersection(before, behind, piece)
+            before, after = merged[-1], rest[-1]
+            if _SHORTER * (piece.stop - piece.start) < min(before.stop - before.start, after.stop - after.start):
+                corner = _intersection(before, after, piece)
                 left, _ = sampled.fit(before.start, corner, before.so_far)
-                right, _ = sampled.fit(corner, behind.stop, piece.so_far)
+                right, _ = sampled.fit(corner, after.stop, piece.so_far)
                 if left and right:
                     merged[-1], rest[-1] = left, right
                     continue
@@ -313,16 +313,16 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     return merged
 
 
-def _intersection(before: Piece, behind: Piece, between: Piece) -> float:
+def _intersection(before: Piece, after: Piece, between: Piece) -> float:
     """Return the time, within a piece, at which the polynomials of its neighbours are equal: where a corner lies.
 
-    before, behind: the piece before it and the piece behind it, whose polynomials are extended over it.
+    before, after: the piece before it and the piece after it, whose polynomials are extended over it.
     between: the piece.
     Returns the time, in T_ref; the middle of the piece where the same polynomial is the larger one at both of its ends.
     """
 
     def is_above(t: float) -> bool:
-        return before.value(t) > behind.value(t)
+        return before.value(t) > after.value(t)
 
     low, high = between.start, between.stop
     above_at_end = is_above(high)

@@ -151,7 +151,7 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
     """Return the largest relative errors of one motion of a new map, against the integrator, at times from its onset
     on.
 
-    Most of the times lie in the boundary layer behind the onset of partial slip, two before the onset, and the last
+    Most of the times lie in the boundary layer after the onset of partial slip, two before the onset, and the last
     ones at four times the time in which V falls by e at low speeds.
 
     new_map : the :class:`FlowMap`, with all tables.

@@ -1,6 +1,6 @@
-"""The boundary layers of a flow map behind the onset of partial slip: :func:`fill_layers`.
+"""The boundary layers of a flow map after the onset of partial slip: :func:`fill_layers`.
 
-Behind the onset omega - V relaxes at the rate k0, until the motion follows the slow manifold (:mod:`.flow_manifold`).
+After the onset omega - V relaxes at the rate k0, until the motion follows the slow manifold (:mod:`.flow_manifold`).
 E = k0 (tau - tau_onset), tau = gamma t, is the time since the onset in units of 1/k0.  The law has a kink at delta = 0.
 Each layer is therefore divided at a value of E, its split: that at which delta passes 0, or 1 where delta does not.
 The layer coordinate u grows with E, linearly on either side of the split, from 2^LAYER_LOW at the onset over 1 at the
@@ -29,7 +29,7 @@ _LAYER = octaves(layout.LAYER_LOW, layout.LAYER_HIGH)
 _OCTAVES_BEFORE_SPLIT = -layout.LAYER_LOW
 #: Lower end of u.
 _LOWEST_U = 2.0**layout.LAYER_LOW
-#: E behind the split at which a motion has reached the slow manifold, dimensionless.
+#: E after the split at which a motion has reached the slow manifold, dimensionless.
 _JOIN_E = 2.0**layout.LAYER_HIGH - 1.0
 #: Time before the onset of partial slip at which a motion of the layer starts, divided by the time to the split: the
 #: change of state in it is near the rounding of the integrator.

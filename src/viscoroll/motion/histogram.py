@@ -1,6 +1,6 @@
 """Counts and moments of one quantity, which merge to the same bits in any order: :class:`Histogram`.
 
-A bin holds the doubles that share sign, exponent and the first eight bits behind the point: 256 bins
+A bin holds the doubles that share sign, exponent and the first eight bits after the point: 256 bins
 to the octave, so each is at most 2^-8 of its value wide, with no range to choose beforehand (as in
 DDSketch: C. Masson, J. Rim, H. Lee, VLDB 2019).
 """
@@ -125,7 +125,7 @@ def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
     """Return the edges of bins.
 
     bins: numbers of bins, (bins,), as of :class:`Histogram`.
-    Returns (smallest value of each bin; smallest value of the bin behind it, infinite for the last bin of finite
+    Returns (smallest value of each bin; smallest value of the bin after it, infinite for the last bin of finite
     values), floats, in the shape of ``bins`` each.
     """
     bits = np.stack([bins, bins + 1]).astype(np.int64) << _DROPPED

@@ -294,7 +294,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     """Integrate one motion.
 
     problem: :class:`MotionProblem` of one motion.
-    times: output times, (times,), ascending, in the unit of its roller; a time behind the end of the motion counts as
+    times: output times, (times,), ascending, in the unit of its roller; a time beyond the end of the motion counts as
     its end.  The motion is integrated to its end in any case, so that steps and status do not depend on them.
     Returns the :class:`Motion`, in the units of its roller; where it did not reach an output time, quantities are NaN
     and ``regime`` is -1.  It keeps the first 1000 changes of regime and reversals of V, counted together.  The status

@@ -73,7 +73,7 @@ def check_function(
     values that are not finite or below ``low``; a callable that cannot be called with a time alone, or that polynomials
     do not follow; a ``resolve`` that requires too many samples.
     Returns the function as :class:`TimeFunction`: a float64 array, () for None or a number and (m,) for m motions; the
-    Schedule itself; or the fit of a callable as a :class:`Piecewise` of one row, which behind ``end`` keeps its value
+    Schedule itself; or the fit of a callable as a :class:`Piecewise` of one row, which beyond ``end`` keeps its value
     there.
     """
     if isinstance(function, Feedback):
@@ -110,7 +110,7 @@ def count_corners(function: TimeFunction) -> int:
     """Return the number of times at which an integration step must end, an int.
 
     function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable.
-    Returns the number of corners of a schedule; of a fitted callable the number of its pieces, that behind the last
+    Returns the number of corners of a schedule; of a fitted callable the number of its pieces, that after the last
     time included; 0 of numbers.
     """
     if isinstance(function, Piecewise):
@@ -213,12 +213,12 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """Return several functions over common pieces, in the layout of the kernels.
 
     functions: piecewise polynomials, each for the same m motions, or the same for all.
-    end: last time, in T_ref.  Pieces that for every motion start at or behind it are left out; the first piece always
+    end: last time, in T_ref.  Pieces that for every motion start at or after it are left out; the first piece always
     stays.
     Returns (1 or m, k, 2 + number of functions * terms): start of each piece in T_ref; 2 divided by its length, 0 of
     one without length or end; then the coefficients of each function in turn, padded with 0 to the largest number of
     terms.  Where motions have times of their own, pieces between equal times have no length; the kernels skip them.
-    Pieces of a motion that start at or behind ``end``, but are kept since other motions have them before it, repeat the
+    Pieces of a motion that start at or beyond ``end``, but are kept since other motions have them before it, repeat the
     coefficients of its last piece before ``end``.
     """
     rows = max(len(f.starts) for f in functions)
@@ -236,7 +236,7 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
         packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
-    if late.any():  # the last piece before the end acts behind it too
+    if late.any():  # the last piece before the end acts after it too
         acting = packed[np.arange(count), np.broadcast_to(at_end, count), COL_COEFFICIENTS:]
         packed[..., COL_COEFFICIENTS:] = np.where(late[..., None], acting[:, None], packed[..., COL_COEFFICIENTS:])
     return packed

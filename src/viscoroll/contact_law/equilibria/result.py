@@ -303,8 +303,8 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     if labels is not None and labels.shape != loads.shape:
         labels = None  # arrays of the scene give further axes, which have no labels
     if labels is not None:
-        behind_them = {"count": (), "eigenvalues": ("equilibrium", "rate")}
+        axes_after = {"count": (), "eigenvalues": ("equilibrium", "rate")}
         found = {
-            name: labels.apply(name, each, *behind_them.get(name, ("equilibrium",))) for name, each in found.items()
+            name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",))) for name, each in found.items()
         }
     return Steady(found, reasons, scale, labels)

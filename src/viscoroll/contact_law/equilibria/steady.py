@@ -57,7 +57,7 @@ def steady(
     -------
     Steady
         Of one load ``V``, ``omega``, ``delta``, ``Q``, ``M``, ``stable`` and the other fields as arrays of exactly its
-        equilibria by rising |V|, none to many.  Arrays of loads have that axis behind their own, padded with NaN
+        equilibria by rising |V|, none to many.  Arrays of loads have that axis after their own, padded with NaN
         (``stable``: False), and the ``count`` of equilibria for each load; arrays of xarray and series of pandas give
         their labels (series: data frames, a column an equilibrium).  ``reason`` says why there is none.
 

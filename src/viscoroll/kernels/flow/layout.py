@@ -31,7 +31,7 @@ OCTAVE_RANGE = LOW + OCTAVES, HIGH - 2
 LAYER_TERMS = 12
 #: binary exponent of the lowest layer coordinate u; u < 1 before the split
 LAYER_LOW = -6
-#: binary exponent of the highest layer coordinate u; u >= 1 behind the split
+#: binary exponent of the highest layer coordinate u; u >= 1 after the split
 LAYER_HIGH = 5
 #: E beyond which the boundary layer has decayed to e^-E
 LAYER_END = 28.0
@@ -73,7 +73,7 @@ class FlowTables(NamedTuple):
     V plus a constant as V -> 0 and is 0 at about kappa V = 1/4.  E = k0 (tau - tau_onset) is the stiff time since the
     onset of partial slip, with the relaxation rate k0 of omega - V at onset.  A motion may pass delta = 0, where the
     law has a kink: the split, a value of E near there, or 1, divides its layer.  The layer coordinate is u =
-    2^LAYER_LOW + (1 - 2^LAYER_LOW) E/split before the split and 1 + E - split behind.
+    2^LAYER_LOW + (1 - 2^LAYER_LOW) E/split before the split and 1 + E - split after.
 
     Attributes
     ----------

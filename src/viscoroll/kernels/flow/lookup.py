@@ -1,7 +1,7 @@
 """Values from a flow map: polynomials instead of integration.
 
 In full slip, mirrored so that omega > V, I = V - j omega - 2 mu T(V) is constant and determines the onset of partial
-slip.  Behind the onset the boundary layer is a table over (V at onset, E); then the motion follows the slow manifold, a
+slip.  After the onset the boundary layer is a table over (V at onset, E); then the motion follows the slow manifold, a
 function of the slow logarithm.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
@@ -17,7 +17,7 @@ Terms of this file:
 - T: time of full slip from V = 0 to V, with the sign of V; X: distance of full slip between rest and V, >= 0.
 - Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep.
 - Slow logarithm: coordinate along it, which falls linearly in tau; close to ln V plus a constant at low speed.
-- Boundary layer: the time behind the onset of partial slip in which delta approaches the manifold.  E = k0 (tau -
+- Boundary layer: the time after the onset of partial slip in which delta approaches the manifold.  E = k0 (tau -
   tau_onset) is its stiff time, k0 the relaxation rate at onset, u the layer coordinate (:func:`layer_coordinate`).
 - Family: PLUS (0) if omega > V at the onset of partial slip, MINUS (1) if omega < V.
 """
@@ -298,7 +298,7 @@ def layer_coordinate(E, split):
 
     E : float, stiff time since the onset, >= 0.
     split : float, the E at which the layer is divided, > 0.
-    Returns u: 2^LAYER_LOW at the onset, 1 at the split, 1 + E - split behind it.
+    Returns u: 2^LAYER_LOW at the onset, 1 at the split, 1 + E - split after it.
     """
     return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
 
@@ -335,7 +335,7 @@ def _evaluate_in_t(p, t):
 
 @inline_kernel
 def layer_value_and_slopes(table, column, at, t, s):
-    """Return value and slopes of one quantity of the boundary layer behind the onset of partial slip.
+    """Return value and slopes of one quantity of the boundary layer after the onset of partial slip.
 
     table : vector of all tables, ``table`` of Flow.
     column : int, the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE (distance and angle
@@ -366,7 +366,7 @@ def layer_value(table, column, at, t, s):
 
 @kernel
 def layer_state(stick, asymptote, elapsed, level, flow):
-    """Return the state of a motion within the boundary layer behind the onset of partial slip, mirrored so that V > 0.
+    """Return the state of a motion within the boundary layer after the onset of partial slip, mirrored so that V > 0.
 
     stick : :class:`.records.StickOnset`, of which family and v = kappa V at the onset are read.
     asymptote : :class:`.records.Asymptote` of the motion, of which rate k0 and split are read.

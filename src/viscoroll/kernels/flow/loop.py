@@ -16,7 +16,7 @@ Terms of this file (records in :mod:`.records`):
   logarithm is a coordinate along it that falls linearly in tau.
 - StickOnset: the onset of partial slip: frame, family (PLUS if omega > V there, MINUS if omega < V), v = kappa V, tau,
   distance, angle and slip loss.
-- Asymptote: the motion on the slow manifold that a motion approaches behind its onset: slow logarithm at the onset,
+- Asymptote: the motion on the slow manifold that a motion approaches after its onset: slow logarithm at the onset,
   relaxation rate k0, split of the boundary layer, excess of distance, angle and slip loss.
 """
 
@@ -323,7 +323,7 @@ def look_up_motions(flow, motions, result, start, stop):
         out, (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1); onset and rest, (n,),
         times t of the onset of partial slip and of coming to rest, NaN where there is none up to the last output time;
         switches, (n,), 1 with an onset, else 0.
-    start, stop : int, index of the first motion and of the one behind the last.
+    start, stop : int, index of the first motion and of the one after the last.
 
     Distance and angle are written as x and angle, divided by gamma.  The rolling loss is the loss of kinetic energy
     since the start less the slip loss.  Entries of a motion that is not covered have no meaning, apart from its status.

@@ -7,7 +7,7 @@ Terms of this file:
 - Flow: record of the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``, the
   exponent from which kappa V at onset is tabulated.
 - Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep.
-- Boundary layer: the time behind the onset of partial slip in which delta approaches the manifold.  E = k0 (tau -
+- Boundary layer: the time after the onset of partial slip in which delta approaches the manifold.  E = k0 (tau -
   tau_onset) is its stiff time, k0 the relaxation rate at onset.
 - Layer coordinate u: a function of E, 2^LAYER_LOW at the onset; u = 1 at the split, an E near the place where motions
   of the family pass delta = 0, or 1 where they do not.
@@ -47,7 +47,7 @@ def _initial_u(size, slow, turns):
         ``size``.
     turns : bool, whether motions of this family pass delta = 0 (then the layer has a split there).
 
-    Returns u, a float from 2^LAYER_LOW on; it may lie behind the end of the layer, to which the caller limits it.
+    Returns u, a float from 2^LAYER_LOW on; it may lie beyond the end of the layer, to which the caller limits it.
 
     Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction is 1 - r^2, so that dr/dE =
     (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.

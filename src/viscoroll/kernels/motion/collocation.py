@@ -122,7 +122,7 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
 def _eliminate(i, matrix):
     """Do one step of the inversion of a Newton matrix in place, by Gauss and Jordan with the pivot on the diagonal.
 
-    After the steps 1 ... N the matrix holds its inverse.  Only whole vectors are stored: a vector load behind the store
+    After the steps 1 ... N the matrix holds its inverse.  Only whole vectors are stored: a vector load after the store
     of a single number into it would wait for that store.
 
     i: int, 1 ... N, number of the step and index of the row and column of its pivot; row and column of node 0 are left

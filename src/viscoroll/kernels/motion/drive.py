@@ -80,7 +80,7 @@ def _sum_of_moduli(row, first, last):
     It is an upper bound of the modulus of each of them on the segment, and 0 only if all are 0.
 
     row: (columns,), the segment.
-    first, last: int, index DRIVE_* of the first function and of the one behind the last.
+    first, last: int, index DRIVE_* of the first function and of the one after the last.
     """
     n_terms, total = n_coefficients(row), 0.0
     for n in range(COL_COEFFICIENTS + first * n_terms, COL_COEFFICIENTS + last * n_terms):

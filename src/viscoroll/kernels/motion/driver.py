@@ -287,7 +287,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     - NOT_UNIQUE: the departure from rest is ambiguous;
     - ADDED_MASS_EXHAUSTED: the added mass leaves the range in which the equations are regular.
 
-    With the last four, outputs behind the end of the integration are not written.
+    With the last four, outputs beyond the end of the integration are not written.
     """
     event, relaxed_at, code = NO_EVENT, -1.0, regime_code(regime) if moving else -1
     while step_state.next_output < work.output_tau.size:

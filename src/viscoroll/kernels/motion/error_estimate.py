@@ -182,7 +182,7 @@ def _relative_speed_at_first_output(step, work):
     step.
 
     The error of the step is divided by this number, so that V is accurate relative to itself at its first output.  V is
-    taken at the last node that is not behind the first output time after the left end; at node 1 if all are behind it,
+    taken at the last node that is not after the first output time after the left end; at node 1 if all are after it,
     or at the next node where V is 0 there.  With all nodes before the output time, V at the end of the step is taken.
 
     step: Step, from V = omega = 0 on.

@@ -109,7 +109,7 @@ def _write_totals(column, work):
 def record_switch(code, step_state, work):
     """Record a change of regime, or of the sign of V, at the time reached.
 
-    code: int, regime behind it in the outputs (:mod:`.records`), or DIRECTION_REVERSED.
+    code: int, regime after it in the outputs (:mod:`.records`), or DIRECTION_REVERSED.
     step_state: StepState, with that time.
     work: Workspace: t = tau/gamma and ``code`` are written to the next row of ``switches`` if it has one.  The number
     of entries, N_RECORDED in ``nodes``, grows in any case; the number of regime changes, N_SWITCHES, grows unless the
@@ -179,7 +179,7 @@ def write_due_outputs(state, regime, step_state, work):
     regime: Regime, at that state.
     step_state: StepState, with that time and the next output.
     work: Workspace, of the motion; outputs are written.
-    Returns the StepState at the same time with ``next_output`` behind these outputs, and the length of the next step
+    Returns the StepState at the same time with ``next_output`` after these outputs, and the length of the next step
     not chosen.
     """
     column = step_state.next_output

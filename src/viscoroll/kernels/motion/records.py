@@ -205,10 +205,10 @@ class Workspace(NamedTuple):
 
     scene, drive, options : Scene, Drive and Options, the problem
     output_tau : (k,), times tau of the outputs, increasing
-    outputs : (13, k), [quantity, time], filled as far as the motion goes, NaN behind it; rows as in :mod:`output`
+    outputs : (13, k), [quantity, time], filled as far as the motion goes, NaN after it; rows as in :mod:`output`
     with_quadratures : whether distance, angle and energies are requested
     with_forces : whether force and torque are requested
-    switches : (m, 2), filled with t and the code of the regime behind each regime change, or DIRECTION_REVERSED, as far
+    switches : (m, 2), filled with t and the code of the regime after each regime change, or DIRECTION_REVERSED, as far
         as it has room
     step_ends : filled with the end t of each accepted step, as far as it has room
     nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`workspace`)

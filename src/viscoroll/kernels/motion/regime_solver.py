@@ -71,9 +71,9 @@ _MAX_ERROR_FOR_EVENTS = 1e6
 #: Largest number of trials until a step ends at the event.
 _MAX_TRIALS = 8
 #: Error divided by its tolerance that is assigned to a step that did not end at its event: the next step is then
-#: shorter, as behind any rejection.
+#: shorter, as after any rejection.
 _ERROR_OF_FAILED_TRIAL = 10.0
-#: Position v of an event in full slip, up to which the step is solved again with an end behind it: early on a step the
+#: Position v of an event in full slip, up to which the step is solved again with an end after it: early on a step the
 #: interpolants are less accurate relative to the time so far; the onset was wrong by 7e-12 of it.
 _EARLY_EVENT = 0.5
 #: Length of that step divided by the time to the event: above 1, so that the event lies on the step.
@@ -115,14 +115,14 @@ def _start_step(state, regime, step_state, work):
 def _end_at_V_zero(step, remaining, state, regime, work):
     """Shorten a trial step to the time at which V is expected to be 0, if that lies on it.
 
-    A prescribed V that comes to 0 at the end of the segment, or behind it, needs no shorter step.
+    A prescribed V that comes to 0 at the end of the segment, or after it, needs no shorter step.
 
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
     state: State, at the left end.
     regime: Regime, at that state.
     work: Workspace, with node 0.
-    Returns (Step, whether it ends at the expected time of V = 0); the Step is unchanged where that time is behind its
+    Returns (Step, whether it ends at the expected time of V = 0); the Step is unchanged where that time is after its
     end, or inf.
     """
     time = time_to_V_zero(step, state, regime, work)

@@ -186,7 +186,7 @@ def impose_prescribed_speed(state, regime, step_state, work):
 
 @kernel
 def apply_event(event, state, regime, step_state, work):
-    """Return state and regime behind an event, in the unknowns of the new regime.
+    """Return state and regime after an event, in the unknowns of the new regime.
 
     - STICK_EDGE in full slip: the cylinder comes to rest (:func:`comes_to_rest`), or partial slip begins with d =
       sigma; a prescribed omega is then imposed (:func:`impose_prescribed_speed`) where V changes at least as fast as

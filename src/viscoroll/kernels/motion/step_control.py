@@ -44,7 +44,7 @@ from .workspace import (
 _FIRST_CHANGE = 0.4
 #: Length of the first step in partial slip, in relaxation times of d.
 _FIRST_RELAXATION_TIMES = 3.0
-#: Change of d in the first step behind the onset of stick, in units of (rtol V d'/(alpha feedback))^(1/3), on whose
+#: Change of d in the first step after the onset of stick, in units of (rtol V d'/(alpha feedback))^(1/3), on whose
 #: scale the law bends there.
 _ONSET_CHANGE = 24.0
 #: Number of octaves from the first row of a law to the rate of the longest time of its material, by the construction of
@@ -70,7 +70,7 @@ _MAX_SHRINKAGE = 0.1
 _NEWTON_FAILURE = 0.3
 #: Safety factor of the step length, so that few steps are rejected.
 _SAFETY = 0.9
-#: Largest additional growth where errors decrease although steps grow, as behind a boundary layer.
+#: Largest additional growth where errors decrease although steps grow, as after a boundary layer.
 _MAX_EXTRA_GROWTH = 1.3
 #: Error divided by its tolerance that is added in ratios of errors, so that none is 0.
 _ERROR_FLOOR = 1e-12
@@ -188,7 +188,7 @@ def time_to_V_zero(step, state, regime, work):
 def step_length_after_relaxation(step, regime, work):
     """Return the length in tau of the step after one along which d has relaxed.
 
-    Behind it d follows V, which changes slowly: V may change by 4 rtol^(1/8) of itself, at the rate p' dV/dp or, if
+    After it d follows V, which changes slowly: V may change by 4 rtol^(1/8) of itself, at the rate p' dV/dp or, if
     that is larger, at the rate V dp'/dp.
 
     step: Step, the accepted one.
@@ -209,8 +209,8 @@ def step_length_after_relaxation(step, regime, work):
 def next_step_length(step, error, n_rejected, last_h, last_error):
     """Return the length in tau of the step after a trial step, by its error.
 
-    The length is that of the trial step times 0.9 error^(-1/7), in [0.1, 6].  Behind a boundary layer errors stay small
-    although steps grow: behind an accepted step the length may then be up to 1.3 times larger still.  Behind a rejected
+    The length is that of the trial step times 0.9 error^(-1/7), in [0.1, 6].  After a boundary layer errors stay small
+    although steps grow: after an accepted step the length may then be up to 1.3 times larger still.  After a rejected
     one it is at most 0.7 of that of the trial step at the first rejection and 0.4 at later ones.
 
     step: Step, the trial step.

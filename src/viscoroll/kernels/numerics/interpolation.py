@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 _DIGITS = 40
 #: Digits in the search for zeros, where polynomials of degree 36 lose fourteen to cancellation.
 _DIGITS_OF_SEARCH = 60
-#: Digits behind the point that zeros keep: the last ones would tell how this machine computes a cosine.
+#: Digits after the point that zeros keep: the last ones would tell how this machine computes a cosine.
 _DIGITS_OF_ZEROS = 36
 #: Newton steps from a start good to two digits: each doubles the digits.
 _NEWTON_STEPS = 5
@@ -124,7 +124,7 @@ def radau(n: int, side: int) -> list[Decimal]:
 
     n : number of nodes, the end included, > 1.
     side : the end that is a node, -1 or 1.
-    Returns n Decimals, ascending, rounded to 36 digits behind the point.
+    Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
     return sorted([Decimal(side), *(-side * x for x in inner)])
@@ -148,7 +148,7 @@ def chebyshev(n: int) -> list[Decimal]:
     """Return the zeros of the Chebyshev polynomial T_n on [-1, 1].
 
     n : number of zeros, >= 1.
-    Returns n Decimals, ascending, rounded to 36 digits behind the point.
+    Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
     return _zeros(cheb2poly(_unit_series(n, 1)), [(k - 0.5) / n for k in range(1, n + 1)])
 
@@ -206,7 +206,7 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
     polynomial : coefficients of the powers of x, the constant first, Decimals.
     half_turns : for each zero an angle whose cosine is near it, to two digits, divided by pi.
     Returns one Decimal for each angle, in ascending order of the zeros, whatever the order of the angles, rounded to 36
-    digits behind the point.  It is not checked that the iteration has converged.
+    digits after the point.  It is not checked that the iteration has converged.
     """
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)

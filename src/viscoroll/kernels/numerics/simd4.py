@@ -177,7 +177,7 @@ shift_in = make_intrinsic(_shift_in, FOUR, FOUR, FOUR)
 fma4 = make_intrinsic(_fma4, _widest, None, None, None)
 #: number -> the vector of four times that number.
 broadcast = make_intrinsic(_broadcast, FOUR, types.float64)
-#: (array, start) -> the vector of the numbers start to start + 3 of a contiguous array or behind a pointer.
+#: (array, start) -> the vector of the numbers start to start + 3 of a contiguous array or at a pointer.
 load = make_intrinsic(_load, FOUR, None, types.int64)
 #: (array, start, vector) stores a vector, or a tuple of vectors, at start.
 store = make_intrinsic(_store, types.void, None, types.int64, None)

@@ -290,7 +290,7 @@ def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
 
     values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes of the solve, which are evenly spaced in log2 u, 12 an
         octave, (5, n).
-    begin: index of the node where the first octave begins, at least 18; 18 nodes before each octave and 18 behind it
+    begin: index of the node where the first octave begins, at least 18; 18 nodes before each octave and 18 after it
         are used.
     count: number of octaves.
     Returns values and slopes over ln u at the 24 nodes of each octave, (2, 5, octaves, 24).

@@ -293,7 +293,7 @@ def _pack_cover(cover: CoverRows) -> Floats:
 
     cover: law of the cover, as :class:`CoverRows`.
     Returns one vector of 8 + 48 rows numbers: limits for u -> infinity of lam and 2 kappa delta_0, each with its factor
-    of 1/u behind it, of epsilon u and of 2 M u^2/(V L), limit of eta/F for v -> infinity with its factor of 1/v; then
+    of 1/u after it, of epsilon u and of 2 M u^2/(V L), limit of eta/F for v -> infinity with its factor of 1/v; then
     for each row the 24 coefficients of 2 kappa delta_0 twice, interleaved.
     """
     L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
@@ -389,7 +389,7 @@ def _significant_terms(values: Floats) -> Floats:
         lam, epsilon, H/F^2 and eta/F, M/V and epsilon divided by (alpha - 1)/alpha; not changed.
     Returns a new array (terms of s, rows, functions, powers of t).  In each row but the first, powers of t above the
     last Chebyshev polynomial that is kept are exactly 0; a coefficient that is the same at all nodes has that value as
-    its term T_0, and 0 behind it.
+    its term T_0, and 0 after it.
     """
     from numpy.polynomial.chebyshev import poly2cheb
 

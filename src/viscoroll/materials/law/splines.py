@@ -78,7 +78,7 @@ def pack_spline(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds
     vector
         Six numbers: the bounds, and the indices in the vector where the axes V, delta and alpha and the coefficients
             begin; the three axes as of :func:`_axis`, with no interval and one basis spline, the constant 1, for an
-            axis that the field does not depend on; the coefficients, with zeros behind the last ones of an axis of a
+            axis that the field does not depend on; the coefficients, with zeros after the last ones of an axis of a
             degree below 3.
     """
     # an axis that the field is not over: no interval, one basis spline, which is 1
