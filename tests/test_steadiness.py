@@ -146,3 +146,16 @@ def test_a_program_is_told_once_a_line():
 def test_workers_are_quiet(monkeypatch):
     monkeypatch.setattr(model_warnings, "is_worker", lambda: True)
     vr.roll(ROLLER, 3.0, 3.0, 1.0)  # warnings are errors here
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the motion is beyond the model on purpose
+def test_a_motion_is_judged_between_its_output_times():
+    """A slow roller of a DMA rubber on steel: one output time at rest gives the report of 601, failures and share."""
+    rubber = vr.fit_prony(*vr.read_dma(vr.datasets.path("dma.csv"))).material(nu=0.49)
+    roller = vr.Cylinder(R=0.03, m=5.0, material=rubber, base=vr.Material.rigid(), load=2e3, mu=0.8)
+    few, many = (roller.roll(0.4, 13.0, t, rest=1e-3).validity() for t in (60.0, np.linspace(0.0, 60.0, 601)))
+    assert "steady" in few.failed
+    assert few.failed == many.failed
+    assert few.steady.holds.shape == (1,)
+    assert few.steady.value[-1] >= 0.9 * many.steady.value[-1]
+    assert close(few.steady.share, many.steady.share, 0.01, scale=1.0)

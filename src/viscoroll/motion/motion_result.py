@@ -177,15 +177,19 @@ class Motion(RollResult):
         return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
 
     def validity(self) -> Validity:
-        """Report which assumptions of the model the motion violates, at each output time that it reached.
+        """Report which assumptions of the model the motion violates, at its steps and between them too.
 
         See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far; of
-        a cover it is not decided.
+        a cover it is not decided.  States at rest count as the last state before them, as the model has nothing to
+        compute at rest.
 
         Returns
         -------
         Validity
-            The report, with arrays over the output times that were reached; empty arrays where none was.
+            The report, with arrays over the output times that were reached; empty arrays where none was.  Each entry
+            has the value of the first violation since the output time before (for the first one since t = 0), or, if
+            there is none, that at the output time.  The report is that of the same motion with more output times
+            (``tests/test_steadiness.py``).
 
         Examples
         --------
@@ -194,13 +198,19 @@ class Motion(RollResult):
         >>> motion.validity().steady.holds.shape
         (2,)
         """
-        reached = self.regime >= 0
-        V = self.V[reached]
-        report = validity(self.roller, V, omega=self.omega[reached])
-        if not reached.any() or self.scene.cover is not None:
+        outputs = self.t[self.regime >= 0]
+        whole = self.at(np.union1d(self.course.t, outputs)) if outputs.size else self
+        reached = whole.regime >= 0
+        t, V, omega = whole.t[reached], whole.V[reached], whole.omega[reached]
+        moving = np.maximum.accumulate(np.where((V != 0.0) | (omega != 0.0), np.arange(V.size), 0))
+        report = validity(self.roller, V[moving], omega=omega[moving])
+        if not outputs.size:
             return report
-        rolls, x = self.regime[reached] > 0, self.x[reached]
-        return self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
+        if self.scene.cover is None:
+            rolls, x = whole.regime[reached] > 0, whole.x[reached]
+            report = self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
+        last = np.searchsorted(t, outputs)
+        return Validity(*(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report))
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return title and rows of the printed report, a list of :class:`SummaryRow`.

@@ -60,6 +60,18 @@ class Assumption(NamedTuple):
         """ "yes" if it holds at every V, "no" if not, "?" where no number can decide."""
         return "?" if self.holds is None else "yes" if np.all(self.holds) else "no"
 
+    def worst_of_parts(self, last: Any) -> Assumption:
+        """Return the assumption with one state for each part of a sequence of states, and the same sentence.
+
+        last: index of the last state of each part, (parts,), ascending; a part begins after the one before.
+        Returns the same kind of assumption, with holds and value of shape (parts,): those of the first state of the
+        part that violates it, else those of its last state.
+        """
+        faults = np.flatnonzero(~self.holds)
+        next_fault = np.append(faults, self.holds.size)[np.searchsorted(faults, np.append(0, last[:-1] + 1))]
+        index = np.minimum(next_fault, last)
+        return self._replace(holds=self.holds[index], value=self.value[index])
+
     def __repr__(self) -> str:
         return f"{self.word}: {self.sentence}"
 

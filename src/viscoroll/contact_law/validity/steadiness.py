@@ -112,6 +112,16 @@ class Steadiness(Assumption):
         created.free, created.motion_share = free, motion_share
         return created
 
+    def worst_of_parts(self, last: Any) -> Steadiness:
+        """Return the assumption of a motion with one value for each part of it: the largest up to the end of the part.
+
+        last: index of the last state of each part, (parts,), ascending.
+        Returns a :class:`Steadiness` with holds and value of shape (parts,); its attributes are those of the motion.
+        """
+        chosen: Any = self._replace(holds=self.holds[last], value=self.value[last])
+        chosen.free, chosen.motion_share = self.free, self.motion_share
+        return chosen
+
     @cached_property
     def one_percent(self) -> Reach:
         """Part of free rolling with an error of V below 1 %, a :class:`Reach` (unsteadiness up to 0.01)."""
