@@ -239,14 +239,16 @@ class Cylinder(Methods):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return the title and the rows of the printed report.
 
-        The rows are the numbers that were given, with their SI units, the load, the plane, and the materials by name
-        (or by their text, if they have no name).
+        The rows are the numbers that were given, with their SI units, the load, the plane, and each body by its name,
+        or by modulus and number of modes if it has none, with the thickness of a layer.
         """
         values = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in values.items()]
-        for name in ("material", "base"):
-            if (body := getattr(self, name)) is not None:
-                rows.append(SummaryRow(name, getattr(body, "name", "") or repr(body)))
+        if self.material is not None:
+            rows.append(SummaryRow("material", _describe_body(self.material)))
+        if self.base is not None or isinstance(self.material, Material):
+            same = "of the same material as the cylinder"
+            rows.append(SummaryRow("base", same if self.base is None else _describe_body(self.base)))
         return "Cylinder, SI units, per m of length", rows
 
     __repr__, _repr_html_ = Result.__repr__, Result._repr_html_
@@ -346,6 +348,19 @@ class Cylinder(Methods):
         """
         rates = self.body_data.measured_rates
         return {} if rates is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in rates]}
+
+
+def _describe_body(body: Any) -> str:
+    """Return a body in a few words for a printed report.
+
+    body: :class:`Material` or :class:`LawTable`.
+    Returns its name, "rigid", or modulus, Poisson's ratio and number of modes, with the thickness of a layer.
+    """
+    if not isinstance(body, Material):
+        return repr(body)
+    modes = f"{body.prony.E.size} mode{'s' * (body.prony.E.size != 1)}"
+    text = body.name or ("rigid" if body.is_rigid else f"E = {body.E:g} Pa, nu = {body.nu:g}, {modes}")
+    return text if body.thickness is None else f"{text}, {body.thickness:g} m thick"
 
 
 def contact_length(R: Any, load: Any, E_prime: Any) -> Any:

@@ -42,8 +42,8 @@ def test_readme_block_runs(capsys):
     assert len([line for line in code.splitlines() if line.strip()]) <= 12
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
-    assert "slides for 0.13 s, then rolls to 27.1 m" in printed
-    assert "the error of V is below 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s" in printed
+    assert "slides for 0.14 s, then rolls to 38.4 m" in printed
+    assert "the error of V is below 1 % down to 0.1 m/s, below 10 % down to 0.028 m/s" in printed
 
 
 @pytest.mark.parametrize("model", MODELS)

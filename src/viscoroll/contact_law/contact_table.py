@@ -82,7 +82,8 @@ def evaluate_contact(
     material = None if direct else scene.table or scene.material_array
     if isinstance(material, Prony | Bodies):
         if UNSTEADY in names:
-            raise ParameterError("fields", repr(UNSTEADY), "left out for many materials, or computed for material[i]")
+            allowed = "left out for many materials in one call: compute it for one of them, material[i]"
+            raise ParameterError("fields", repr(UNSTEADY), allowed)
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)

@@ -143,7 +143,8 @@ class Parameters(Roller):
                 values["alpha"], material = material, None
         if material is not None:
             if not isinstance(material, Prony | Bodies):
-                raise ParameterError("material", f"{material!r:.60}", "a Prony series, or Bodies of two")
+                allowed = "a Prony, a Bodies, or a law of load_law (in SI units: a Material of a Cylinder)"
+                raise ParameterError("material", f"{material!r:.60}", allowed)
             values["alpha"] = material.alpha
         arrays = {"alpha": check_array("alpha", values.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
         extents = {}

@@ -121,6 +121,8 @@ def describe_quantity(name: str, si: bool = False) -> str:
     """
     if name in SYMBOLS:
         text = SYMBOLS[name].long_name
+        if si and name == "delta":
+            text = text.replace("omega", "omega R")
     elif name.startswith("d") and "_d" in name:
         dependent, _, variable = name[1:].partition("_d")
         text = f"partial derivative of {dependent} with respect to {variable}"

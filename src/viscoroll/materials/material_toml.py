@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -57,6 +58,7 @@ class FileSection(msgspec.Struct, kw_only=True):
 class MaterialSection(FileSection, kw_only=True):
     """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`, and a temperature.
 
+    nu : Poisson's ratio; it may be left out of a rigid body (E = inf), on which it has no effect.
     T_epsilon : retardation time of a standard linear solid, s, in place of a series.
     T_sigma : relaxation time of a standard linear solid, s, in place of a series.
     creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
@@ -67,7 +69,7 @@ class MaterialSection(FileSection, kw_only=True):
 
     file: None = None  # type: ignore[assignment]
     E: float
-    nu: float
+    nu: float | None = None
     T_epsilon: float | None = None
     T_sigma: float | None = None
     prony: PronySection | None = None
@@ -173,10 +175,15 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
 
     path, name: path of the file and name of the section, for errors.
     content: keys and values of the section, as tomllib reads them.
-    Raises FileError, with the line of the key, for a key that is unknown, missing or of the wrong type.
+    Raises FileError, with the line of the key, for a key that is unknown, missing or of the wrong type, and for a
+    property of the material beside the key file.
     """
-    kind = FileSection if isinstance(content, dict) and "file" in content else MaterialSection
-    return as_struct(path, name, content, kind)
+    if not (isinstance(content, dict) and "file" in content):
+        return as_struct(path, name, content, MaterialSection)
+    for key in content.keys() & set(MaterialSection.__struct_fields__) - set(FileSection.__struct_fields__):
+        problem = f"{key}: must be left out beside file; to change it, write the content of the file here in its place"
+        raise section_error(path, name, key, problem)
+    return as_struct(path, name, content, FileSection)
 
 
 def _parse_material(path: Any, name: str, content: Any) -> Material:
@@ -254,6 +261,11 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     Raises FileError for T_epsilon without T_sigma, either beside T_ref or a series, and for a series that is wrong;
     ParameterError for another value out of range.
     """
+    nu = section.nu
+    if nu is None:
+        if not math.isinf(section.E):
+            raise section_error(path, name, "", "needs nu")
+        nu = Material.rigid().nu
     more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
     more["temperature"] = section.reference
     series = parse_series(path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep}))
@@ -262,9 +274,9 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
         if None in times or section.T_ref is not None or series:
             problem = "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony and creep"
             raise section_error(path, name, "", problem)
-        return Material.sls(section.E, section.nu, *times, **more)  # type: ignore[arg-type]
+        return Material.sls(section.E, nu, *times, **more)  # type: ignore[arg-type]
     T_ref = 1.0 if section.T_ref is None else section.T_ref
-    return Material(section.E, section.nu, series or Prony.elastic(), T_ref, **more)
+    return Material(section.E, nu, series or Prony.elastic(), T_ref, **more)
 
 
 def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:

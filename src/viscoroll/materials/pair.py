@@ -196,8 +196,8 @@ class Pair:
             raise described_error(f"the series of the {on}, which is a cover,", found, allowed)
         if np.ptp(parts) > 0.0:
             allowed = (
-                "the same in all of them beside an elastic body, since a cover has one law for each part of the "
-                "compliance: let thickness, load or R differ, or make the other body rigid (E = inf)"
+                "the same in all of them for a cover beside an elastic body: let thickness, load or R alone differ, or "
+                "make the other body rigid (E = inf)"
             )
             raise described_error("E or nu of a body", found, allowed)
         series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))

@@ -171,14 +171,14 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
 
     unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
     scene: :class:`Parameters`, dimensionless, of the roller.
-    Raises ParameterError for what is no truth value, and, if it is True, for covers and for bodies of different
-    materials, for which N is not available.
+    Raises ParameterError for what is no truth value, and, if it is True, for covers, which have no N, and for
+    bodies of different materials, whose motions with N are not computed.
     """
     if not check_bool("unsteady", unsteady):
         return False
     refuse_cover(scene, "N is not available: leave unsteady=True out")
     if not scene.like_bodies:
-        sentence = "unsteady = True: the added mass N is not available for bodies of different materials"
+        sentence = "unsteady = True: motions with the added mass N are computed for two bodies of one material only"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     return True
 

@@ -63,9 +63,10 @@ def law(arguments: Namespace) -> None:
 
 @command(
     "tables build", SCENE,
-    option("--V", type=numbers, required=True, help="velocities of the axis, > 0"),
-    option("--delta", type=numbers, required=True, help="values of the creepage"),
-    option("--alpha", type=numbers, help="values of a third axis, only for a scene"),
+    option("--V", type=numbers, required=True, help="speeds of the grid, > 0, in m/s for a cylinder, as "
+        "LOW:HIGH:COUNT[:log] or 0.1,0.2,0.4"),
+    option("--delta", type=numbers, required=True, help="creepages of the grid, in the same form"),
+    option("--alpha", type=numbers, help="values of alpha for a third axis of the grid, only for a scene"),
     option("--method", default="table", help="table (default): the law of the scene; direct: numerical roots "
         "of the equations of the paper"),
     output(*_GRID),

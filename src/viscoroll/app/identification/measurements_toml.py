@@ -123,8 +123,10 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
             raise missing_column(table, headings[name])
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
     if others and not set(present) & set(kind.QUANTITIES):
-        problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}: name it in columns = {{...}}"
-        raise FileError(path, f"{problem} (a record of a planned test has no values and no other columns)")
+        name = kind.QUANTITIES[0]
+        problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}"
+        advice = f"if one of them is {name}, write columns = {{ {name} = HEADING }}; to plan a test, delete them"
+        raise FileError(path, f"{problem}: {advice}")
     if others:
         text = f"{path.name}: unused columns: {', '.join(others)}"
         warnings.warn(text, ModelWarning, stacklevel=caller_level())

@@ -72,7 +72,8 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
     import xarray as xr
 
     symbol = SYMBOLS[name]
-    about = {"symbol": symbol.latex, "range": symbol.range, "equation": symbol.equation, "reference": PAPER}
+    allowed = symbol.range.replace("mu", "mu P") if si else symbol.range  # of Q
+    about = {"symbol": symbol.latex, "range": allowed, "equation": symbol.equation, "reference": PAPER}
     return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes(name, si) | about)
 
 
