@@ -2,7 +2,7 @@
 
 Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P T_epsilon^2.  A law of steady
 rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of u = kappa |V|
-(``Law.N_rows``: for each row N and its integral over u, a pair; behind the rows the constants of the integral).
+(``Law.N_rows``: for each row N and its integral over u, a pair; after the rows the constants of the integral).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """

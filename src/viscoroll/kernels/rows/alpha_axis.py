@@ -68,7 +68,7 @@ SOURCE = record_type("rows marks alpha state_count octaves")
 OCTAVE_SIZE = 3
 #: Index in the head of the rows of s, T_4(s), T_8(s) and T_12(s).
 _S = MAKER_NUMBERS
-#: Mark that is the address of the axis of the selected octave; behind it that of where functions begin, in groups.
+#: Mark that is the address of the axis of the selected octave; after it that of where functions begin, in groups.
 _AXIS = MAKER_MARKS
 #: Binary logarithm of the parts of a row.
 _PARTS_EXPONENT = PARTS_PER_ROW.bit_length() - 1

@@ -1,7 +1,7 @@
 """Newton's polynomial through scattered points, evaluated at the 24 nodes of a row and turned into powers of t.
 
 All of it works on one vector ``scratch``: the arguments of :data:`POINT_COUNT` points; for each of up to two functions
-their values, and behind them the leading divided differences; values at the nodes; Chebyshev coefficients.  In front of
+their values, and after them the leading divided differences; values at the nodes; Chebyshev coefficients.  In front of
 arguments and values four numbers are kept free, so that vectors may reach below the first point.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
@@ -20,7 +20,7 @@ POINT_COUNT = 36
 _BLOCK = LANES + POINT_COUNT
 #: Position in ``scratch`` of the arguments of the points.
 ARGUMENTS = LANES
-#: Position of the values of the first function; its divided differences are one block behind.
+#: Position of the values of the first function; its divided differences are one block further.
 VALUES = LANES + _BLOCK
 #: Distance from the values of the first function to those of the second.
 FUNCTION_STRIDE = 2 * _BLOCK
