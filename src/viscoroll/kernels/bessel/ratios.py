@@ -34,7 +34,10 @@ _BINS = TABLE.reshape(-1, layout.COEFFICIENTS)
 
 
 def _row_offset(index: int) -> int:
-    """Return what is added to the number of a bin (:func:`bin_number`) for its row; ``index``: of its segment."""
+    """Return the int that is added to the number of a bin (:func:`.bin_number`, with 4 bits) for its row in the table.
+
+    index : int, number of the segment of :data:`.layout.SEGMENTS` in which the bin is.
+    """
     return layout.segment_start(index) // layout.COEFFICIENTS - ((1023 + layout.SEGMENTS[index].low) << _BIN_BITS)
 
 
@@ -67,9 +70,9 @@ def _r_power_series(terms: int) -> list[float]:
 def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     """Return the first coefficients a_n of the asymptotic series sum a_n x^-n of r or k, from the Riccati equations.
 
-    sign : -1 for r = I1/I0, 1 for k = K0/K1.
-    terms : number of coefficients, > 0.
-    Returns [a_0 = 1, a_1, ...], ``terms`` Decimals, in the digits of the decimal context.
+    sign : int, -1 for r = I1/I0, 1 for k = K0/K1.
+    terms : int, number of coefficients, > 0.
+    Returns the list [a_0 = 1, a_1, ...] of ``terms`` Decimals, in the digits of the current decimal context.
     """
     a = [Decimal(1)]
     for n in range(1, terms):
@@ -83,10 +86,10 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
 def _tail(sign: int) -> np.ndarray:
     """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the argument.
 
-    The polynomial goes through the asymptotic series of that function at Chebyshev nodes.
+    The polynomial goes through the asymptotic series of that function, 16 terms of it, at Chebyshev nodes in [0, 1/64].
 
-    sign : -1 for r, 1 for k.
-    Returns the 9 coefficients (layout.COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant first, doubles.
+    sign : int, -1 for r, 1 for k.
+    Returns the 9 coefficients (layout.COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant 1/2 first, doubles.
     """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]
@@ -122,8 +125,9 @@ def _polynomial(row, t):
 def ratio_r(x):
     """Return the ratio r = I1/I0 of modified Bessel functions and 1 - r, both to full relative accuracy (2.4 ULP).
 
-    x : argument, float >= 0, dimensionless.
-    Returns (r, 1 - r), dimensionless; 1 - r is computed without cancellation.
+    x : float, argument, >= 0, dimensionless; it may be infinite.
+    Returns (r, 1 - r), floats, dimensionless; (0, 1) at x = 0, (1, 0) at infinity, NaN for NaN.  1 - r is computed
+    without cancellation, so that it keeps its digits beyond 1e16, where r is rounded to 1.0.
     """
     inverse_x = 1.0 / x
     # selections, not branches: those would be mispredicted on scattered arguments
@@ -141,8 +145,9 @@ def ratio_r(x):
 def ratio_k(z):
     """Return the ratio k = K0/K1 of modified Bessel functions and 1 - k, both to full relative accuracy (2.4 ULP).
 
-    z : argument, float >= 0, dimensionless.
-    Returns (k, 1 - k), dimensionless; 1 - k is computed without cancellation.
+    z : float, argument, >= 0, dimensionless; it may be infinite.
+    Returns (k, 1 - k), floats, dimensionless; (0, 1) at z = 0, (1, 0) at infinity, NaN for NaN.  1 - k is computed
+    without cancellation, so that it keeps its digits beyond 1e16, where k is rounded to 1.0.
     """
     if z < K_LEAST:
         k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
@@ -158,8 +163,12 @@ def ratio_k(z):
 
 @inline_kernel
 def ratio_i2(x, r):
-    """Return i2 = I2/I0 of modified Bessel functions at ``x`` >= 0, in [0, 1), to full relative accuracy; ``r``: r(x),
-    of :func:`ratio_r`.
+    """Return the ratio i2 = I2/I0 = 1 - 2 r/x of modified Bessel functions, to full relative accuracy (2.4 ULP).
+
+    x : float, argument, >= 0, dimensionless; it may be infinite.
+    r : float, r(x), the first result of :func:`ratio_r`; not read for x < 4, where i2 has a polynomial of its own.
+    Returns a float in [0, 1], dimensionless: 0 at x = 0, and for x so small that x^2/8 underflows; 1.0, by rounding,
+    beyond some 1e16; NaN for NaN.
     """
     if not x < 4.0:  # or a NaN
         return 1.0 - 2.0 * r / x
@@ -170,7 +179,13 @@ def ratio_i2(x, r):
 
 @inline_kernel
 def slope_r(x, r, complement):
-    """Return r'(x) = (1 - r)(1 + r) - r/x at x >= 0; ``r``, ``complement``: r and 1 - r there."""
+    """Return r'(x) = (1 - r)(1 + r) - r/x.
+
+    x : float, argument, >= 0, dimensionless.
+    r, complement : floats, r and 1 - r at x, of :func:`ratio_r`.
+    Returns a float, dimensionless: 1/2 below x = 1e-8, to rounding; 0 at infinity.  At large x the two terms, 1/x each,
+    cancel to 1/(2 x^2), so that relative digits are lost in proportion to x.
+    """
     if x < 1e-8:
         return 0.5
     return complement * (1.0 + r) - r / x
@@ -178,5 +193,11 @@ def slope_r(x, r, complement):
 
 @inline_kernel
 def slope_k(z, k, complement):
-    """Return k'(z) = k/z - (1 - k)(1 + k) at z > 0; ``k``, ``complement``: k and 1 - k there."""
+    """Return k'(z) = k/z - (1 - k)(1 + k).
+
+    z : float, argument, > 0, dimensionless.
+    k, complement : floats, k and 1 - k at z, of :func:`ratio_k`.
+    Returns a float, dimensionless: it grows as -ln z for z -> 0 (NaN at z = 0), and is 0 at infinity.  At large z the
+    two terms, 1/z each, cancel to 1/(2 z^2), so that relative digits are lost in proportion to z.
+    """
     return k / z - complement * (1.0 + k)

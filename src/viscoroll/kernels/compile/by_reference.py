@@ -42,10 +42,11 @@ class _Attributes(AttributeTemplate):
 def _attribute(context, builder, kind, reference, name):
     """Return instructions that read a field of a reference to a record: its value, or, of a record in it, its address.
 
-    context, builder : numba's context of code generation, and builder of LLVM.
-    kind : numba's type of the reference.
+    context, builder : numba's context of code generation, not used, and builder of LLVM.
+    kind : numba's type of the reference, :class:`_ReferenceType`.
     reference : the pointer to the record, a value of LLVM.
-    name : name of the field.
+    name : str, name of the field, which the record has.
+    Returns a value of LLVM.
     """
     index = kind.record.fields.index(name)
     at = cgutils.gep_inbounds(builder, reference, 0, index)
@@ -55,12 +56,13 @@ def _attribute(context, builder, kind, reference, name):
 def _load(context, builder, kind, at):
     """Return instructions that load the value of a type from an address, field by field.
 
+    LLVM removes the fields that are not used.  Fields of records, and of records in them, and the parts of arrays
+    (pointer to the numbers, shape, and others; not the numbers) are loaded one by one; any other type at once.
+
     context, builder : numba's context of code generation, and builder of LLVM.
-    kind : numba's type of the value; the fields of records and arrays are loaded one by one.
+    kind : numba's type of the value.
     at : its address, a value of LLVM.
     Returns a value of LLVM.
-
-    LLVM removes the fields that are not used.
     """
     if not isinstance(kind, (types.NamedTuple, types.Array)):
         return builder.load(at)

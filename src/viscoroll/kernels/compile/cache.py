@@ -50,8 +50,9 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """Return a hash, 16 hexadecimal digits, of the kernel sources, of their coefficients and of the versions of numba
-    and llvmlite.
+    """Return a hash of the kernel sources, of their coefficients (``*.npy``) and of the versions of numba and llvmlite.
+
+    Returns a str of 16 hexadecimal digits, computed once in a process: the first of a SHA-256.
     """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
@@ -61,14 +62,16 @@ def sources_digest() -> str:
 
 @lru_cache(maxsize=2)
 def warn_once(trouble: str) -> None:
-    """Warn of a problem with the cache, ``trouble``, once for each."""
+    """Give a RuntimeWarning of a problem with the cache, ``trouble``, to which "kernels are compiled anew instead" is
+    added; once in a process for each text, as long as there are no more than two.
+    """
     warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
 
 
 class DiskCache:
     """The machine code of one function on disk, in the interface of the caches of numba's dispatchers.
 
-    function : the Python function.
+    function : the Python function, one of a module in the folder ``kernels``.
     """
 
     def __init__(self, function: Callable) -> None:
@@ -80,11 +83,14 @@ class DiskCache:
     def exclusive(self, signature, codegen) -> Iterator[None]:
         """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE` seconds.
 
-        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed behind it.
-        If the code is stored already, or if no lock can be made or had in that time, the block runs without one.
+        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed after the
+        block.  Before that it waits for another process that holds the lock.  The block runs without a lock if the code
+        is stored already, if the folder cannot be made or is not private, or if the lock was not free in that time.
 
         signature : tuple of numba's types of the arguments of the kernel.
-        codegen : numba's code generator, which knows the processor. Yields None.  Raises what the block raises.
+        codegen : numba's code generator, which knows the processor.
+
+        Yields None.  Raises what the block raises, and PermissionError if this user may not search the folder.
         """
         path = self._path(signature, codegen)
         if path.exists():
@@ -107,10 +113,11 @@ class DiskCache:
         """Return the machine code for a signature, numba's ``CompileResult``; None if it is not stored or cannot be
         used.
 
-        It is not used if others may have written it, or, with one warning for each process, if its checksum is wrong.
+        It is not used, without a word, if the file cannot be read or others may have written it; and with one warning
+        for each process if its checksum is wrong or numba cannot rebuild the code from it.
 
         signature : tuple of numba's types of the arguments of the kernel.
-        target : numba's target context, which the code is linked into.
+        target : numba's target context, which the code is linked into; refreshed in any case.
         """
         target.refresh()
         try:
@@ -125,10 +132,15 @@ class DiskCache:
         return None  # save_overload then replaces the file
 
     def save_overload(self, signature, compiled: CompileResult) -> None:
-        """Store machine code for a signature, unless it contains addresses of this process; warn once if that fails.
+        """Store machine code for a signature in its file, which is replaced if it exists.
 
-        signature : tuple of numba's types of the arguments of the kernel; their text is part of the name of the file.
+        Code that contains addresses of this process is not stored.  A file that cannot be written, or whose folder
+        others may write to, causes one warning for each process and no error.
+
+        signature : tuple of numba's types of the arguments of the kernel; their text is part of what the name of the
+            file is a hash of.
         compiled : numba's ``CompileResult``.
+        Returns None.
         """
         if compiled.library.has_dynamic_globals:
             return
@@ -144,12 +156,12 @@ class DiskCache:
     def _path(self, signature, codegen) -> Path:
         """Return the path of the machine code: the name of the function, and a hash of all that the code depends on.
 
-        That is the name and place of the function, the signature, the processor, the version of Python and numba's
+        That is the name and line of the function, the signature, the processor, the version of Python and numba's
         settings; the sources are in the name of the folder.
 
         signature : tuple of numba's types of the arguments of the kernel.
         codegen : numba's code generator, which knows the processor.
-        Returns the path of a file that may not exist.
+        Returns the path of a file, MODULE.FUNCTION-HASH.nbc with 16 hexadecimal digits, which may not exist.
         """
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"

@@ -32,9 +32,12 @@ def _memoized_types(typing, target):
     """Memoize results that numba computes again for each statement, within a ``with`` block.
 
     These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
-    a module, and the signatures of numba's own functions that lower a statement.
+    a module, and the signatures of numba's own functions that lower a statement.  After the block, also after an error
+    in it, numba's own functions are in force again.  A block within another one changes nothing.
 
-    typing, target : numba's typing context and target context, changed within the block. Yields None.
+    typing, target : numba's typing context and target context, changed within the block.
+
+    Yields None.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -43,6 +46,15 @@ def _memoized_types(typing, target):
     plain = typing.resolve_function_type
 
     def resolve_function_type(function, args, kws):
+        """Return numba's signature of a call, of numbers without names the one that was found before.
+
+        A literal argument counts as its type (integer or boolean), unless all arguments are literals.
+
+        function : numba's type of the function that is called.
+        args, kws : tuple and dict of numba's types of the positional and of the named arguments.
+        Returns a signature of numba; for arguments that are named or not numbers, what numba itself returns.  Raises
+        numba's error of type if nothing fits.
+        """
         if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
             return plain(function, args, kws)
         if not all(isinstance(kind, types.Literal) for kind in args):  # numba resolves again for every literal integer
@@ -64,9 +76,10 @@ def _memoized_types(typing, target):
 
 @contextmanager
 def _without_garbage_collection():
-    """Switch Python's garbage collection off within a ``with`` block.
+    """Switch Python's garbage collection off within a ``with`` block, and on again after it if it was on.
 
-    numba makes millions of objects that live until the compilation ends; collecting took a tenth of its time.
+    numba makes millions of objects that live until the compilation ends; collecting took a tenth of its time.  Yields
+    None.
     """
     enabled = gc.isenabled()
     gc.disable()
@@ -80,7 +93,8 @@ def _without_garbage_collection():
 class EntryPipeline:
     """The compiler of kernels that Python calls, in the interface of numba's compiler classes.
 
-    context : what numba passes to the constructor of a compiler.
+    context : the arguments that numba passes to the constructor of a compiler: typing context, target context, and
+        others.
     """
 
     def __init__(self, *context):
@@ -91,11 +105,13 @@ class EntryPipeline:
         """Compile a kernel that Python calls as a whole, with the parts below it; by numba's own compiler if that
         fails.
 
-        It fails if a private name of numba has changed.  This and all later kernels of the process then are compiled by
-        numba's own compiler, with a RuntimeWarning.
+        It fails if a private name of numba has changed.  If numba's own compiler then succeeds, a RuntimeWarning is
+        given, and this and all later kernels of the process are compiled by it.  If that fails too, the fault is in the
+        function: its error is raised, and later kernels are compiled as wholes as before.  Once in a process a line on
+        standard error says that kernels are being compiled (:mod:`.notice`).
 
-        function : the Python function. Returns numba's ``CompileResult``.  Raises numba's error if its own compiler
-        cannot compile the function either.
+        function : the Python function.
+        Returns numba's ``CompileResult``.  Raises numba's error if its own compiler cannot compile the function either.
         """
         announce_compiling()
         global _deferring
@@ -125,10 +141,14 @@ class EntryPipeline:
 def defer(whole, options: dict[str, Any]):
     """Let other kernels that call this one compile against its separately compiled part, instead of compiling it again.
 
+    The part is compiled when another kernel that calls this one is.  After a failure
+    (:meth:`EntryPipeline.compile_extra`) other kernels call the whole kernel, as numba has it.
+
     whole : numba's dispatcher of the kernel, whose methods get_call_template and get_overload, by which numba compiles
         a call from another kernel, are replaced.
     options : options of ``numba.njit`` by name, those of the kernel, for the part.
-    Returns None.  The part is compiled when another kernel that calls this one is.
+
+    Returns None.
     """
     plain = type(whole)
 
@@ -157,6 +177,7 @@ def _pipelines():
     Parts are lowered to LLVM's intermediate representation only; wholes link that of all parts and are optimised once.
 
     Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``, made once in a process.
+    Raises if numba has no such private names.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -200,8 +221,10 @@ def _pipelines():
         """A library with the IR of all parts below, optimised and compiled together."""
 
         def finalize(self):
-            """Add the called libraries to the module of LLVM, optimize it once, and turn it into machine code; returns
-            None.
+            """Link the IR of all called libraries into the module of LLVM, optimise it once, and turn it into machine
+            code.
+
+            Functions of the parts become internal, so that LLVM leaves out those that are not used.  Returns None.
             """
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
@@ -232,8 +255,11 @@ def _pipelines():
 def _link(library, module):
     """Add to a module of LLVM the libraries that a library calls, directly or through parts, each once.
 
+    Libraries that a part calls are added too; below a library that is not a part nothing is, as numba has linked it.
+
     library : numba's library, a Part or a Whole of :func:`_pipelines`.
     module : LLVM's module, into which copies of their modules are linked.
+    Returns None.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -250,6 +276,8 @@ def _link(library, module):
 
 def _pipeline(library_class: type):
     """Return numba's default compiler without needless passes, which lowers into libraries of ``library_class``.
+
+    The passes left out are those of :data:`_NOT_NEEDED`.
 
     library_class : subclass of numba's ``JITCodeLibrary``: Part or Whole of :func:`_pipelines`.
     Returns a subclass of numba's ``CompilerBase``.

@@ -22,9 +22,13 @@ _SUPERUSERS = 0
 
 
 def cache_root() -> Path:
-    """Return the folder that holds every cache of the package, by the environment as the module says.
+    """Return the folder that holds every cache of the package.
 
-    Returns its path; the folder may not exist yet.  A user without a home directory is warned once of the folder taken.
+    It is $VISCOROLL_CACHE_DIR; if that is not set or empty, $XDG_CACHE_HOME/viscoroll; if that is neither,
+    ~/.cache/viscoroll.  A user without a home directory has a folder of temporary files, and is warned of it once in a
+    process.
+
+    Returns its path, absolute or relative as the variable is; the folder may not exist yet.
     """
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
@@ -38,8 +42,10 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def _without_home() -> Path:
-    """Return the path of the cache folder of a user without a home directory, viscoroll-UID in the folder of temporary
-    files, and warn of it once in a process.
+    """Return the cache folder of a user without a home directory, and warn of it once in a process.
+
+    Returns the path of viscoroll-UID (viscoroll-cache where users have no number) in $TMPDIR, or in /tmp if that is not
+    set or empty; it may not exist yet.
     """
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
     folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
@@ -61,11 +67,14 @@ def read_private(path: Path) -> bytes:
 
 
 def write_private(path: Path, content: bytes) -> None:
-    """Write a file of the cache, whole or not at all, which others may only read; folders above it are made.
+    """Write a file of the cache, whole or not at all, which others may only read; missing folders above it are made.
+
+    The content is written to a temporary file beside it, which then replaces it; after an error the temporary file is
+    removed and an existing file stays as it was.
 
     path : the file; an existing one is replaced.
     content : its bytes.
-    Raises OSError if it cannot be written, PermissionError if others may write to a folder above it.
+    Returns None.  Raises OSError if it cannot be written, PermissionError if others may write to a folder above it.
     """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
@@ -79,7 +88,13 @@ def write_private(path: Path, content: bytes) -> None:
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder of the cache and the folders above it, as far as they do not exist; raises OSError."""
+    """Make a folder of the cache and the folders above it, as far as they do not exist, with rights for others to read
+    only.
+
+    folder : the folder; nothing is made if it exists.
+    Returns None.  Raises PermissionError if others may write to it or to a folder above it, OSError if one cannot be
+    made.
+    """
     refuse_writable_by_others(folder)
     for parent in reversed((folder, *folder.parents)):
         if not parent.exists():
@@ -87,15 +102,17 @@ def make_private_folder(folder: Path) -> None:
 
 
 def refuse_writable_by_others(path: Path) -> None:
-    """Raise PermissionError if others may write to ``path``, or to a folder above it, as far as they exist.
+    """Raise PermissionError if others may write to a path, or to a folder above it, as far as they exist.
 
-    Nor may one of them belong to another user than this one, the superuser or the owner of "/".  Where ``path`` is a
-    link, the folders above its target are tested too.
+    Others may write where the rights of all allow it, or those of a group that has other members (:func:`_is_private`).
+    Sticky folders are allowed: nobody can replace the files of another user there.  Nor may the path or a folder above
+    it belong to another user than this one, the superuser or the owner of "/".  If ``path`` is a link, the folders
+    above its target are tested too.
 
-    Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile of a
-    user is theirs alone, nothing is tested.
+    On Windows, where the profile of a user is theirs alone, nothing is tested.  What cannot be looked at counts as not
+    existing.
 
-    path : file or folder, which may not exist.
+    path : file or folder, relative or absolute, which may not exist.
     Returns None.  The error says how to change the rights or to choose another folder.
     """
     if not hasattr(os, "geteuid"):
@@ -118,10 +135,12 @@ def refuse_writable_by_others(path: Path) -> None:
 
 
 def _is_private(group: int) -> bool:
-    """Return whether nobody but this user can use the rights of a group: it is the superuser's, or has the name of this
-    user and no other member.
+    """Return whether nobody but this user and the superuser can use the rights of a group.
 
-    group : int, number of the group; False for one that has no entry.
+    group : int, number of the group.
+
+    Returns True for the superuser's group, number 0; for another one True if it has the name of this user and lists no
+    other member.  False too if the group or the user has no entry in the system's lists.
     """
     import grp
     import pwd

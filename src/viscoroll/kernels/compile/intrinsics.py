@@ -33,9 +33,11 @@ def make_intrinsic(lower: Callable, returned, *kinds):
 
     lower : (context, builder, signature, arguments) -> value of LLVM; numba calls it with its context of code
         generation, the builder of LLVM, its signature of the call and the values of LLVM of the arguments.
-    returned : numba's type of the value; or a function (types of the arguments) -> numba's signature. kinds : numba's
-    types of the arguments, None for any type, in their number and order.
-    Returns numba's intrinsic, which is called in kernels with these arguments.
+    returned : numba's type of the value; or a function (types of the arguments) -> numba's signature.
+    kinds : numba's types of the arguments, None for any type, in their number and order.
+
+    Returns numba's intrinsic, which is called in kernels with these arguments; a call with another number of arguments
+    is an error of numba's when the kernel is compiled.
     """
 
     def give_signature(context, *arguments):
@@ -92,22 +94,25 @@ _to_integers = make_intrinsic(_pointer, types.CPointer(types.int64), types.int64
 
 
 def record_type(integers: str, floats: str = "") -> np.dtype:
-    """Return the dtype of a record of 64-bit integers, among them addresses, and of doubles behind them.
+    """Return the dtype of a record of 64-bit integers, among them addresses, and of doubles after them.
 
-    integers, floats : names of the fields of either kind, in their order, separated by blanks.
+    integers, floats : str, names of the fields of either kind, in their order, separated by blanks; "" for none.
     """
     return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in floats.split()])
 
 
 @cache
 def function_address(function, record: np.dtype, returned=types.void, *first) -> int:
-    """Return the address of the machine code of a kernel for calls from C or from other kernels, compiled for given
-    types.
+    """Return the address of the machine code of a kernel, by which C or other kernels call it.
+
+    The kernel is compiled for the given types when this is called; a second call with the same arguments gives the same
+    address.
 
     function : the kernel, numba's dispatcher, whose last argument is a pointer to a record.
     record : dtype of that record.
-    returned : numba's type of its value; by default nothing. first : numba's types of the other arguments; by default
-    one 64-bit integer.
+    returned : numba's type of its value; by default nothing.
+    first : numba's types of the arguments before the pointer; by default one 64-bit integer.
+
     Returns the address as an int, valid in this process.
     """
     kinds = *(first or (types.int64,)), types.CPointer(numba.from_dtype(record))
@@ -136,8 +141,12 @@ def record_at(pointer):
 
 @inline_kernel
 def septic(t, c):
-    """Return the polynomial c[0] + c[1] t + ... + c[7] t^7 of a number ``t`` with eight coefficients ``c``, by Estrin's
-    scheme, whose parts are independent of one another.
+    """Return the polynomial c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme, whose parts do not wait for one
+    another.
+
+    t : float, argument.
+    c : vector of eight or more coefficients, of which the first eight are read.
+    Returns a float, in the unit of c[0].
     """
     t2 = t * t
     low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))

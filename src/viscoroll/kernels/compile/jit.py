@@ -15,19 +15,20 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     """Compile a function with numba, when it is first called, and keep the machine code on disk.
 
     LLVM is granted no numerical freedom: a result then depends on the source alone, not on what was compiled together
-    (see :mod:`.intrinsics`).
+    (see :mod:`.intrinsics`).  A division by zero gives inf or NaN as in numpy, indices are not checked, and the GIL is
+    released.
 
     Parameters
     ----------
     function : the function; None, for a decorator with the other arguments.
-    inline : for the few short functions at the bottom of every loop: a call of a numba function costs as much as a
-        polynomial, and LLVM by itself does not always spare it.
-    allocates : the function makes arrays, or assigns to them as a whole.  Without it no references are counted; numba
-        counts those of constant tables too, which took a fifth of the time of a motion.
+    inline : bool, for the few short functions at the bottom of every loop: a call of a numba function costs as much as
+        a polynomial, and LLVM by itself does not always spare it.
+    allocates : bool, whether the function makes arrays, or assigns to them as a whole.  Without it no references are
+        counted; numba counts those of constant tables too, which took a fifth of the time of a motion.
 
     Returns
     -------
-    numba's dispatcher of the function.
+    numba's dispatcher of the function; if ``function`` is None, a decorator that returns it.
     """
     if function is None:
         return lambda f: kernel(f, inline=inline, allocates=allocates)
@@ -42,7 +43,10 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
 def _compile_exclusively(dispatcher) -> None:
     """Replace the compilation of a kernel by one that waits while another process compiles it for the same signature.
 
-    dispatcher : numba's dispatcher of the kernel, changed.
+    It waits for at most :data:`.cache.PATIENCE` seconds, and compiles without a lock where none can be had.
+
+    dispatcher : numba's dispatcher of the kernel, whose method ``compile`` is replaced.
+    Returns None.
     """
     plain = dispatcher.compile
 
