@@ -4,7 +4,7 @@
 
 Piecewise polynomials indexed by the bits of the argument (:mod:`layout`, no logarithm), the power series below them and
 the asymptotic series above, economized to the same degree: every positive double is served by one polynomial, chosen
-without a branch. Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
+without a branch.  Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
 ``tests/kernels/bessel/test_ratios.py``, against 60 digits, 2).  Slopes come from the Riccati equations
 
     r' = 1 - r/x - r^2      k' = k^2 + k/z - 1

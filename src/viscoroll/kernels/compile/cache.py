@@ -110,14 +110,14 @@ class DiskCache:
             lock.release()
 
     def load_overload(self, signature, target) -> CompileResult | None:
-        """Return the machine code for a signature, numba's ``CompileResult``; None if it is not stored or cannot be
-        used.
+        """Return the machine code for a signature; None if it is not stored or cannot be used.
 
-        It is not used, without a word, if the file cannot be read or others may have written it; and with one warning
+        A file is not used, without a warning, if it cannot be read or others may have written it; and with one warning
         for each process if its checksum is wrong or numba cannot rebuild the code from it.
 
         signature : tuple of numba's types of the arguments of the kernel.
         target : numba's target context, which the code is linked into; refreshed in any case.
+        Returns numba's ``CompileResult``, or None.  Raises nothing of its own.
         """
         target.refresh()
         try:

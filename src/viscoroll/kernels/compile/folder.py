@@ -58,9 +58,11 @@ def _without_home() -> Path:
 
 
 def read_private(path: Path) -> bytes:
-    """Return the content of a file of the cache.
+    """Return the content of a file of the cache, bytes.
 
-    Raises OSError if the file does not exist, cannot be read, or may have been written by others.
+    path : the file; nothing of it is read before the test of :func:`refuse_writable_by_others`.
+    Raises OSError if the file does not exist or cannot be read, and PermissionError, which is one, if others may have
+    written it.
     """
     refuse_writable_by_others(path)
     return path.read_bytes()
@@ -88,8 +90,7 @@ def write_private(path: Path, content: bytes) -> None:
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder of the cache and the folders above it, as far as they do not exist, with rights for others to read
-    only.
+    """Make a folder of the cache, and those above it that do not exist; others may then only read them.
 
     folder : the folder; nothing is made if it exists.
     Returns None.  Raises PermissionError if others may write to it or to a folder above it, OSError if one cannot be

@@ -6,7 +6,7 @@ bits of a result would follow the history of the cache.  So only polynomials, wh
 :func:`fma`.
 
 **Calls by address.**  A kernel that is called by its address is compiled once, by itself, and not again with each
-caller. Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
+caller.  Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
 """
 
 from collections.abc import Callable

@@ -1,5 +1,7 @@
 """The law of one material or pair as rows of polynomials: one octave of kappa |V|, or of 1/F(eta), is one row.
 
+Times, among them z, zeta, eta, g, h and m, are divided by T_epsilon, or T_ref of a series (docs/symbols.md).
+
 A row holds the coefficients of 24 powers of t for each function (:mod:`record` names every column).  With F = z + g,
 H = z^2 + 2 z h and m of a material (:mod:`series`) Eqs. (6), (8)-(10), (15), (16) of the paper read, for V > 0 and
 delta >= 0,

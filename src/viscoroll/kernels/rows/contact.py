@@ -248,6 +248,8 @@ def Q_slopes(u, L, dL, D, state, law):
     Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta or at fixed omega,
     whichever ``state`` has, the others at fixed V.  All are 0 where D is infinite.  In partial slip at V = 0 the last
     is infinite, since omega = V (1 + delta) then changes delta without bound, and so is the first if omega is given.
+
+    A state of partial slip whose D is rounded to L has dQ/ddelta = 0, and dQ/domega = 0, or NaN at V = 0.
     """
     if abs(D) == np.inf:
         return 0.0, 0.0, 0.0
@@ -322,8 +324,8 @@ def _write_other_fields(n, c, law, scratch, request):
         quantities are written, dimensionless.
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip ``full_slip`` is 1.0 (else 0.0),
-    and grip, beta and the slopes of Q are 0.  ``dQ_dV`` is at fixed delta or omega, whichever the states have
-    (:func:`Q_slopes`).
+    and grip, beta and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded to
+    L.  ``dQ_dV`` is at fixed delta or omega, whichever the states have (:func:`Q_slopes`).
     """
     to = request.to
     state = _state(c, scratch, request)

@@ -65,7 +65,9 @@ def element(values, n):
 
 @inline_kernel
 def read_state(states, n):
-    """Return the :class:`State` with number ``n`` of ``states``, a :class:`State` of arrays."""
+    """Return the :class:`State` of numbers with index ``n``, an int, of ``states``, a :class:`State` of arrays, of
+    which those of length 1 hold for all states.
+    """
     return State(
         element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
         states.creep_is_omega,

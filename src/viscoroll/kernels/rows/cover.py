@@ -101,8 +101,8 @@ def free_creep_at(position, u, cover_rows):
         a term in 1/u.
     u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
-    Returns (value, first derivative, second derivative), floats, dimensionless; the value is positive for a cover on
-    the base and negative for one on the cylinder; all are 0.0 for half-spaces.
+    Returns (value, first derivative, second derivative), floats, dimensionless; a cover on the cylinder has the other
+    sign than the same on the base; all are 0.0 for half-spaces.
     """
     if cover_rows is None:
         return 0.0, 0.0, 0.0
@@ -116,8 +116,7 @@ def free_creep_at(position, u, cover_rows):
 
 @inline_kernel
 def sliding_creep(slip, delta, free_creep, state, cover_rows):
-    """Return the part of slip and creepage that causes the traction: for a cover the creepage less that of free
-    rolling.
+    """Return slip and creepage that cause the traction: for a cover without those of free rolling.
 
     slip : float, a number with the sign of omega - V, of :func:`.contact_states.slip_and_creepage`; not read for a
         cover.

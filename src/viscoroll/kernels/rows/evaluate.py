@@ -101,9 +101,10 @@ def locate_octave(x, e0):
     x : float, >= 0, dimensionless.
     e0 : int, binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
 
-    Returns (row, t, dt/dx): number of the row, an int without upper bound, as the number of rows of a law is not known
-    here; t, the argument of its polynomials, a float that is x 2^-e0 in [0, 1) in row 0, else in [-1, 1); its slope, a
-    float that is constant in a row.  Where x is infinite or NaN, the row is beyond those of every law and t is NaN.
+    Returns (row, t, dt/dx).  row: int, number of the row, without upper bound, as the number of rows of a law is not
+    known here.  t: float, argument of its polynomials: x 2^-e0, in [0, 1), in row 0, else in [-1, 1).  dt/dx: float,
+    slope of t, constant in a row.  An infinite x is beyond the rows of every law; a NaN is in row 0 or beyond all rows,
+    by its sign bit; t of both is NaN.
     """
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
     # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
@@ -115,8 +116,11 @@ def locate_octave(x, e0):
 
 @inline_kernel
 def locate_row(x, law):
-    """Return the :class:`RowPosition` of x, a float >= 0 that is u or v, in the rows of ``law``, a :class:`Law` whose
-    material is selected; its row is :data:`FAST_LIMIT` beyond the last row, also for infinity and NaN.
+    """Return the :class:`RowPosition` of u or v in the rows of a law.
+
+    x : float, u or v, dimensionless, >= 0.
+    law : :class:`Law`, with its material selected, of whose ``marks`` e0 and the number of rows are read.
+    Returns the position; its row is :data:`FAST_LIMIT` beyond the last row, also for infinity.  A NaN has t NaN.
     """
     row, t, dt_dx = locate_octave(x, law.marks[E0])
     return RowPosition(row if row < law.marks[ROW_COUNT] else FAST_LIMIT, t, dt_dx)
@@ -141,8 +145,9 @@ def _fast_terms(u, body, law):
     law : :class:`Law` of the material.
 
     Returns (z, shift, part), floats, dimensionless: z = lam_fast/(2 u), which is zeta in the limit; shift = (alpha z/2)
-    (C - W ln z), which with W and C of both bodies is epsilon of a half-space, and of a cover the relative change of L;
-    part = alpha z W/8, which is 0 of a cover.  Of elastic bodies shift and part are 0.
+    (C - W ln z); part = alpha z W/8.  With W and C of both bodies shift is epsilon of a half-space, and of a cover the
+    relative change of L; with those of one body shift + part is its M/V divided by z.  Of a cover part is 0; of elastic
+    bodies both are 0.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[body]
@@ -230,8 +235,11 @@ def body_moments(position, u, law):
 
 @inline_kernel
 def free_creep_and_slopes(u, law):
-    """Return 2 kappa delta_0 and its first two derivatives over ``u`` = kappa |V|, a float >= 0, dimensionless: three
-    floats of a cover, 0.0 each of half-spaces, at no cost; ``law``: :class:`Law` of the material.
+    """Return 2 kappa delta_0, from the creepage of free rolling, with its first two derivatives over u.
+
+    u : float, kappa |V|, dimensionless, >= 0.
+    law : :class:`Law` of the material.
+    Returns (value, first derivative, second derivative), floats, dimensionless; 0.0 each of half-spaces, at no cost.
     """
     return free_creep_at(locate_row(u, law), u, law.cover_rows)
 
@@ -257,14 +265,13 @@ def limits_at_rest(kappa, law):
 
 @inline_kernel
 def _half_space_eta_over_F(y, law):
-    """Return eta/F of a half-space in the fast limit, with the negative of its slope: eta/F = 1 - (alpha y/2) (C - W ln
-    y).
+    """Return eta/F of a half-space in the fast limit, 1 - (alpha y/2) (C - W ln y), and minus its slope over y.
 
     y : float, F(eta) = 1/v, dimensionless, >= 0.
     law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
 
-    Returns (eta/F, -d(eta/F)/dy), floats, dimensionless.  At y = 0 the first is 1, and the second is the placeholder
-    -alpha W/2 for a slope that is infinite there; its users multiply it by y^2 = 0.
+    Returns (eta/F, -d(eta/F)/dy), floats, dimensionless.  At y = 0 the first is 1; the second is -alpha W/2 there,
+    which is a placeholder, as the slope is infinite for W > 0.  Its users multiply it by a power of y, which is 0.
     """
     half = 0.5 * law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]

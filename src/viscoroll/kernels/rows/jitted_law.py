@@ -37,7 +37,9 @@ _constants: list[Any] = []
 
 
 class LawType(types.Callable):
-    """numba's type of a law: (V, omega) -> :class:`LoadsAndSlopes`."""
+    """numba's type of a law, a function (V, omega) -> :class:`LoadsAndSlopes` of two floats; all laws have this one
+    type.
+    """
 
     def __init__(self):
         super().__init__("viscoroll.law")
@@ -107,7 +109,11 @@ class Jitted:
 
     @cached_property
     def ctypes(self) -> tuple[Any, ctypes.c_void_p]:
-        """The C function and its user data, for ctypes; each keeps this law alive."""
+        """The C function and its user data, for ctypes; each keeps this law alive.
+
+        A tuple: a function of ctypes (V, omega, pointer to eight doubles that it writes, address of the user data) ->
+        status, which releases the GIL; a ``c_void_p`` of the user data with slopes.
+        """
         function = ctypes.CFUNCTYPE(*_C_TYPES)(self.function_address)
         scene = ctypes.c_void_p(self.address)
         function.law = scene.law = self  # type: ignore[attr-defined]
@@ -157,9 +163,9 @@ def _lower_call(context, builder, signature, arguments):
     """Return instructions that call the C function of a law, whose address begins the user data.
 
     context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
-    arguments : values of LLVM: the law, which is the address of its user data, V and omega.
-    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`.  The status of the C function is not read:
-    a state at which the law is not defined has NaN.
+    arguments : values of LLVM: the law, which is the address of its user data, and the doubles V and omega.
+    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`, in the units of the user data.  The status
+    of the C function is not read: a state at which the law is not defined has NaN in all eight.
     """
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)

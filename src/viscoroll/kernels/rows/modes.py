@@ -65,8 +65,7 @@ def _jet(rate, z, function):
 
 @kernel
 def _write_ratio_jets(z, series, work):
-    """Write the jets of 1/r, k and i2 of every mode: each value with its derivatives d/dz, d/ds, d2/dz ds
-    (:mod:`.series`).
+    """Write the jets of 1/r, k and i2 of every mode (:mod:`.series`): value, d/dz, d/ds, d2/dz ds.
 
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series; at infinity values are 1
         and derivatives over s are NaN.

@@ -233,8 +233,7 @@ def _substitute(matrix, right, count):
 
 @inline_kernel
 def solve_modes(jets, series, work):
-    """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes, and write y and k f, with f = Q y, into the
-    workspace.
+    """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes; write y and k f, f = Q y, into the workspace.
 
     jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     series : :class:`Series`: rates, strengths and Q of the modes.

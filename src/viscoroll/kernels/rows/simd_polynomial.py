@@ -118,8 +118,7 @@ def evaluate_pair(table, start, t):
 
 @inline_kernel
 def _join(sums, t, square):
-    """Return the value at t of a function from the four polynomials of its coefficients whose index is 0, 1, 2, 3
-    modulo 4.
+    """Return the value at t of a function from the polynomials of its coefficients with index 0 to 3 modulo 4.
 
     sums : vector of four, the values of these polynomials at t^4.
     t, square : floats, argument and t^2, dimensionless.
