@@ -121,7 +121,8 @@ class Law:
         Raises
         ------
         ParameterError
-            NaN or infinite input, kappa |V| above 1e300, omega T_ref beyond the doubles, shapes that do not broadcast.
+            NaN or infinite input, kappa |V| above 1e300, an omega T_ref beyond the doubles, shapes that do not
+            broadcast.
         OutOfTableError
             The law of a grid: a state outside of its axes.
 
