@@ -154,8 +154,9 @@ class Law:
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
-        """Raise ParameterError: kappa |V| exceeds 1e300, or omega T_ref overflows; V, omega: finite, in the units of the
-        roller.
+        """Raise ParameterError: kappa |V| exceeds 1e300, or omega T_ref overflows.
+
+        V, omega: finite, arrays of shape (), in the units of the roller.
         """
         refuse_overflow(self._kappa, V)
         raise ParameterError("omega", f"{float(omega):g}", "smaller in magnitude: omega T_ref overflows")
