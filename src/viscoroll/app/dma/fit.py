@@ -213,7 +213,7 @@ def _mode(mode: Any) -> Mode:
 def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
     """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation` have in common.
 
-    curve : measured moduli over frequency or time, all points.
+    curve : a :class:`Curve` or :class:`Relaxation`, all points that were measured.
     modes : largest number of modes; None: as few as the misfit needs.
     misfit : root mean square of the relative errors that each modulus may have, > 0.
     Returns (the data that were fitted, thinned if they have more than 1000 points; the arguments of

@@ -138,7 +138,7 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
 
     Errors of share and press follow from those of the other functions and of L = 2 kappa delta_star/mu.
 
-    table: the law.
+    table: :class:`LawTable`, the law.
     count: number of speeds, from a tenth of the slowest rate of the layer to ten times the fastest.
     random: generator.
     Returns function -> largest relative error, dimensionless: "lam", "epsilon", "m_half_space", "m_cylinder" (both that
@@ -165,7 +165,7 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
 def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
     """Return a function of a law from its coefficients, at arguments before its fast limit.
 
-    table: the law.
+    table: :class:`LawTable`, the law.
     function: index in :data:`FUNCTIONS`: 0 lam, 1 epsilon, 2 m_half_space, 3 m_cylinder, 4 N, 5 share, 6 press.
     x: kappa |V| for functions 0 to 4, v = 1/F(eta) for the others, (n,), dimensionless.
     Returns values, (n,), dimensionless.
