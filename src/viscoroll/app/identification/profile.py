@@ -118,8 +118,9 @@ class Likelihood:
         """Return the interval of a combination of coordinates within which chi2 rises by no more than a bound.
 
         The combination is the sum of the coordinates, each times its power.  As most coordinates are logarithms of
-        unknowns, it is the logarithm of a product of powers.  Beyond the ends of the interval the search goes on from
-        other minima, the start, and the ends of other unknowns.  Results are kept until ``ends`` changes.
+        unknowns, it is the logarithm of a product of powers.  The range in which chi2 is below the bound may consist of
+        several pieces; therefore the search continues beyond the ends of the first one, from other minima, the start,
+        and the ends of other unknowns.  Results are kept until ``ends`` changes.
 
         powers : powers of the coordinates, shape (unknowns,).
         delta_chi2 : the bound: largest chi2 minus that of the best minimum, dimensionless, > 0.
