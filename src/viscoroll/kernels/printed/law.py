@@ -161,7 +161,7 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
     lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
         is finite (V = 0, where it is not, has beta = 1 - |delta|/delta_star).
     alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
-    Returns (beta, status): a float in [0, 1], to 1e-16 absolute, and an int, OK (0) or NOT_CONVERGED (1)
+    Returns (beta, status): a float in [0, 1], found to 1e-16 + 4e-16 beta, and an int, OK (0) or NOT_CONVERGED (1)
     (:func:`brent`).
 
     At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is -2 delta kappa/(mu lam) (1 +
