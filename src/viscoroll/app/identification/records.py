@@ -64,11 +64,15 @@ class Record:
     labels: Labels | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check coordinates, values and standard deviations, convert them to SI units and give them one shape.
+        """Check the fields, convert them to SI units, and replace them by the results.
 
-        The fields are replaced by the results: arrays of one shape, (n,) at least, and ``sigma`` as the class says.
+        Coordinates and values become arrays of one shape, at least one-dimensional.  ``sigma``, given as one number,
+        array or mapping, becomes a dict: quantity -> array of that shape, or None where it is to be estimated.
+        ``load``, ``temperature``, and ``m``, ``V0``, ``omega0`` of those records that have them, become floats; None
+        and omega0 = "rolling" stay.
         Raises ParameterError for values that are not finite, of another unit, of no points, or of shapes that do not go
-        together, for sigma <= 0, and for a name with a colon.
+        together, for sigma, load or m <= 0, for a quantity in sigma that the record does not have, and for a name that
+        is no text or has a colon.
         """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
