@@ -57,7 +57,11 @@ K_LEAST = 2.0**-30
 
 
 def _r_power_series(terms: int) -> list[float]:
-    """Return ``terms`` coefficients c_n of r(x) = sum c_n x^(2n+1), from the Riccati equation."""
+    """Return coefficients of the power series of r(x) = sum c_n x^(2n+1), from the Riccati equation.
+
+    terms : int, number of coefficients, > 0.
+    Returns [c_0 = 0.5, c_1, ...], ``terms`` floats.
+    """
     c = [0.5]
     for n in range(1, terms):
         c.append(-sum(c[i] * c[n - 1 - i] for i in range(n)) / (2 * n + 2))
@@ -113,7 +117,7 @@ _LN2 = 0.69314718055994530942
 
 @kernel
 def _polynomial(row, t):
-    """Return the value at t of the polynomial number ``row``."""
+    """Return the value at t of the polynomial in row ``row``, an int, of the table ``_ROWS``; both are floats."""
     c = _ROWS[row]
     return fma(t, septic(t, c[1:]), c[0])
 
@@ -122,8 +126,10 @@ def _polynomial(row, t):
 def ratio_r(x):
     """Return the ratio r = I1/I0 of modified Bessel functions and 1 - r, both to full relative accuracy (2.4 ULP).
 
-    x : argument, float >= 0, dimensionless.
-    Returns (r, 1 - r), dimensionless; 1 - r is computed without cancellation.
+    x : argument, float >= 0, dimensionless; may be infinite.
+    Returns (r, 1 - r), floats, dimensionless: (0, 1) at x = 0; (1, 0) at infinity; NaNs of a NaN.  1 - r falls like
+    1/(2 x) and is computed without cancellation, so that it keeps its digits where r itself is rounded to 1.0, from x =
+    1e16 or so on.
     """
     inverse_x = 1.0 / x
     # selections, not branches: those would be mispredicted on scattered arguments
@@ -141,8 +147,10 @@ def ratio_r(x):
 def ratio_k(z):
     """Return the ratio k = K0/K1 of modified Bessel functions and 1 - k, both to full relative accuracy (2.4 ULP).
 
-    z : argument, float >= 0, dimensionless.
-    Returns (k, 1 - k), dimensionless; 1 - k is computed without cancellation.
+    z : argument, float >= 0, dimensionless; may be infinite.
+    Returns (k, 1 - k), floats, dimensionless: (0, 1) at z = 0; (1, 0) at infinity; NaNs of a NaN.  1 - k falls like
+    1/(2 z) and is computed without cancellation, so that it keeps its digits where k itself is rounded to 1.0, from z =
+    1e16 or so on.
     """
     if z < K_LEAST:
         k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
@@ -158,8 +166,12 @@ def ratio_k(z):
 
 @inline_kernel
 def ratio_i2(x, r):
-    """Return i2 = I2/I0 of modified Bessel functions at ``x`` >= 0, in [0, 1), to full relative accuracy; ``r``: r(x),
-    of :func:`ratio_r`.
+    """Return the ratio i2 = I2/I0 = 1 - 2 r/x of modified Bessel functions, to full relative accuracy (2.4 ULP).
+
+    x : argument, float >= 0, dimensionless; may be infinite.
+    r : float, r(x) of :func:`ratio_r`, of which i2 is formed from x = 4 on; not read below.
+    Returns a float, dimensionless: 0 at x = 0; less than 1 in exact numbers, but rounded to 1.0 from x = 4e16 or so on;
+    NaN of a NaN.
     """
     if not x < 4.0:  # or a NaN
         return 1.0 - 2.0 * r / x
@@ -170,7 +182,13 @@ def ratio_i2(x, r):
 
 @inline_kernel
 def slope_r(x, r, complement):
-    """Return r'(x) = (1 - r)(1 + r) - r/x at x >= 0; ``r``, ``complement``: r and 1 - r there."""
+    """Return the slope of r = I1/I0 over x, r'(x) = (1 - r)(1 + r) - r/x.
+
+    x : argument, float >= 0, dimensionless.
+    r, complement : floats, r and 1 - r at x, of :func:`ratio_r`; not read below x = 1e-8.
+    Returns a float, dimensionless, from 0.5 at x = 0 (and, to rounding, below 1e-8) down to 0.  At large x, where the
+    slope falls like 1/(2 x^2), the two terms cancel: its relative error is x roundings or so.
+    """
     if x < 1e-8:
         return 0.5
     return complement * (1.0 + r) - r / x
@@ -178,5 +196,11 @@ def slope_r(x, r, complement):
 
 @inline_kernel
 def slope_k(z, k, complement):
-    """Return k'(z) = k/z - (1 - k)(1 + k) at z > 0; ``k``, ``complement``: k and 1 - k there."""
+    """Return the slope of k = K0/K1 over z, k'(z) = k/z - (1 - k)(1 + k).
+
+    z : argument, float > 0, dimensionless; 0, where the slope is infinite, gives NaN.
+    k, complement : floats, k and 1 - k at z, of :func:`ratio_k`.
+    Returns a float, dimensionless, > 0, which grows like -ln z as z -> 0.  At large z, where the slope falls like
+    1/(2 z^2), the two terms cancel: its relative error is z roundings or so, and it may be 0 or below.
+    """
     return k / z - complement * (1.0 + k)

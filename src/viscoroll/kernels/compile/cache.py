@@ -50,8 +50,11 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """Return a hash, 16 hexadecimal digits, of the kernel sources, of their coefficients and of the versions of numba
-    and llvmlite.
+    """Return a hash of the kernel sources, of their coefficients and of the versions of numba and llvmlite.
+
+    It covers the names and all bytes of the files ``*.py`` and ``*.npy`` in and below :data:`KERNELS`, comments
+    included, and is computed once in a process.
+    Returns a str of 16 hexadecimal digits.
     """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
@@ -61,7 +64,10 @@ def sources_digest() -> str:
 
 @lru_cache(maxsize=2)
 def warn_once(trouble: str) -> None:
-    """Warn of a problem with the cache, ``trouble``, once for each."""
+    """Give a RuntimeWarning of a problem with the cache; not again if it is one of the last two that were warned of.
+
+    trouble : str, the first part of the message, which says what is wrong.
+    """
     warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
 
 
@@ -80,11 +86,13 @@ class DiskCache:
     def exclusive(self, signature, codegen) -> Iterator[None]:
         """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE` seconds.
 
-        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed behind it.
-        If the code is stored already, or if no lock can be made or had in that time, the block runs without one.
+        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed when the
+        block ends.  If another process holds it, this one waits in front of the block, for at most the same time.  The
+        block runs without a lock if the code is stored already, if the lock cannot be made, or if the time is over.
 
         signature : tuple of numba's types of the arguments of the kernel.
-        codegen : numba's code generator, which knows the processor. Yields None.  Raises what the block raises.
+        codegen : numba's code generator, which knows the processor.
+        Yields None.  Raises what the block raises.
         """
         path = self._path(signature, codegen)
         if path.exists():
@@ -104,13 +112,13 @@ class DiskCache:
             lock.release()
 
     def load_overload(self, signature, target) -> CompileResult | None:
-        """Return the machine code for a signature, numba's ``CompileResult``; None if it is not stored or cannot be
-        used.
-
-        It is not used if others may have written it, or, with one warning for each process, if its checksum is wrong.
+        """Return the stored machine code for a signature, or None if there is none that can be used.
 
         signature : tuple of numba's types of the arguments of the kernel.
-        target : numba's target context, which the code is linked into.
+        target : numba's target context, which the code is linked into; it is refreshed in any case.
+        Returns numba's ``CompileResult``.  None without a warning if the file does not exist, cannot be read, or may
+        have been written by others; None with a RuntimeWarning (:func:`warn_once`) if its checksum is wrong or numba
+        cannot rebuild the code from it.
         """
         target.refresh()
         try:
@@ -125,10 +133,13 @@ class DiskCache:
         return None  # save_overload then replaces the file
 
     def save_overload(self, signature, compiled: CompileResult) -> None:
-        """Store machine code for a signature, unless it contains addresses of this process; warn once if that fails.
+        """Store machine code for a signature, unless it contains addresses of this process.
 
-        signature : tuple of numba's types of the arguments of the kernel; their text is part of the name of the file.
-        compiled : numba's ``CompileResult``.
+        signature : tuple of numba's types of the arguments of the kernel; a hash of their text is part of the name of
+            the file.
+        compiled : numba's ``CompileResult``; one with addresses of this process (``has_dynamic_globals``) is not
+            stored, without a warning.
+        Returns None.  A file that cannot be written causes a RuntimeWarning (:func:`warn_once`), not an error.
         """
         if compiled.library.has_dynamic_globals:
             return

@@ -29,12 +29,14 @@ _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "Wit
 
 @contextmanager
 def _memoized_types(typing, target):
-    """Memoize results that numba computes again for each statement, within a ``with`` block.
+    """Make numba remember, within a ``with`` block, results that it otherwise computes again for each statement.
 
     These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
-    a module, and the signatures of numba's own functions that lower a statement.
+    a module, and whether numba's own functions that lower a statement take its location.
 
-    typing, target : numba's typing context and target context, changed within the block. Yields None.
+    typing, target : numba's typing context and target context.  Methods of both are replaced within the block and
+        restored when it ends, also by an exception.
+    Yields None.  Within another block of this kind, where a kernel is compiled for another one, nothing is replaced.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -43,6 +45,15 @@ def _memoized_types(typing, target):
     plain = typing.resolve_function_type
 
     def resolve_function_type(function, args, kws):
+        """Return numba's signature of a call; a call of the same function with the same types is resolved once.
+
+        function : numba's type of the function, or the operator of Python, that is called.
+        args : tuple of numba's types of the positional arguments.  Literals among them count as their types, unless all
+            arguments are literals.
+        kws : dict of numba's types of the named arguments.
+        Returns what numba's own method returns.  That method is called each time, and nothing is remembered, if an
+        argument is named or is not a float, an integer or a boolean.
+        """
         if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
             return plain(function, args, kws)
         if not all(isinstance(kind, types.Literal) for kind in args):  # numba resolves again for every literal integer
@@ -64,9 +75,11 @@ def _memoized_types(typing, target):
 
 @contextmanager
 def _without_garbage_collection():
-    """Switch Python's garbage collection off within a ``with`` block.
+    """Switch Python's garbage collection off within a ``with`` block, or leave it off if it is off already.
 
     numba makes millions of objects that live until the compilation ends; collecting took a tenth of its time.
+
+    Yields None.  The state before the block is restored when it ends, also by an exception.
     """
     enabled = gc.isenabled()
     gc.disable()
@@ -91,11 +104,13 @@ class EntryPipeline:
         """Compile a kernel that Python calls as a whole, with the parts below it; by numba's own compiler if that
         fails.
 
-        It fails if a private name of numba has changed.  This and all later kernels of the process then are compiled by
-        numba's own compiler, with a RuntimeWarning.
+        If it fails and numba's own compiler succeeds, a private name of numba has changed.  Then one RuntimeWarning is
+        given, and numba's own compiler compiles all later kernels of the process too, without a further warning.  If
+        both fail, the function itself cannot be compiled, and later kernels are compiled as before.
 
-        function : the Python function. Returns numba's ``CompileResult``.  Raises numba's error if its own compiler
-        cannot compile the function either.
+        function : the Python function.
+        Returns numba's ``CompileResult``.  Raises the error of numba's own compiler if that fails too.  The first call
+        in a process prints a line on standard error (:func:`.notice.announce_compiling`).
         """
         announce_compiling()
         global _deferring
@@ -128,7 +143,8 @@ def defer(whole, options: dict[str, Any]):
     whole : numba's dispatcher of the kernel, whose methods get_call_template and get_overload, by which numba compiles
         a call from another kernel, are replaced.
     options : options of ``numba.njit`` by name, those of the kernel, for the part.
-    Returns None.  The part is compiled when another kernel that calls this one is.
+    Returns None.  The part is compiled when another kernel that calls this one is.  After a failure of this way of
+    compiling (:meth:`EntryPipeline.compile_extra`) other kernels compile against ``whole`` itself, as numba does.
     """
     plain = type(whole)
 
@@ -234,6 +250,8 @@ def _link(library, module):
 
     library : numba's library, a Part or a Whole of :func:`_pipelines`.
     module : LLVM's module, into which copies of their modules are linked.
+    Returns None.  The libraries that a Part calls are linked too; those that another library calls are not, because its
+    own module contains them already.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -249,10 +267,11 @@ def _link(library, module):
 
 
 def _pipeline(library_class: type):
-    """Return numba's default compiler without needless passes, which lowers into libraries of ``library_class``.
+    """Return a compiler class with numba's default passes but those of ``_NOT_NEEDED``, for one class of libraries.
 
-    library_class : subclass of numba's ``JITCodeLibrary``: Part or Whole of :func:`_pipelines`.
-    Returns a subclass of numba's ``CompilerBase``.
+    library_class : subclass of numba's ``JITCodeLibrary``, Part or Whole of :func:`_pipelines`: the library that the
+        machine code, or the representation of LLVM, of each compiled function is put into.
+    Returns a new subclass of numba's ``CompilerBase``.
     """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass

@@ -22,9 +22,11 @@ _SUPERUSERS = 0
 
 
 def cache_root() -> Path:
-    """Return the folder that holds every cache of the package, by the environment as the module says.
+    """Return the folder that holds every cache of the package, chosen by the environment as the module says.
 
-    Returns its path; the folder may not exist yet.  A user without a home directory is warned once of the folder taken.
+    An environment variable that is empty counts as one that is not set.
+    Returns its path, as the variable has it, absolute or relative; the folder may not exist yet.  If neither variable
+    is set and the user has no home directory, a RuntimeWarning names the folder, once in a process.
     """
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
@@ -38,8 +40,10 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def _without_home() -> Path:
-    """Return the path of the cache folder of a user without a home directory, viscoroll-UID in the folder of temporary
-    files, and warn of it once in a process.
+    """Return the path of the cache folder of a user without a home directory, and warn of it once in a process.
+
+    Returns viscoroll-UID in $TMPDIR, or in /tmp if that is not set or empty, with the number of the user for UID;
+    viscoroll-cache on systems without such numbers (Windows).
     """
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
     folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
@@ -52,9 +56,11 @@ def _without_home() -> Path:
 
 
 def read_private(path: Path) -> bytes:
-    """Return the content of a file of the cache.
+    """Return the content of a file of the cache, if nobody else can have written it.
 
-    Raises OSError if the file does not exist, cannot be read, or may have been written by others.
+    path : the file.
+    Returns its bytes.  Raises OSError if the file does not exist or cannot be read, and PermissionError, which is an
+    OSError too, if others may have written it (:func:`refuse_writable_by_others`).
     """
     refuse_writable_by_others(path)
     return path.read_bytes()
@@ -65,7 +71,8 @@ def write_private(path: Path, content: bytes) -> None:
 
     path : the file; an existing one is replaced.
     content : its bytes.
-    Raises OSError if it cannot be written, PermissionError if others may write to a folder above it.
+    Returns None.  Raises OSError if it cannot be written, PermissionError if others may write to a folder above it; an
+    existing file then keeps its content, and no temporary file is left.
     """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
@@ -79,7 +86,12 @@ def write_private(path: Path, content: bytes) -> None:
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder of the cache and the folders above it, as far as they do not exist; raises OSError."""
+    """Make a folder of the cache and the folders above it, as far as they do not exist, writable by this user alone.
+
+    folder : path of the folder; one that exists keeps its rights.
+    Returns None.  Raises PermissionError if others may write to an existing one of these folders
+    (:func:`refuse_writable_by_others`), else OSError if one cannot be made.
+    """
     refuse_writable_by_others(folder)
     for parent in reversed((folder, *folder.parents)):
         if not parent.exists():
@@ -87,16 +99,16 @@ def make_private_folder(folder: Path) -> None:
 
 
 def refuse_writable_by_others(path: Path) -> None:
-    """Raise PermissionError if others may write to ``path``, or to a folder above it, as far as they exist.
+    """Raise PermissionError if others may write to ``path`` or to a folder above it, or if one belongs to another user.
 
-    Nor may one of them belong to another user than this one, the superuser or the owner of "/".  Where ``path`` is a
-    link, the folders above its target are tested too.
+    The owners that are allowed are this user, the superuser and the owner of "/".  Rights of a group count as rights of
+    others unless the group is private (:func:`_is_private`).  A sticky folder to which others may write is allowed,
+    because nobody can replace the files of another user there.  Where ``path`` is a link, its target and the folders
+    above that are tested too.
 
-    Sticky folders are allowed: nobody can replace the files of another user there.  On Windows, where the profile of a
-    user is theirs alone, nothing is tested.
-
-    path : file or folder, which may not exist.
-    Returns None.  The error says how to change the rights or to choose another folder.
+    path : file or folder; it and folders above it that do not exist, or whose status cannot be read, are passed over.
+    Returns None; on Windows, where the profile of a user is theirs alone, nothing is tested.  The error says how to
+    change the rights, where rights are the reason, and how to choose another folder.
     """
     if not hasattr(os, "geteuid"):
         return
@@ -118,10 +130,13 @@ def refuse_writable_by_others(path: Path) -> None:
 
 
 def _is_private(group: int) -> bool:
-    """Return whether nobody but this user can use the rights of a group: it is the superuser's, or has the name of this
-    user and no other member.
+    """Return whether nobody but this user and the superuser can use the rights of a group.
 
-    group : int, number of the group; False for one that has no entry.
+    Many systems give each user a group of their own, whose right to write harms nobody.
+
+    group : int, number of the group.
+    Returns True for group 0, the superuser's, whoever its members are; True for a group that has the name of this user
+    and lists no member but this user; else False, also if the group or this user has no entry in the system's lists.
     """
     import grp
     import pwd

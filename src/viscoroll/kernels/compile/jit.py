@@ -27,7 +27,8 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
 
     Returns
     -------
-    numba's dispatcher of the function.
+    numba's dispatcher of the function, which is called like the function; without ``function``, a decorator that
+    returns it.
     """
     if function is None:
         return lambda f: kernel(f, inline=inline, allocates=allocates)
@@ -40,9 +41,13 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
 
 
 def _compile_exclusively(dispatcher) -> None:
-    """Replace the compilation of a kernel by one that waits while another process compiles it for the same signature.
+    """Let a kernel wait, before it compiles itself for a signature, while another process does that already.
 
-    dispatcher : numba's dispatcher of the kernel, changed.
+    The code of the other process is then read from the disk instead of being compiled again.
+
+    dispatcher : numba's dispatcher of the kernel, whose method ``compile`` is replaced; it waits for at most
+        :data:`.cache.PATIENCE` seconds.
+    Returns None.
     """
     plain = dispatcher.compile
 

@@ -34,10 +34,11 @@ _EPS = 2.0**-52
 def _residual(equation, x, data):
     """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it; its root is sought.
 
-    equation : 6 (_EQ_6) or 10 (_EQ_10); numba cannot cache a caller that passes a function.
-    x : lam in Eq. (6), beta in Eq. (10).
-    data : four numbers: in Eq. (6) kappa V, alpha and two that are not used; in Eq. (10) 1 + epsilon, 2 |delta|
-        kappa/(mu lam), zeta and alpha.
+    equation : int, 6 (_EQ_6) or 10 (_EQ_10, and any other number); numba cannot cache a caller that passes a function.
+    x : float, lam in Eq. (6), > 0; beta in Eq. (10), in [0, 1].
+    data : tuple of four floats, dimensionless: in Eq. (6) kappa V > 0, alpha and two that are not used; in Eq. (10)
+        1 + epsilon, 2 |delta| kappa/(mu lam), zeta > 0 and alpha.
+    Returns a float, dimensionless, that falls through 0 at the root.
     """
     if equation == _EQ_6:
         kappa_V, alpha, _, _ = data
@@ -56,13 +57,14 @@ def brent(equation, data, low, high, floor):
     """Find the root x of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
 
     equation, data : arguments of :func:`_residual`.
-    low, high : ends of the bracket.
-    floor : absolute tolerance; the root is found to floor + 4e-16 |x|.
-    Returns (root, status): OK (0); or NOT_CONVERGED (1), after 60 steps with the best value so far, or with NaN where
-    the residual is NaN at an end.
+    low, high : floats, ends of the bracket, low < high.
+    floor : float, absolute tolerance; the root is found to floor + 4e-16 |x|.
+    Returns (root, status), a float and an int: OK (0); or NOT_CONVERGED (1), after 60 steps with the best value so far,
+    or with NaN for the root where the residual is NaN at an end.
 
-    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4]. The residual falls from >= 0 at low to <=
-    0 at high.  An end where rounding spoils that sign is itself the root, to rounding.
+    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].  The residual falls from >= 0 at low to
+    <= 0 at high.  An end where it is 0, or where rounding spoils that sign, is itself the root, to rounding: ``high``
+    with a residual >= 0, else ``low`` with one <= 0, is returned as OK without a step, whatever the other end has.
     """
     a = low
     fa = _residual(equation, low, data)
@@ -121,9 +123,11 @@ def brent(equation, data, low, high, floor):
 def direct_contact_length(kappa_V, alpha):
     """Solve Eq. (6) for the length of the contact, with Eqs. (7) and (8) for its transit time and its shift.
 
-    kappa_V : slenderness times speed, > 0, dimensionless.
-    alpha : T_epsilon/T_sigma, >= 1.
-    Returns (lam, zeta, epsilon, status OK or NOT_CONVERGED), the first three dimensionless.
+    kappa_V : float, slenderness times |V|, > 0, dimensionless.
+    alpha : float, T_epsilon/T_sigma, >= 1, dimensionless.
+    Returns (lam, zeta, epsilon, status), three floats and an int: contact length divided by l0; half the transit time,
+    divided by T_epsilon; shift in half contact lengths; OK (0), or NOT_CONVERGED (1) if lam was not found
+    (:func:`brent`), and then all three are not to be used.  alpha = 1 gives lam = 1 and epsilon = 0, to rounding.
 
     At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is -2 c r/zeta <= 0: the two always
     enclose the root.  lam^-2 - 1 costs epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V
@@ -137,25 +141,31 @@ def direct_contact_length(kappa_V, alpha):
 
 @kernel
 def direct_delta_star(kappa, mu, lam, epsilon):
-    """Return the critical creepage delta_star by Eq. (9), at which full slip begins; ``kappa``, ``mu``: slenderness and
-    coefficient of friction; ``lam``, ``epsilon``: length and shift of the contact, Eqs. (6), (8).
+    """Return the critical creepage delta_star by Eq. (9), at which full slip begins: mu lam (1 + epsilon)/(2 kappa).
+
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    mu : float, coefficient of friction, dimensionless, > 0.
+    lam, epsilon : floats, length divided by l0, and shift in half contact lengths, of the contact, Eqs. (6), (8); 1 and
+        0 at V = 0.
+    Returns a float, dimensionless, > 0.
     """
     return mu * lam * (1.0 + epsilon) / (2.0 * kappa)
 
 
 @kernel
 def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
-    """Solve Eq. (10) for beta, the length of the stick zone divided by that of the contact, 0 <= delta_abs <
-    delta_star.
+    """Solve Eq. (10) for beta, the length of the stick zone divided by that of the contact, in partial slip, V not 0.
 
-    delta_abs : |delta|.
-    kappa, mu : slenderness R/l0 and coefficient of friction.
-    lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
-    alpha : T_epsilon/T_sigma.
-    Returns (beta, status OK or NOT_CONVERGED).
+    delta_abs : float, |delta|, dimensionless, 0 <= delta_abs < delta_star.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
+    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
+        is finite (V = 0, where it is not, has beta = 1 - |delta|/delta_star).
+    alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
+    Returns (beta, status): a float in [0, 1], found to 1e-16 + 4e-16 beta, and an int, OK (0) or NOT_CONVERGED (1)
+    (:func:`brent`).
 
     At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is -2 delta kappa/(mu lam) (1 +
-    p) <= 0 by Eq. (8).
+    p) <= 0 by Eq. (8), where p = k(zeta) r(alpha zeta).  So delta = 0 gives beta = 1, to rounding.
     """
     creep = 2.0 * delta_abs * kappa / (mu * lam)
     # 1 + epsilon - beta - creep leaves beta no better than that: asking for more would chase rounding
@@ -164,12 +174,14 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 
 @kernel
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
-    """Return the traction |Q| by Eq. (15), divided by the load.
+    """Return the traction |Q| by Eq. (15), divided by the load, in partial slip, V not 0.
 
-    beta : length of the stick zone divided by that of the contact, >= 0.
-    delta_abs : |delta|, below delta_star.
-    kappa, mu : slenderness R/l0 and coefficient of friction.
-    lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
+    beta : float, length of the stick zone divided by that of the contact, in [0, 1], of :func:`direct_stick`.
+    delta_abs : float, |delta|, dimensionless, below delta_star.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
+    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
+        is finite.
+    Returns a float, dimensionless, in [0, mu] but for rounding; mu where beta zeta is 0, in the limit of full slip.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = 1e-6 (1e-8 for kappa V =
     1e3, where K1/K0 magnifies the rounding of the bracket). That magnification grows in proportion to V: 1e-13 mu at
@@ -184,11 +196,13 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
 
 @kernel
 def direct_moment(kappa, lam, epsilon, zeta, alpha):
-    """Return the rolling moment M > 0 by Eq. (16), divided by load times radius.
+    """Return the modulus |M| of the rolling moment by Eq. (16), divided by load times radius, V not 0.
 
-    kappa : slenderness R/l0.
-    lam, epsilon, zeta : length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
-    alpha : T_epsilon/T_sigma.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
+        is finite.
+    alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
+    Returns a float, dimensionless, > 0; 0 of alpha = 1, where rounding may leave a small number of either sign.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by 9e-14 relative at kappa V =
     1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and for alpha = 1 + 1e-6 by 9e-5 somewhere below kappa V =
