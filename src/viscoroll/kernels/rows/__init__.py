@@ -15,7 +15,7 @@ that with v = 2 u/w
 
 lam, epsilon, M/V and its parts are functions of u alone: seven functions of one variable, and no root (docs/design.md).
 Row 0 is the slow end, 0 <= x < 2^e0, a polynomial of t = x 2^-e0; row n > 0 is the octave of x = m 2^(e0+n), m in
-[1/2, 1), one of t = 4 m - 3; behind the last row the fast limit holds.  V = 0 and full slip need nothing special.
+[1/2, 1), one of t = 4 m - 3; beyond the last row the fast limit holds.  V = 0 and full slip need nothing special.
 
 A cover of finite thickness (:mod:`cover`) has rows of its own of these functions, with L = 2 kappa delta_star/mu and
 with (H/F^2)(2 u/L) = 1/L^2 and (eta/F)(2 u/L) = lam/L; and D counts from the creep of free rolling, delta_0(u).

@@ -43,12 +43,13 @@ class LawType(types.Callable):
         super().__init__("viscoroll.law")
 
     def get_call_type(self, context, args, kws):
-        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real numbers, integer or
-        float.
+        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real numbers.
 
         context : numba's typing context, not used.
-        args, kws : tuple and dict of numba's types of the positional and of the named arguments.
-        Returns None for other arguments, which numba reports as an error of type.
+        args, kws : tuple and dict of numba's types of the positional and of the named arguments; a type of integers,
+            floats or literal integers is allowed, and converted to double.
+        Returns the signature, (double, double) -> named tuple of eight doubles; None for arguments of another number,
+        name or type, which numba reports as an error of type.
         """
         try:
             kinds = _SIGNATURE.bind(*args, **kws).args
@@ -69,18 +70,22 @@ class LawType(types.Callable):
 
 
 class Jitted:
-    """A law for jitted code: ``law.jitted(V, omega)``, NaN where the law is not defined.
+    """A law for jitted code: ``law.jitted(V, omega)`` -> :class:`LoadsAndSlopes`, all NaN where the law is not defined.
+
+    The units of V, omega and the results are those of the scene's user data.  Python may call it too.  It cannot be
+    pickled: that raises TypeError.
 
     Parameters
     ----------
-    scenes : two records of user data, without slopes and with, whose first field is the address of the C function.
-    owner : what the addresses in ``scenes`` point to, which is kept.
+    scenes : two records of user data (:func:`.c_function.pack_scenes`), without slopes and with, whose first field is
+        the address of the C function.
+    owner : any object that owns the memory to which addresses in ``scenes`` point; it is kept.
 
     Attributes
     ----------
-    plain, address : addresses of the user data without slopes and with.
+    plain, address : int, addresses of the user data without slopes and with.
     function : the C function for calls from Python, with the GIL: to release it takes longer than the law.
-    function_address : its address.
+    function_address : int, its address.
     """
 
     _numba_type_ = LawType()
@@ -121,9 +126,10 @@ class _LawModel(models.PrimitiveModel):
 def _unbox(kind, law, c):
     """Return the address of the user data of a law that Python passes to jitted code.
 
-    kind, c : numba's type of the law and its context of unboxing.
+    kind, c : numba's type of the law, not used, and its context of unboxing.
     law : the Python object, a :class:`Jitted`, as a value of LLVM.
-    Returns numba's ``NativeValue``: the address, a 64-bit integer, and whether Python raised an error.
+    Returns numba's ``NativeValue``: the address, a 64-bit integer of LLVM, and a bit that is set if Python raised an
+    error on the way.
     """
     address = c.pyapi.object_getattr_string(law, "address")
     value = c.pyapi.long_as_ulonglong(address)
@@ -133,10 +139,11 @@ def _unbox(kind, law, c):
 
 @lower_constant(LawType)
 def _lower_constant(context, builder, kind, law):
-    """Return instructions for the address of a law that is a constant of the code.
+    """Return instructions for the address of a law that is a constant of the code, such as a global variable of a
+    function.
 
     context, builder, kind : numba's context of code generation, builder of LLVM and type of the law.
-    law : the :class:`Jitted`, which is kept alive until the process ends.
+    law : the :class:`Jitted`, which is appended to a list of this module and so kept alive until the process ends.
     Returns a value of LLVM: the address of the user data as a 64-bit integer.
 
     numba does not put code with such an address into its cache: the next process has other addresses.
