@@ -184,11 +184,23 @@ class Cylinder(Methods):
     def replace(self, **changes: Any) -> Cylinder:
         """Return a copy with some parameters changed; ``material`` takes the place of E to T_sigma, and the reverse.
 
-        changes: arguments of :class:`Cylinder` by name, in SI units.  With one of E, nu, T_epsilon and T_sigma the
+        Parameters
+        ----------
+        changes : arguments of :class:`Cylinder` by name, in SI units.  With one of E, nu, T_epsilon and T_sigma the
             material is dropped, so that all four must be given if the cylinder had a material.
-        Returns a new :class:`Cylinder`.  A load that was given stays; a load that was the weight is the weight of the
-        new m and g; ``load=None`` makes it the weight again.
-        Raises ParameterError as the class does; TypeError for an unknown name.
+
+        Returns
+        -------
+        Cylinder
+            A new :class:`Cylinder`.  A load that was given stays; a load that was the weight is the weight of the
+            new m and g; ``load=None`` makes it the weight again.
+
+        Raises
+        ------
+        ParameterError
+            As the class does.
+        TypeError
+            For an unknown name.
 
         Examples
         --------

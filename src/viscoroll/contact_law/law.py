@@ -121,7 +121,8 @@ class Law:
         Raises
         ------
         ParameterError
-            NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
+            NaN or infinite input, kappa |V| above 1e300, an omega T_ref beyond the doubles, shapes that do not
+            broadcast.
         OutOfTableError
             The law of a grid: a state outside of its axes.
 
@@ -153,8 +154,12 @@ class Law:
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
-        """Raise ParameterError where kappa |V| exceeds 1e300; V, omega: finite, in the units of the roller."""
+        """Raise ParameterError: kappa |V| exceeds 1e300, or omega T_ref overflows.
+
+        V, omega: finite, arrays of shape (), in the units of the roller.
+        """
         refuse_overflow(self._kappa, V)
+        raise ParameterError("omega", f"{float(omega):g}", "smaller in magnitude: omega T_ref overflows")
 
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:

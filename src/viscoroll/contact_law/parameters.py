@@ -190,9 +190,15 @@ class Parameters(Roller):
     def replace(self, **changes: Any) -> Self:
         """Return a copy of the same class with some parameters changed.
 
-        changes: new values of alpha, kappa, mu, gamma, j and material by name; an alpha takes the place of a material,
+        Parameters
+        ----------
+        changes : new values of alpha, kappa, mu, gamma, j and material by name; an alpha takes the place of a material,
             and the reverse.  Without both the material stays, with its :class:`LawTable` if it was given as one.
-        Raises ParameterError as the class does: for values out of range, and for alpha and material together.
+
+        Raises
+        ------
+        ParameterError
+            As the class does: for values out of range, and for alpha and material together.
         """
         material: dict[str, Any] = {}
         if changes.keys() & {"alpha", "material"}:

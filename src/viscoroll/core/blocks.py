@@ -163,7 +163,7 @@ def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterabl
     """Run all blocks on a pool, and await them in order.
 
     After an error no further block starts, and the error of the first block that failed is raised.
-    pool: threads.
+    pool: :class:`Executor`, threads.
     work: function (start, stop) -> None.
     edges: (start, stop) of each block.
     most: blocks that wait at the same time.

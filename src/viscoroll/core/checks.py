@@ -55,9 +55,9 @@ def check_array_extent(
     value : a number, an array or a list, perhaps with a unit.
     unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
         dimensionless number, or an object that has units by name, as a :class:`.scale.Scale`.
-    low : smallest allowed value.
+    low : smallest allowed value, in ``unit``; -infinite by default, as ``above``.
     above : number that all values must exceed.
-    high : largest allowed value.
+    high : largest allowed value, in ``unit``; infinite by default.
 
     Returns
     -------
@@ -152,8 +152,8 @@ def check_number(
     value : a number, perhaps with a unit.
     unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
         dimensionless number, or an object that has units by name.
-    low, high : smallest and largest allowed value.
-    above : number that the value must exceed.
+    low, high : smallest and largest allowed value, in ``unit``; infinite by default.
+    above : number that the value must exceed, in ``unit``.
 
     Raises
     ------

@@ -308,7 +308,7 @@ def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | N
     """Return the time-temperature shift of a section by its key wlf or arrhenius.
 
     path, name: path of the file and name of the section, for errors.
-    section: checked content of the section.
+    section: :class:`FileSection`, checked content of the section.
     Returns the :class:`WLF` or :class:`Arrhenius`, None if neither key is given.
     Raises FileError for both keys.
     """

@@ -78,7 +78,7 @@ def _shape(value: Any) -> tuple[int, ...]:
 def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> tuple[float, float, int]:
     """Check the limits of an integration.
 
-    rtol: relative tolerance.
+    rtol: relative tolerance of the motion, dimensionless.
     rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: a motion does not
     end at rest.
     max_steps: largest number of steps of a motion.

@@ -107,7 +107,7 @@ class _Sampled:
         function: takes t in T_ref, returns a number, dimensionless.
         end: last time, in T_ref.
         rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the largest magnitude so far.
-        low: smallest value allowed.
+        low: smallest value allowed, in the unit of the values of the function.
         samples: number of samples, which are taken at the middle of as many equal parts of the time from 0 to ``end``.
         Raises ParameterError for values that are no finite numbers or below ``low``.
         """
@@ -227,7 +227,7 @@ def fit_callable(
     rtol: relative tolerance of the motion.  The fit may differ by a tenth of it times the largest magnitude so far;
     below 1e-9 of the largest magnitude of all it is not compared with values so far, and it is 0 there until the
     callable has risen.
-    low: smallest value allowed.
+    low: smallest value allowed, in the unit of the values of the function.
     resolve: largest spacing of the samples, > 0, in T_ref; None, and at most: ``end`` divided by :data:`SAMPLES`.
     Returns (starts of the k pieces in T_ref, (k,), ascending, the first 0; coefficients of powers of x, ascending, (k,
     TERMS), dimensionless, where x runs from -1 to 1 over a piece, and the last piece ends at ``end``; largest absolute
@@ -316,8 +316,8 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
 def _intersection(before: Piece, after: Piece, between: Piece) -> float:
     """Return the time, within a piece, at which the polynomials of its neighbours are equal: where a corner lies.
 
-    before, after: the piece before it and the piece after it, whose polynomials are extended over it.
-    between: the piece.
+    before, after: :class:`Piece`, the piece before it and the piece after it, whose polynomials are extended over it.
+    between: :class:`Piece`, the piece.
     Returns the time, in T_ref; the middle of the piece where the same polynomial is the larger one at both of its ends.
     """
 

@@ -50,7 +50,7 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2 in time gamma t.
 
     problem : the :class:`FlowProblem`.
-    parts : views of the tables, of which ``slide``, ``after`` and ``onset`` are written.
+    parts : :class:`FlowTables`, views of the tables, of which ``slide``, ``after`` and ``onset`` are written.
     Raises :class:`NoFlowMap`, with the tables incomplete: for the reason STOPS where at some speed the rolling
     resistance can hold the sliding cylinder, or nearly can, and where the speed at the onset of partial slip is no
     unique function of the quantity that is constant while sliding; for OUT_OF_RANGE where numbers leave the range of

@@ -79,8 +79,8 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     from V -> 0 upward.
 
     problem : the :class:`FlowProblem`.
-    parts : views of the tables, of which ``slow`` and ``manifold`` are written; rows of ``slow`` above the highest
-    speed of the tables stay as they are.
+    parts : :class:`FlowTables`, views of the tables, of which ``slow`` and ``manifold`` are written; rows of ``slow``
+    above the highest speed of the tables stay as they are.
     Raises :class:`NoFlowMap` where that motion leaves partial slip or its numbers the range of doubles.
     Returns the :class:`SlowManifold`, the same functions as coefficients.
     """

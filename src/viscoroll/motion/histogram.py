@@ -66,7 +66,7 @@ class Histogram(msgspec.Struct):
 
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
 
-        other: the second histogram.
+        other: :class:`Histogram`, the second histogram.
         Returns a new histogram, which does not keep the values, so that its quantiles are not exact.  If one of the two
         has no values it is the other one itself, with the values that that keeps.
         """

@@ -67,7 +67,7 @@ def check_function(
     end: last time, in T_ref; ignored but for a callable.
     rtol: relative tolerance of the motion; a fit may differ from a callable by a tenth of it, times the largest
     magnitude so far.  Ignored but for a callable.
-    low: smallest value allowed.
+    low: smallest value allowed, in the unit of the values of the function.
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is neither a number, a schedule nor a callable; an array of several dimensions;
     values that are not finite or below ``low``; a callable that cannot be called with a time alone, or that polynomials

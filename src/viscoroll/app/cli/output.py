@@ -43,7 +43,7 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
     arguments: parsed command line with output, a path that ends in .txt, .csv or .nc, or None; and format of standard
         output without a path, "text", "csv" or "json".
     data: dataset for netCDF, whose ``long_name`` are the meanings of the variables in the text.
-    frame: the same as a table, a row a state.
+    frame: pandas DataFrame, the same as a table, one row for each state.
     heading: first lines of the text; csv and json have none.
     Raises FileError if the file cannot be written.
     """
@@ -69,7 +69,7 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
 def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
     """Return a table as aligned columns below a heading, or a single row as one line for each number.
 
-    frame: the table; without rows the heading stands alone.
+    frame: pandas DataFrame, the table; without rows the heading stands alone.
     heading: first lines.
     meanings: name of a column without its unit -> meaning, behind the number of a single row; None: always columns.
     Returns the text, which ends with a line break.

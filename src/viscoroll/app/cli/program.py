@@ -214,6 +214,6 @@ def _discard(stream: TextIO) -> None:
 
     The interpreter would try to write it at its end, and exit with its own code.
 
-    stream: standard output or standard error.
+    stream: :class:`TextIO`, standard output or standard error.
     """
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -38,10 +38,15 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 def contact(arguments: Namespace) -> None:
     """Print or write the state of the contact for all pairs of speed and creepage.
 
-    arguments: parsed command line with scene, path of a TOML file or name of a preset; V, speed, and delta, creepage,
-        or omega, angular velocity, the other None: each a number or (n,), in SI units of a cylinder, else
-        dimensionless; output, path or None (standard output), and format, as of :func:`.output.deliver`.
-    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V, speeds, a number or (n,), in m/s of a cylinder, dimensionless of a scene;
+        delta, creepages, a number or (m,), dimensionless, or None where omega is given;
+        omega, angular velocities, a number or (m,), in rad/s of a cylinder, or None where delta is given;
+        output, path or None (standard output), and format, as of :func:`.output.deliver`.
+    Two vectors give n x m states.
+    Raises ParameterError for values that are not allowed, and for both or none of delta and omega; FileError for a file
+    that cannot be read or written.
     """
     import numpy as np
 

@@ -57,7 +57,7 @@ def columns_of(
 ) -> tuple[list[Column], dict[str, str]]:
     """Find the columns of a table whose quantity is known: the user named it, or the heading says it and its unit fits.
 
-    table : table with headings.
+    table : :class:`Table`, table with headings.
     named : quantity -> heading, of columns that the user named; keys of :data:`.vocabulary.UNITS`, here and below.
     overruling : quantity -> unit in place of that of the file.
     defaults : quantity -> unit where the file gives none.
@@ -89,7 +89,7 @@ def columns_of(
 def _index(table: Table, heading: str) -> int:
     """Return the index of the column that the user named by its heading.
 
-    table : table with headings.
+    table : :class:`Table`, table with headings.
     heading : the heading, with its unit or without.
     Raises ParameterError, with the headings of the table, where none is it.
     """
@@ -126,8 +126,8 @@ def numbers_of(table: Table, column: Column) -> Numbers:
 
     Logarithms become numbers, frequencies in cycles angular ones, and phase angles their tangents.
 
-    table : the table that has the column.
-    column : a column whose quantity is known.
+    table : :class:`Table`, the table that has the column.
+    column : :class:`Column`, a column whose quantity is known.
     Returns :class:`Numbers` in rad/s, Pa, 1/Pa, degrees Celsius, or dimensionless for tan delta: the values, (n,), and
     half a unit of the last digit that the file states of each, converted in the same way, (n,).
     Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed: of

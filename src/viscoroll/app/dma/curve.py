@@ -206,7 +206,7 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is that of a straight line in ln E' over ln omega through the
     neighbours of a point: those within a quarter of a decade, and at least the five nearest.
 
-    curve : storage and loss modulus, n points.
+    curve : :class:`Curve`, storage and loss modulus, n points.
     Returns :class:`KramersKronig`: the measured divided by the computed loss modulus at each point, and their median.
     """
     x, y = np.log(curve.omega), np.log(curve.storage)

@@ -165,25 +165,28 @@ def fit_relaxation(
     t : times since the strain was applied, s, > 0, (n,), in any order.  Leave out those of the ramp: E(t) is that of a
         step.
     relaxation : relaxation modulus at them, stress over strain, > 0, (n,), in one unit.
-    modes : largest number of modes; None: as few as ``misfit`` needs, or as few as come within 5 % of the best.
-    source : source of the data, in words; it stays with the material.
+    modes : largest number of modes, an int >= 1; None: as few as ``misfit`` needs or, where it cannot be reached, as
+        few as come within 5 % of the least misfit.
     misfit : root mean square of the relative errors that E(t) may have, dimensionless (0.003 is 0.3 %).  Rolling
-        resistance is made of E'', which follows from the slope of E(t): of the usual slopes 1 % of E(t) leaves
-        10 to 30 % of E'' open, 0.3 % some 5 %.
+        resistance is made of E'', which follows from the slope of E(t).  For typical slopes an error of 1 % in E(t)
+        means 10 to 30 % in E'', one of 0.3 % means about 5 %.
     temperature : temperature of the test, degrees Celsius, or None where it is not known; it stays with the material.
     mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
+    source : source of the data, in words; it stays with the material.
 
     Returns
     -------
     RelaxationFit
-        ``print`` shows a report.  The material is taken as measured at rates between 1 over the last and 1 over the
-        first time.
+        ``print`` shows a report.  Its E is in the unit of the data, its times are in s.  The material is taken as
+        measured at rates between 1 over the last and 1 over the first time.  More than 1000 points are thinned to the
+        means of 500 logarithmic bins first, to which the misfit then belongs.
 
     Raises
     ------
     ParameterError
-        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a modulus that rises,
-        or does not level off at long times; ``modes``, ``misfit`` or ``mode`` that are not allowed.
+        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; times whose ratio is
+        too large for one series; a modulus that rises, or does not level off at long times; ``modes``, ``misfit``,
+        ``mode`` or ``temperature`` that are not allowed.
 
     Examples
     --------
@@ -213,7 +216,7 @@ def _mode(mode: Any) -> Mode:
 def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
     """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation` have in common.
 
-    curve : measured moduli over frequency or time, all points.
+    curve : a :class:`Curve` or :class:`Relaxation`, all points that were measured.
     modes : largest number of modes; None: as few as the misfit needs.
     misfit : root mean square of the relative errors that each modulus may have, > 0.
     Returns (the data that were fitted, thinned if they have more than 1000 points; the arguments of

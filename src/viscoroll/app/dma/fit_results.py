@@ -117,10 +117,11 @@ class SeriesFit(Result):
     def wider(self) -> tuple[Any, ...]:
         """Two fits on grids of times that are one and two decades wider on either side, with a mode at every time.
 
-        They show what the data leave open outside their range.  Each is a
-        :class:`.spectrum_sensitivity.ExtendedGridFit` with ``decades``, ``E``, ``alpha``, ``prony`` and, at
-        dimensionless speeds ``V`` (kappa V) at which the transit frequency lies within the data, ``M`` (kappa M) beside
-        ``M_fit`` at the same load.  They are computed at the first access.
+        They show which properties the data do not determine.  A tuple of two
+        :class:`.spectrum_sensitivity.ExtendedGridFit`, with ``decades`` = 1 and 2.  Each has its long-time modulus
+        ``E``, ``alpha`` and series ``prony``, and three arrays of one shape, dimensionless: speeds ``V`` (kappa V)
+        whose transit frequency lies within the data, ``M`` (kappa M) of the wider fit at these speeds, and ``M_fit``,
+        that of the present fit at the same load.  They are computed at the first access.
         """
         from .spectrum_sensitivity import fit_on_extended_grid
 

@@ -133,7 +133,7 @@ def master_curve(
 def undetermined_shifts(shifts: Shifts) -> list[str]:
     """Return the pairs of neighbouring curves whose shift their overlap leaves open, in words for a report.
 
-    shifts : shift factors of the curves.
+    shifts : :class:`Shifts`, shift factors of the curves.
     Returns a text for each pair whose ``freedom`` is above :data:`LARGEST_FREEDOM` decades, with both temperatures and
     the range of the shift; an empty list where there is none, as of factors that were given.
     """
@@ -177,7 +177,7 @@ class _LogCurve:
         """Take logarithms, average repeated frequencies, and interpolate: by a cubic spline, of two or three points by
         PCHIP.
 
-        curve : storage and loss modulus.
+        curve : :class:`Curve`, storage and loss modulus.
         on : "storage" or "both": the moduli that are kept.
         Raises ParameterError for a single frequency.
         """

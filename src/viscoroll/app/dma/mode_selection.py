@@ -72,7 +72,7 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, t
 
     The slow end of a grid is shortened until the fit has a long-time modulus; a grid without one is left out.
 
-    data : measured moduli.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     target : largest misfit of each row, dimensionless; None: all grids are fitted.
     Returns [(spectrum, (shortest, longest time of its grid, s)), ...], in the order of the grids.  If a grid reaches
     the target it is the last; the list is empty where no grid leaves a long-time modulus.
@@ -104,8 +104,8 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
 def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
     """Return whether no row of the data has a misfit above the target.
 
-    data : measured moduli.
-    spectrum : the fit.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+    spectrum : :class:`Spectrum`, the fit.
     target : largest misfit of each row, a root mean square of relative errors, dimensionless.
     """
     return max(misfits(data, spectrum)) <= target
@@ -114,8 +114,8 @@ def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
 def _size(data: Data, spectrum: Spectrum) -> float:
     """Return the root of the sum of the squared misfits of all rows, by which fits are compared.
 
-    data : measured moduli.
-    spectrum : the fit.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+    spectrum : :class:`Spectrum`, the fit.
     Returns a dimensionless number.
     """
     return math.hypot(*misfits(data, spectrum))
@@ -126,8 +126,8 @@ def _leave_out_mode(
 ) -> Spectrum | None:
     """Return a spectrum with one mode less, with a mode left out or two neighbours merged, or None.
 
-    data : measured moduli.
-    spectrum : spectrum of the data from which a mode is left out.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+    spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out.
     ends : (shortest, longest) time that is allowed, s.
     good : function of a spectrum that returns whether it is acceptable; None: any is, and the best is returned.
     Returns the first acceptable one of the three best candidates, with times refined unless the best is acceptable as
@@ -146,7 +146,8 @@ def _leave_out_mode(
 def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
     """Return the candidates for one mode less: times with one left out, or with two neighbours replaced by their mean.
 
-    spectrum : the spectrum, of n modes, n >= 1; means are of the logarithms of its times, weighted by strength.
+    spectrum : :class:`Spectrum`, the spectrum, of n modes, n >= 1; means are of the logarithms of its times, weighted
+        by strength.
     Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each.
     """
     tau, strength = spectrum.tau, spectrum.strength

@@ -225,7 +225,7 @@ def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: 
     Frequencies agree to 0.1 %, moduli and tan delta to 1 %, temperatures to 1 K, each beside the rounding of the
     digits.
 
-    table : the table that has the columns.
+    table : :class:`Table`, the table that has the columns.
     quantity : name of their quantity (:attr:`.column_quantities.Column.quantity`), as "frequency" or "storage".
     alike : the columns of this quantity, at least one.
     others : heading -> why the column is left out.  It is changed: all columns but the first are added.
@@ -270,7 +270,7 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     all rows are of one temperature, two of one frequency whose storage moduli differ by more than a factor of 1.25.
 
     table : the table from which the record was read; its lines are named in the message.
-    record : the moduli in the order of the rows.
+    record : :class:`DynamicModuli`, the moduli in the order of the rows.
     Raises FileError for each of the three; returns nothing.
     """
     omega, n = record.omega, record.omega.size

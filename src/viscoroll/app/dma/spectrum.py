@@ -38,7 +38,8 @@ class Spectrum(NamedTuple):
     def modulus(self, data: Data) -> Floats:
         """Return the moduli of the spectrum at the frequencies or times of the data, in the unit of E.
 
-        data : measured moduli at n points; only their frequencies or times are used.
+        data : measured moduli, a :class:`Curve` or a :class:`Relaxation` at n points; only their frequencies or times
+            are used.
         Returns shape (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of
         relaxation.
         """
@@ -48,7 +49,7 @@ class Spectrum(NamedTuple):
 def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
     """Return the spectrum, in the units of the data, of a dimensionless series.
 
-    prony : strengths divided by the long-time modulus, times over T_ref.
+    prony : :class:`Prony`, strengths divided by the long-time modulus, times over T_ref.
     E : long-time modulus, in the unit of the data.
     T_ref : unit of the times of the series, s.
     """
@@ -72,7 +73,7 @@ def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
 def _residuals(data: Data, values: Floats) -> Floats:
     """Return the relative errors of all moduli, one row after the other.
 
-    data : measured moduli, ``rows`` of them at n points.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`, ``rows`` of them at n points.
     values : [long-time modulus, strengths, times], the first two in the unit of the data, times in s; (1 + 2 modes,).
     Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
     """
@@ -83,8 +84,8 @@ def _residuals(data: Data, values: Floats) -> Floats:
 def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
     """Return the misfit of each row of the data: the root mean square of its relative errors.
 
-    data : measured moduli.
-    spectrum : the fit.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+    spectrum : :class:`Spectrum`, the fit.
     Returns dimensionless numbers: (storage, loss) of a :class:`.curve.Curve`, (relaxation,) of relaxation.
     """
     errors = _residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(len(data.constant), -1)
@@ -94,7 +95,7 @@ def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
 def on_times(data: Data, tau: Floats) -> Spectrum:
     """Solve the least squares with non-negative strengths on fixed times; modes without strength are left out.
 
-    data : measured moduli.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     tau : times of modes, s, in any order, shape (modes,).
     Returns the spectrum, its times descending; its long-time modulus is at least :data:`FLOOR` of the lowest modulus,
     and its number of modes may be smaller than that of ``tau``, down to 0.
@@ -122,8 +123,8 @@ def has_plateau(data: Data, E: float) -> bool:
 def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
     """Refine a spectrum by varying its times too, then fit the strengths on the times found.
 
-    data : measured moduli.
-    spectrum : spectrum from which the search starts, all strengths > 0.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+    spectrum : :class:`Spectrum`, spectrum from which the search starts, all strengths > 0.
     ends : (shortest, longest) time that is allowed, s.
     calls : largest number of evaluations of the residuals.
     Returns the refined spectrum, from which modes without strength are left out; ``spectrum`` itself if it has no
@@ -157,7 +158,7 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
     The method solves the normal equations: an SVD of some hundred rows takes ten times as long on several threads as
     on one, and the MINPACK of SciPy 1.17 gives other last digits from call to call.
 
-    data : measured moduli.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     logs : start, logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
     low, high : bounds of the logarithms, of the same shape; a start outside is moved to the bound.
     calls : largest number of evaluations of the residuals.
@@ -201,7 +202,7 @@ def _slopes(logs: Floats, data: Data) -> Floats:
     """Return the derivatives of the residuals by the logarithms of long-time modulus, strengths and times.
 
     logs : logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
-    data : measured moduli, ``rows`` of them at n points.
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`, ``rows`` of them at n points.
     Returns shape (rows n, 1 + 2 modes), dimensionless, in the order of :func:`_residuals` and of ``logs``.
     """
     values, count = np.exp(logs), logs.size // 2

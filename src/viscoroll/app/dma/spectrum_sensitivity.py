@@ -56,7 +56,7 @@ def fit_on_extended_grid(
     data allow them.
 
     data : measured moduli, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`.
-    prony : series of the fit, strengths divided by E, times over T_ref.
+    prony : :class:`Prony`, series of the fit, strengths divided by E, times over T_ref.
     E, T_ref : long-time modulus of the fit, in the unit of the data, and unit of its times, s.
     grid : (shortest, longest) time of its grid, s.
     decades : number of decades by which the grid becomes wider on either side.
@@ -74,7 +74,7 @@ def fit_on_extended_grid(
 def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats, Floats]:
     """Compute the rolling moment of free rolling at speeds whose transit frequency |V|/(lam l0) lies within the data.
 
-    prony : series of the fit.
+    prony : :class:`Prony`, series of the fit.
     slow, fast : lowest and highest frequency of the data, times T_ref.
     Returns (kappa V, kappa M), (n,) each, dimensionless, four speeds a decade; n may be 0.
     """

@@ -109,7 +109,7 @@ def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
 def nearest(base: float, temperatures: Floats) -> int:
     """Return the index of the set nearest to a temperature, which must not lie outside of all sets.
 
-    base : the temperature, degrees Celsius.
+    base : the temperature for which the set is sought, degrees Celsius, a number.
     temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
     Returns an index of ``temperatures``.
     Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE` below the first set or above the last.
@@ -124,7 +124,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     """Return shift factors that the user lists as factors of the sets, which are 1 at the reference, and the reference.
 
     shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves.
-    sets : the sets of the points.
+    sets : :class:`Sets`, the sets of the points.
     base : reference, degrees Celsius; None: the temperature of a set whose factor is 1, else the middle set.
     Returns (factors of the sets, dimensionless, (sets,), divided by that of the reference; reference, degrees Celsius).
     Raises ParameterError for factors that are not > 0, of another number than the curves, or different at one

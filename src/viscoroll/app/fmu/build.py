@@ -151,7 +151,7 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
     folder: where law.h is, and fmu.c, vr_roll.h, the headers of the standard, stubs.h and model.h are written.
     headers: folder of the headers of the standard.
     model: "Roller" or "ContactElement".
-    version: version of the standard, 2 or 3.
+    version: version of the FMI standard, the int 2 or 3.
     constants: C text of model.h, to which the token is added.
     Returns the GUID or instantiation token that the description and the library share: a digest of all sources, as
     "{8-4-4-4-12}" hexadecimal digits.
@@ -199,7 +199,7 @@ def _stubs(source: str, header: str, version: int) -> str:
 
     source: text of fmu.c.
     header: text of the standard's header of function types.
-    version: version of the standard, 2 or 3.
+    version: version of the FMI standard, the int 2 or 3.
     Returns the C text, a line a function.
     """
     lines = []

@@ -25,7 +25,7 @@ _TOLERANCE = "1e-5"
 def model_description(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
     """Return the text of modelDescription.xml, in which a tool finds the variables and capabilities of an FMU.
 
-    version: version of the standard, 2 or 3.
+    version: version of the FMI standard, the int 2 or 3.
     name: name of the model, a key of MODELS: "Roller" or "ContactElement".
     starts: name -> start value of the variables that can be set, in their units.
     token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.
@@ -66,10 +66,10 @@ def _as_text(root: Element) -> str:
 def _add_interfaces(root: Element, version: int, name: str, model: Model) -> None:
     """Add the interfaces that the FMU has: ModelExchange and, of a model with states, CoSimulation.
 
-    root: element fmiModelDescription, to which they are added.
+    root: :class:`Element`, element fmiModelDescription, to which they are added.
     version: version of the standard, 2 or 3; of 2 the source file is added too.
     name: name of the model and of its library.
-    model: the model, of which only ``states`` is used.
+    model: :class:`Model`, the model, of which only ``states`` is used.
     """
     steps = {2: {"completedIntegratorStepNotNeeded": "true"}, 3: {"needsCompletedIntegratorStep": "false"}}
     interfaces = {"ModelExchange": steps[version]}
@@ -86,8 +86,8 @@ def _add_variable(
 ) -> None:
     """Add a variable to modelDescription.xml.
 
-    parent: element ModelVariables.
-    version: version of the standard, 2 or 3.
+    parent: :class:`Element`, element ModelVariables.
+    version: version of the FMI standard, the int 2 or 3.
     variable: variable to add; a name der_NAME makes it the rate of the variable NAME.
     references: name -> value reference, a number as text, of all variables of the model.
     starts: name -> start value, in the unit of the variable, of those that can be set.
@@ -111,9 +111,9 @@ def _add_variable(
 def _add_structure(parent: Element, version: int, model: Model, references: dict[str, str]) -> None:
     """Add the lists of outputs, of rates of the states, and of initial unknowns, which are the two together.
 
-    parent: element ModelStructure.
-    version: version of the standard, 2 or 3.
-    model: the model.
+    parent: :class:`Element`, element ModelStructure.
+    version: version of the FMI standard, the int 2 or 3.
+    model: :class:`Model`, the model.
     references: name -> value reference, a number as text.
     """
     outputs = [references[variable.name] for variable in model.variables if variable.causality == "output"]

@@ -90,8 +90,8 @@ class Identification(Result):
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
         """Collect the values and statistics of the best fit.
 
-        problem : the least squares, with its standard deviations as estimated at the best minimum.
-        found : minima of chi2, the best first, at least one.
+        problem : :class:`Problem`, the least squares, with its standard deviations as estimated at the best minimum.
+        found : list of :class:`Minimum`, the minima of chi2, the best first, at least one.
         """
         self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)

@@ -149,7 +149,7 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
     The standard deviations of ``problem`` that were not given are estimated on the way, and are those of the best
     minimum at the end.
 
-    problem : the least squares.
+    problem : :class:`Problem`, the least squares.
     count : number of searches, the first from the start of the problem; if that goes far, two more are added.
     seed : seed of the other starts.
     progress : whether a progress bar is drawn on standard error, after one second.
@@ -178,7 +178,7 @@ _chi2 = attrgetter("chi2")
 def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
     """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
 
-    problem : the least squares.
+    problem : :class:`Problem`, the least squares.
     count : number of starts plus 1, as the first search began from the start of the problem; 1: nothing is yielded.
     seed : seed of the hypercube.
     Yields coordinates of a start, (unknowns,).
@@ -198,7 +198,7 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
 
     Other valleys of chi2 lie beyond ridges across that direction.
 
-    problem : the least squares.
+    problem : :class:`Problem`, the least squares.
     u : coordinates of the minimum, (unknowns,).
     Returns two vectors of coordinates within the ranges, (unknowns,) each; [] where the minimum is within 0.6 of the
     start in every coordinate, and is then taken to be the only one.
@@ -217,7 +217,7 @@ def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
     At three points between them chi2 is minimised with the coordinate that differs most fixed and all others free; a
     ridge is a minimum 0.5 above the higher of the two.
 
-    problem : the least squares.
+    problem : :class:`Problem`, the least squares.
     first, other : the minima; True if their coordinates are the same to 0.01.
     """
     difference = other.u - first.u

@@ -111,7 +111,7 @@ class Problem:
         """Collect the data of all records and find the active unknowns.
 
         cylinder : cylinder with the values that are fixed.
-        unknowns : unknowns with start, range and prior.
+        unknowns : list of :class:`Unknown`, with start, range and prior.
         records : name -> record; all of them have values, or none.
         robust : whether outliers count less.
         shifts : "material" or "base" -> shift factor a_T over temperature in degrees Celsius.
@@ -289,7 +289,7 @@ class Problem:
 
         ``sigma`` is changed in place; there are at most 20 rounds, and none where all standard deviations were given.
 
-        best : minimum with the present standard deviations.
+        best : :class:`Minimum`, minimum with the present standard deviations.
         Returns the minimum with the estimated ones; ``best`` itself if none is estimated.
         """
         estimated = [column for column in self.columns if column.estimated]

@@ -102,8 +102,8 @@ class Likelihood:
         To the inverse covariance of the data that of a uniform distribution over the range of each unknown is added,
         which bounds the standard deviation of what the data leave open.
 
-        problem : the least squares.
-        found : minima, the best first, at least one.
+        problem : :class:`Problem`, the least squares.
+        found : list of :class:`Minimum`, the best first, at least one.
         """
         self.problem, self.best, (u, _) = problem, found[0], found[0]
         J = problem.weighted(u)[1]
@@ -118,11 +118,12 @@ class Likelihood:
         """Return the interval of a combination of coordinates within which chi2 rises by no more than a bound.
 
         The combination is the sum of the coordinates, each times its power.  As most coordinates are logarithms of
-        unknowns, it is the logarithm of a product of powers.  Beyond the ends of the interval the search goes on from
-        other minima, the start, and the ends of other unknowns.  Results are kept until ``ends`` changes.
+        unknowns, it is the logarithm of a product of powers.  The range in which chi2 is below the bound may consist of
+        several pieces; therefore the search continues beyond the ends of the first one, from other minima, the start,
+        and the ends of other unknowns.  Results are kept until ``ends`` changes.
 
         powers : powers of the coordinates, shape (unknowns,).
-        delta_chi2 : the bound, dimensionless.
+        delta_chi2 : the bound: largest chi2 minus that of the best minimum, dimensionless, > 0.
         Returns the :class:`Profile`.
         """
         return self._profiles(delta_chi2, *powers.tolist())
@@ -133,7 +134,7 @@ class Likelihood:
         Where a side is open, all are computed again with the ends of the others as further starts, which ``ends``
         keeps.
 
-        delta_chi2 : bound of the rise of chi2 above the best.
+        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
         Returns index of the unknown -> :class:`Profile`, whose ends are those of its coordinate.
         """
         found = {i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active}
@@ -150,7 +151,7 @@ class Likelihood:
 
         An interval of a coordinate is wide above 2 (a factor of e^2) or half of the range; correlated is beyond 0.95.
 
-        delta_chi2 : bound of the rise of chi2 above the best.
+        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
         Returns the indices, ascending; [] where all are determined.
         """
         wide = []
@@ -168,7 +169,7 @@ class Likelihood:
         that hold near the best alone but are much narrower.
 
         which : indices of the undetermined unknowns.
-        delta_chi2 : bound of the rise of chi2 above the best.
+        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
         Returns a list of :class:`Product`; [] for fewer than two unknowns, or where no product is determined.
         """
         if len(which) < 2:
@@ -186,7 +187,7 @@ class Likelihood:
         interval.
 
         family : powers of the coordinates of each product, shape (unknowns,) each, the best determined first.
-        delta_chi2 : bound of the rise of chi2 above the best.
+        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
         near : whether intervals are by slopes at the best, else by profiles.
         Returns a list of :class:`Product`, in the order of the family, [] where the first is open or wider than a
         factor of e.
@@ -210,8 +211,8 @@ class Likelihood:
 
         Exponents are rounded as far as the points keep nearly the same spread.
 
-        which : indices of the unknowns.
-        delta_chi2 : bound of the rise of chi2 above the best, within which points fit.
+        which : indices of the unknowns among all, ascending.
+        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0: within it points fit.
         Yields powers of the coordinates, shape (unknowns,), the largest 1 and those of other unknowns 0; the best
         determined combination first.
         """
@@ -227,7 +228,7 @@ class Likelihood:
     def _combinations_by_slopes(self, which: list[int]) -> Iterator[Floats]:
         """Yield combinations of unknowns by the principal axes of their covariance, the best determined first.
 
-        which : indices of the unknowns.
+        which : indices of the unknowns among all, ascending.
         Yields powers of the coordinates, shape (unknowns,), rounded to 0.01, the largest 1.
         """
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
@@ -241,7 +242,7 @@ class ProfileWalk:
 
     likelihood, problem, best : chi2 about the best minimum, the least squares, and the best minimum.
     powers : powers of the combination, shape (unknowns,).
-    delta_chi2 : bound of the rise of chi2 above the best.
+    delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
     sd : standard deviation of the combination by slopes.
     slope : change of the coordinates with the combination, along the covariance, shape (unknowns,).
     visited : minima that were found.
@@ -250,9 +251,9 @@ class ProfileWalk:
     def __init__(self, likelihood: Likelihood, powers: Floats, delta_chi2: float) -> None:
         """Begin at the best minimum.
 
-        likelihood : chi2 about the best minimum.
+        likelihood : :class:`Likelihood`, chi2 about the best minimum.
         powers : powers of the combination whose profile is computed, (unknowns,).
-        delta_chi2 : bound of the rise of chi2 above the best, dimensionless.
+        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
         """
         self.likelihood, self.problem, self.best = likelihood, likelihood.problem, likelihood.best
         self.powers, self.delta_chi2, along = powers, delta_chi2, likelihood.cov @ powers
@@ -318,7 +319,7 @@ class ProfileWalk:
         """Find the distance of the combination at which chi2 has risen to the bound.
 
         reach : distance of the bound of the ranges from the best minimum; its sign is that of the side.
-        start : a minimum at which chi2 is below the bound.
+        start : :class:`Minimum`, a minimum at which chi2 is below the bound.
         Returns (the signed distance, None if chi2 stays below up to ``reach``; the minimum there).
         """
         from scipy.optimize import brentq

@@ -64,11 +64,15 @@ class Record:
     labels: Labels | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check coordinates, values and standard deviations, convert them to SI units and give them one shape.
+        """Check the fields, convert them to SI units, and replace them by the results.
 
-        The fields are replaced by the results: arrays of one shape, (n,) at least, and ``sigma`` as the class says.
+        Coordinates and values become arrays of one shape, at least one-dimensional.  ``sigma``, given as one number,
+        array or mapping, becomes a dict: quantity -> array of that shape, or None where it is to be estimated.
+        ``load``, ``temperature``, and ``m``, ``V0``, ``omega0`` of those records that have them, become floats; None
+        and omega0 = "rolling" stay.
         Raises ParameterError for values that are not finite, of another unit, of no points, or of shapes that do not go
-        together, for sigma <= 0, and for a name with a colon.
+        together, for sigma, load or m <= 0, for a quantity in sigma that the record does not have, and for a name that
+        is no text or has a colon.
         """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
@@ -193,10 +197,16 @@ class Resistance(Record):
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict rolling moment and pulling force, the torque of the bearing included.
 
+        Parameters
+        ----------
         cylinder : the cylinder with the present values of the unknowns.
         values : name -> value of "brake", N m/m, and "drag", N m s/m, each 0 where it is missing; other names are not
             used.
-        Returns {"M": moments, N m/m; "F": forces, N/m}, in the shape of the speeds of the record.
+
+        Returns
+        -------
+        dict[str, Floats]
+            {"M": moments, N m/m; "F": forces, N/m}, in the shape of the speeds of the record.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -236,9 +246,15 @@ class Traction(Record):
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict the traction.
 
+        Parameters
+        ----------
         cylinder : the cylinder with the present values of the unknowns.
         values : not used: bearing and record have no unknowns that change the traction.
-        Returns {"Q": tractions, N/m}, in the shape of the points of the record.
+
+        Returns
+        -------
+        dict[str, Floats]
+            {"Q": tractions, N/m}, in the shape of the points of the record.
         """
         return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
 
@@ -345,11 +361,17 @@ class Coastdown(Record):
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict V, omega and x, and for each point whether it is in full slip.
 
+        Parameters
+        ----------
         cylinder : the cylinder with the present values of the unknowns.
         values : name -> value of "brake", N m/m, and "drag", N m s/m, and of "V0", "omega0" and "t0" in place of those
             of the record; other names are not used.
-        Returns arrays over the times, (n,), by name: "V" in m/s, "omega" in rad/s, "x" in m, "slips" as truth values,
-        False before the release.
+
+        Returns
+        -------
+        dict[str, Floats]
+            Arrays over the times, (n,), by name: "V" in m/s, "omega" in rad/s, "x" in m, "slips" as truth values,
+            False before the release.
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

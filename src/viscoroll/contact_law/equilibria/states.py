@@ -72,7 +72,7 @@ class States(NamedTuple):
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
         """Make the states from the law at them: give V, Q and M their signs, and add omega and the eigenvalues.
 
-        loads : the loads, of which the gains and j are used.
+        loads : :class:`Loads`, the loads, of which the gains and j are used.
         load : index of the load of each state, (n,).
         sign : sign of V, 1.0 or -1.0, (n,).
         answers : rows of :class:`Field` with the slopes of the law from row 6 on, (10, n), in a frame where V > 0; not
@@ -138,7 +138,7 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
     slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n), dimensionless, finite.
-    gains : gains of force and torque on V and omega.
+    gains : :class:`Gains`, gains of force and torque on V and omega.
     j : moments of inertia divided by m R^2, (n,).
     Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower one, imaginary part
     of the slower (>= 0; the faster has its negative).  Of a complex pair both real parts are equal, of real eigenvalues

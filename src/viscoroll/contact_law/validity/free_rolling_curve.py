@@ -36,7 +36,7 @@ class Curve:
     ----------
     ln_u : points of the splines, ln u, ascending, (points,).
     modes : strengths J and retardation times T of the creep modes, slowest first, (modes,) each.
-    alpha : instantaneous divided by long-time stiffness, > 1.
+    alpha : instantaneous divided by long-time stiffness, a number > 1, dimensionless.
     """
 
     def __init__(self, material: float | Prony) -> None:

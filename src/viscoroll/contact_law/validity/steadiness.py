@@ -67,16 +67,22 @@ class Steadiness(Assumption):
     def along(cls, free: FreeRolling, rolls: Any, x: Any, *, ends: bool) -> Steadiness:
         """Return the assumption ``steady`` of one motion, or of several.
 
-        free: states at the output times, (times,) or (times, motions); each gives the distance and the speeds of free
+        Parameters
+        ----------
+        free : states at the output times, (times,) or (times, motions); each gives the distance and the speeds of free
             rolling from there.
-        rolls: mask of the times at which motions are not in full slip, in the shape of u.  In full slip friction rules
+        rolls : mask of the times at which motions are not in full slip, in the shape of u.  In full slip friction rules
             the motion, and the unsteadiness counts as 0.
-        x: distances travelled in the unit of the caller, in the shape of u; NaN where they are not known.
-        ends: whether ``value`` is that of each motion as a whole, () or (motions,); else, for one motion only, it is
+        x : distances travelled in the unit of the caller, in the shape of u; NaN where they are not known.
+        ends : whether ``value`` is that of each motion as a whole, () or (motions,); else, for one motion only, it is
             the largest so far at each time, (times,).
-        Returns the assumption, whose value is dimensionless; its ``share``, () or (motions,), is the part of each
-        motion's distance with an error of V above 10 %, 0 for a motion that stays where it is, NaN where x is not
-        known.
+
+        Returns
+        -------
+        Steadiness
+            The assumption, whose value is dimensionless; its ``share``, () or (motions,), is the part of each
+            motion's distance with an error of V above 10 %, 0 for a motion that stays where it is, NaN where x is not
+            known.
         """
         free = replace(free, u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0))
         value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)

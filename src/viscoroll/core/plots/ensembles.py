@@ -55,8 +55,8 @@ _INITIAL_SYMBOLS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
 def distributions(data: xr.Dataset) -> Figure:
     """Draw a row for each quantity: its quantiles over time, and its histogram at the last time.
 
-    data: an ensemble, with each motion along the axis ``motion``; its summary, which has no histograms; or the
-        summaries of a run, with NAME_quantiles and NAME_histogram.
+    data: :class:`xr.Dataset`, an ensemble, with each motion along the axis ``motion``; its summary, which has no
+        histograms; or the summaries of a run, with NAME_quantiles and NAME_histogram.
     Returns the figure.  A quantity without times, or with a single one, has the fraction of motions below each value.
     """
     ensemble, about = "motion" in data.dims, data.attrs

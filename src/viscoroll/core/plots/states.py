@@ -156,7 +156,7 @@ def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
     added, so that a curve shows them between output times.
 
     Loads beside the schedule, as a feedback and that of the slope, have no jumps.
-    data: the motion; a schedule of NAME is in ``drive_NAME_time`` and ``drive_NAME``.
+    data: :class:`xr.Dataset`, the motion; a schedule of NAME is in ``drive_NAME_time`` and ``drive_NAME``.
     name: name of the quantity, NAME; without a schedule it stays as it is.
     Returns (times, values), (k,) each, times ascending, in the units of ``data``.
     """

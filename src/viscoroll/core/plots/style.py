@@ -35,7 +35,7 @@ THIN = {"color": "0.7", "linewidth": 0.6}
 def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2, **options: Any) -> tuple[Figure, Any]:
     """Make a figure without a change of matplotlib's global state.
 
-    title: line on top.
+    title: text on top of the figure.
     rows, columns: numbers of rows and columns of axes.
     height: of the figure, inches; its width is ``WIDTH``.
     options: keyword arguments of ``Figure.subplots``.
@@ -52,7 +52,7 @@ def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2,
 def new_panels(title: str, count: int, per_row: int, height: float, **options: bool) -> tuple[Figure, list[Any]]:
     """Make a figure with several axes of one size, row after row.
 
-    title: line on top.
+    title: text on top of the figure.
     count: number of axes, >= 1.
     per_row: largest number in a row.
     height: of each row, inches.

@@ -41,7 +41,7 @@ def _is_named(heading: str, name: str) -> bool:
 def find_column(table: Table, name: str) -> int | None:
     """Return the index of the column with a name, from 0; None where there is none.
 
-    table : table with headings.
+    table : :class:`Table`, table with headings.
     name : a heading as the file has it, which goes first, or a heading without its unit.
 
     Raises
@@ -60,7 +60,7 @@ def find_column(table: Table, name: str) -> int | None:
 def missing_column(table: Table, name: str) -> FileError:
     """Return the error where no column of a table has a name; it lists the headings of the table. It is not raised.
 
-    table: table with headings.
+    table: :class:`Table`, table with headings.
     name: the name that the user gives.
     """
     return FileError(
@@ -73,7 +73,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
 
     Parameters
     ----------
-    table : a table with headings.
+    table : :class:`Table`, a table with headings.
     name : name of the column, with its unit or without.
     wanted : unit of the result in pint's spelling, "1" of a ratio.
     unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the file, and

@@ -222,7 +222,7 @@ class _Layout:
         Where blanks separate, words of one name, as "storage modulus", go together if that gives as many cells as rows
         have.
 
-        line : the line.
+        line : :class:`Line`, the line.
         """
         if self.separator != " " or len(line.cells) == self.width:
             return [*line.cells]

@@ -120,7 +120,7 @@ def _evaluate_missing(
 ) -> Iterator[int]:
     """Submit the missing blocks, and yield the number of motions of each one that is finished and stored.
 
-    store: the store of the run.
+    store: :class:`Store`, the store of the run.
     shared: the store, or dask's reference to it, as tasks take it.
     pool, workers: executor, and its number of workers.
     advance: function (number of motions, on_disk=True) of the progress bar; it is called here for blocks that were on
@@ -151,7 +151,7 @@ def _evaluate_missing(
 def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Any]]:
     """Open the executor of the tasks; a context manager.
 
-    store: store of the run.
+    store: :class:`Store`, store of the run.
     cluster: None (threads of this process), "local" (processes of this machine) or the address of a scheduler.
     threads: number of threads or local processes; None: all cores available.
     Yields (executor; its number of workers; the store, or dask's reference to it, as tasks take it).

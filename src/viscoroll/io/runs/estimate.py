@@ -105,7 +105,7 @@ def _time_of_laws(run: Run) -> float:
     A cover is a layer of finite thickness, each of which has a law of its own.  One law, that of the largest thickness
     and nu, is computed, and its time multiplied by the number of laws.
 
-    run: the run, of half-spaces or of covers.
+    run: :class:`Run`, the run, of half-spaces or of covers.
     """
     from ...materials.law.cover_rows import cover_rows
     from ...materials.law.per_element import count_laws

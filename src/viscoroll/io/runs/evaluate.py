@@ -27,7 +27,7 @@ _STARTS = 1000
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
     """Return the inputs of the motions of a block: name -> values, (motions,), in the units of the run file.
 
-    run: the run.
+    run: :class:`Run`, the run.
     block: number of the block, from 0.
     most: number of motions at most, the first of the block; None: all of it.
     """
@@ -77,7 +77,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
     """Draw the inputs of a block, and compute its motions.
 
-    run: the run.
+    run: :class:`Run`, the run.
     block: number of the block, from 0.
     Returns (name of an input -> values, (motions,), in the units of the run file; the motions, an :class:`Ensemble`
     with the fields that the run needs).
@@ -95,7 +95,7 @@ def warn_of_materials(run: Run) -> None:
     start speed are compared with the bands.  In any case the motion of the median inputs is computed, which may warn
     too.
 
-    run: the run.
+    run: :class:`Run`, the run.
     Returns nothing; warnings are those of :func:`viscoroll.ensemble`.
     """
     medians = run.inputs.medians

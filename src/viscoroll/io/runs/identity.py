@@ -26,7 +26,7 @@ def about(run: Run) -> dict[str, Any]:
 
     They are title, versions, size, seed, design and method of the run, and the text of its file.
 
-    run: the run.
+    run: :class:`Run`, the run.
     """
     return provenance("Ensemble of motions of a viscoelastic cylinder") | {
         "versions": json.dumps(_software()),
@@ -61,7 +61,7 @@ def identity(run: Run) -> str:
     Two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata depend
     on the number of motions, or ``n`` changes their method or the size of their blocks.
 
-    run: the run.
+    run: :class:`Run`, the run.
     Returns a SHA-256, 64 hexadecimal digits.
     """
     n = run.settings.n if run.settings.design == "latin" else None
@@ -72,8 +72,8 @@ def identity(run: Run) -> str:
 def refuse_another(root: Path, run: Run, record: Record) -> None:
     """Raise FileError if a store belongs neither to a run nor to the same run with fewer motions.
 
-    root: folder of the store.
-    run: the run.
+    root: path of the folder of the store.
+    run: :class:`Run`, the run.
     record: a record of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
     """
     of_a_block = record.summary is not None
@@ -92,8 +92,8 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
 def _no_extension(before: Run, run: Run) -> str:
     """Return why a store cannot be extended, and what to change in the run file, as words of a message; "" if it can.
 
-    before: the run of the store.
-    run: the same run with another ``n``.
+    before: :class:`Run`, the run of the store.
+    run: :class:`Run`, the same run with another ``n``.
     """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:

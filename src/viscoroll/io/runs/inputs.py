@@ -146,10 +146,11 @@ class Inputs:
         return self.medians | ends
 
     def largest(self, name: str) -> float:
-        """Return the largest magnitude of a start speed, apart from a millionth of the draws at each end.
+        """Return the largest magnitude of a start speed that a run file lets occur.
 
         name: "V0" or "omega0", which the file must give.
-        Returns a number in the unit of the file.
+        Returns a float in the unit of the file: of a distribution without a millionth of the draws at each end; of a
+        column of a data file its largest magnitude; of a fixed number that.
         """
         start = self.content["start"][name]
         return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())

@@ -85,7 +85,7 @@ def _decode_array(kind: Any, value: Any) -> np.ndarray:
 def damaged(root: Path, record: Record) -> list[str]:
     """Return the files of a record that are missing or differ from their digest; [] if all is well.
 
-    root: folder of the store.
+    root: path of the folder of the store.
     record: the record, whose ``files`` are paths below ``root`` with their SHA-256.
     """
     return [name for name, digest in record.files.items() if _digest(root / name) != digest]
@@ -124,7 +124,7 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
 def refuse_unreadable(root: Path) -> None:
     """Raise FileError if the folder of a store, or that of its records, exists and may not be read.
 
-    root: folder of the store.
+    root: path of the folder of the store.
     """
     for folder in (root, root / RECORDS):
         if folder.is_dir() and not os.access(folder, os.R_OK | os.X_OK):

@@ -130,7 +130,12 @@ class RunResults(Result):
         return pd.concat(tables)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return the title and the rows that print this result: folder, design, times, last moments, ends."""
+        """Return the title and the rows that print this result.
+
+        Returns (title; list of :class:`SummaryRow`: path of the folder; design and seed of the draws; number of output
+        times and the last one; mean and standard deviation of each quantity at the last time, or of a quantity of the
+        whole motion; how many motions ended in which way; whether every motion is kept, or summaries alone).
+        """
         data = self.summaries
         t, about = data["t"], data.attrs
         rows = [

@@ -305,7 +305,7 @@ def _check_inputs(run: Run) -> None:
 
     It checks the medians, the ends of each input with the others at their medians, and combinations of ends.
 
-    run: the run.
+    run: :class:`Run`, the run.
     The error states the line of the input, the range of its draws and the reason.
     """
     inputs, medians = run.inputs, run.inputs.medians
@@ -330,7 +330,7 @@ def _check_inputs(run: Run) -> None:
 def _refuses(run: Run, values: dict[str, Any]) -> bool:
     """Return whether one motion would be refused.
 
-    run: the run.
+    run: :class:`Run`, the run.
     values: name of an input -> number, for every input.
     """
     try:
@@ -343,7 +343,7 @@ def _refuses(run: Run, values: dict[str, Any]) -> bool:
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
     """Raise FileError, with its line, for motions that would be refused; nothing is rolled.
 
-    run: the run.
+    run: :class:`Run`, the run.
     values: name of an input -> number or (n,), for every input.
     advice: last words of the message.
     """
@@ -357,7 +357,7 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
 def _begin_motions(run: Run, values: dict[str, Any]) -> None:
     """Raise the error of motions that would be refused; nothing is rolled.
 
-    run: the run.
+    run: :class:`Run`, the run.
     values: name of an input -> number or (n,), for every input.
     Raises ParameterError for a roller, start, drive or setting that a motion refuses, FileError for a material.
     """

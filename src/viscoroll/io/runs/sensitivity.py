@@ -140,7 +140,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
     """Return the names of the uncertain inputs of a run, if Sobol indices are defined for them.
 
-    inputs: the inputs.
+    inputs: :class:`Inputs`, the inputs.
     Raises ParameterError if there are none, or they are not independent: correlated, or several columns of one file.
     """
     if not inputs.uncertain:
@@ -174,7 +174,7 @@ def _outcomes(
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
     """Roll all motions at points of the unit cube, block by block.
 
-    run: run that states the quantities.
+    run: :class:`Run`, run that states the quantities.
     cube: points of the unit cube, (input, motion).
     threads: number of threads; None: all cores available.
     progress: whether a progress bar is drawn.

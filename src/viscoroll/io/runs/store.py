@@ -192,7 +192,7 @@ class BlockContent(NamedTuple):
 def block_content(run: Run, block: int) -> BlockContent:
     """Roll the motions of a block, and make the files and the summary that the store keeps of it; nothing is written.
 
-    run: the run.
+    run: :class:`Run`, the run.
     block: number of the block, from 0.
     Returns the :class:`BlockContent`.
     Raises ParameterError for inputs that a motion does not allow.
@@ -216,7 +216,7 @@ def metadata(run: Run) -> dict[str, bytes]:
 def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
     """Return files of the group of all motions: the chunks of a block, or the metadata.
 
-    run: the run.
+    run: :class:`Run`, the run.
     columns: name -> values over (motion,) or (motion, t), in the units of the run.
     block: number of the block; None: return the metadata.
     Returns path below the store -> content.
@@ -236,7 +236,7 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
 
     run: run that states the fields.
     values: name of an input -> values, (n,).
-    motions: motions with these inputs.
+    motions: :class:`Ensemble`, motions with these inputs.
     Returns name -> values over (motion,) or (motion, t), in the units of the run; "flow" as 0 or 1.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
@@ -247,7 +247,7 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
 def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
     """Return the paths, below the store, of a part that are missing or damaged: its record, or files that it names.
 
-    root: folder of the store.
+    root: path of the folder of the store.
     name: "start", "end" or the number of a block.
     run, motions: identity and number of motions that the record must state.
     Returns [] if the part is complete; the record alone if that is missing, damaged or of another run.
@@ -268,7 +268,7 @@ def _record_path(root: Path, name: str | int) -> Path:
 def locked(root: Path) -> Iterator[None]:
     """Keep other processes from writing to a store; a context manager, which creates the folder.
 
-    root: folder of the store.
+    root: path of the folder of the store.
     Raises FileError if another process writes to it, or the disk does not allow locks; it does not wait.
     """
     from filelock import FileLock, Timeout

@@ -143,7 +143,7 @@ def _roller_of(what: Any) -> Scene | Cylinder:
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
     """Return all fields on the nodes of a grid.
 
-    roller: roller of the grid.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     axes: "V", "delta" and perhaps "alpha" -> nodes, (n,), in the units of the roller.
     method: "table" or "direct".
 
@@ -162,7 +162,7 @@ def _evaluate(
 ) -> dict[str, Floats]:
     """Return fields of the contact: name -> values in the shape of the points, in the units of the roller.
 
-    roller: roller of the grid.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     points: "V", and perhaps "delta" (else 0) and "alpha" (else that of the roller) -> arrays that broadcast.
     names: names of the fields.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
@@ -176,7 +176,7 @@ def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
     """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields of a grid.
 
     table: the grid; its fields get the attributes spline_error, spline_error_at, linear_error and linear_error_at.
-    roller: roller of the grid, for the exact values at random points.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)
     for key, linear in (("spline_error", False), ("linear_error", True)):
@@ -193,8 +193,8 @@ def errors_at(
 ) -> dict[str, Floats]:
     """Return the absolute errors of interpolation in a grid: field -> errors, (n,), in the unit of the field.
 
-    table: the grid.
-    roller: roller of the grid, of which the exact values are.
+    table: :class:`xr.Dataset`, the grid.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, of which the exact values are.
     points: axis -> coordinates, (n,), in the units of the grid.
     linear: whether interpolation is linear in the axes as they are, else by cubic splines.
     """
@@ -226,8 +226,8 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
 def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the law.
 
-    table: the grid, by whatever method it was computed.
-    roller: roller of the grid.
+    table: :class:`xr.Dataset`, the grid, by whatever method it was computed.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     Returns field -> difference, dimensionless, >= 0: relative at each node for :data:`RELATIVE_FIELDS`, else divided by
     the largest value of the field.
     """

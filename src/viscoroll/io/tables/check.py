@@ -118,12 +118,15 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
 
 
 def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
-    """Return two checks for each field of a grid: its nodes, and the splines between them.
+    """Compare a grid with the law: return two checks for each field, of its nodes and of the splines between them.
 
     table: dataset of a grid.
     count: number of random points.
     seed: seed of these points.
     source: path of the grid, for messages.
+    Returns a list of :class:`Check`, for each field [nodes, splines].  The difference at the nodes is relative, or, of
+    fields that may be 0, divided by the largest value of the field; that of the splines, at ``count`` random points, is
+    absolute.  The splines may be off by a multiple of the error that the grid states.
     Raises FileError for what is no grid, or a grid that is not of a scene with an alpha.
     """
     schema.check(table, source)

@@ -155,11 +155,13 @@ class Interpolant:
         return {name: np.broadcast_to(self._map_axis(name, array), shape) for name, array in arrays.items()}, shape
 
     def _map_axis(self, name: str, values: Floats) -> Floats:
-        """Return the coordinate in which the law is smooth, or, for linear interpolation and for delta, the value.
+        """Return the coordinate in which the law is smooth, for values on one axis of the grid.
 
-        name: name of the axis.
-        values: values on the axis, of any shape, which the result has too; of s, of an atlas, the coordinate is
-        s/(1 + sqrt(1 - s)), of the others ln.
+        name: name of the axis: "V", "delta" or "alpha" of a grid; "alpha", "kappa_V" or "s" of an atlas (a table over
+            alpha, kappa V and s in [0, 1]).
+        values: values on the axis, of any shape.
+        Returns an array of the same shape: ln of the values; s/(1 + sqrt(1 - s)) of s; the values themselves of delta,
+        and of all axes where the interpolation is linear.
         """
         if self._linear or name == "delta":
             return values

@@ -89,13 +89,16 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
 def measured_errors(
     table: LawTable | alpha_axis.LawAxis, count: int | None = None, seed: int = _SEED
 ) -> dict[str, float]:
-    """Return the largest relative error of every function at random points before its fast limit.
+    """Return the largest relative error of every tabulated function at random points below its fast limit.
 
-    No equation is solved: a random zeta gives both a speed and, by the formulas of the modes, the functions there.
+    For half-spaces no equation is solved: a random zeta (half the transit time of the contact) gives both a speed and,
+    by the closed formulas of the modes, the functions there.  The law of a cover is compared with a solve with more
+    terms at each speed.
 
     Parameters
     ----------
-    table : a law, or that of every alpha, of which random alphas are tested.
+    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.alpha_axis.LawAxis`, the law of every alpha, of
+        which random alphas are tested.
     count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave, and
         :data:`_COVER_SPEEDS` speeds for the law of a layer.
     seed : seed of the points and alphas, >= 0.
@@ -104,7 +107,8 @@ def measured_errors(
     -------
     dict of str to float
         Name of a function of the law -> largest relative error, dimensionless; of parts of M relative to M, of N to
-        its largest value.
+        its largest value.  The names are :data:`FUNCTIONS` for half-spaces; :data:`AXIS_FUNCTIONS` for every alpha,
+        where "m" has the sum of the errors of both parts of M; for a cover those of :func:`_measured_errors_of_cover`.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):
@@ -138,9 +142,9 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
 
     Errors of share and press follow from those of the other functions and of L = 2 kappa delta_star/mu.
 
-    table: the law.
+    table: :class:`LawTable`, the law.
     count: number of speeds, from a tenth of the slowest rate of the layer to ten times the fastest.
-    random: generator.
+    random: numpy Generator, which draws the speeds.
     Returns function -> largest relative error, dimensionless: "lam", "epsilon", "m_half_space", "m_cylinder" (both that
     of M), "share", "press", "limit" (of L), "free" (of delta_0, divided by L).
     """
@@ -165,7 +169,7 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
 def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
     """Return a function of a law from its coefficients, at arguments before its fast limit.
 
-    table: the law.
+    table: :class:`LawTable`, the law.
     function: index in :data:`FUNCTIONS`: 0 lam, 1 epsilon, 2 m_half_space, 3 m_cylinder, 4 N, 5 share, 6 press.
     x: kappa |V| for functions 0 to 4, v = 1/F(eta) for the others, (n,), dimensionless.
     Returns values, (n,), dimensionless.

@@ -39,7 +39,9 @@ SEGMENTS = (
 
 
 def segment_start(index: int) -> int:
-    """Return the position of the first coefficient of segment number ``index`` in the table."""
+    """Return the position, an int, of the first coefficient of segment number ``index``, from 0, in the flat table; of
+    ``index`` = the number of segments the size of the table.
+    """
     return sum((s.high - s.low) * BINS * COEFFICIENTS for s in SEGMENTS[:index])
 
 

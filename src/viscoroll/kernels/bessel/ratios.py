@@ -4,7 +4,7 @@
 
 Piecewise polynomials indexed by the bits of the argument (:mod:`layout`, no logarithm), the power series below them and
 the asymptotic series above, economized to the same degree: every positive double is served by one polynomial, chosen
-without a branch.  Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
+without a branch. Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
 ``tests/kernels/bessel/test_ratios.py``, against 60 digits, 2).  Slopes come from the Riccati equations
 
     r' = 1 - r/x - r^2      k' = k^2 + k/z - 1
@@ -60,7 +60,11 @@ K_LEAST = 2.0**-30
 
 
 def _r_power_series(terms: int) -> list[float]:
-    """Return ``terms`` coefficients c_n of r(x) = sum c_n x^(2n+1), from the Riccati equation."""
+    """Return coefficients of the power series of r(x) = sum c_n x^(2n+1), from the Riccati equation.
+
+    terms : int, number of coefficients, > 0.
+    Returns [c_0 = 0.5, c_1, ...], ``terms`` floats.
+    """
     c = [0.5]
     for n in range(1, terms):
         c.append(-sum(c[i] * c[n - 1 - i] for i in range(n)) / (2 * n + 2))
@@ -72,7 +76,7 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
 
     sign : int, -1 for r = I1/I0, 1 for k = K0/K1.
     terms : int, number of coefficients, > 0.
-    Returns the list [a_0 = 1, a_1, ...] of ``terms`` Decimals, in the digits of the current decimal context.
+    Returns [a_0 = 1, a_1, ...], a list of ``terms`` Decimals, in the digits of the current decimal context.
     """
     a = [Decimal(1)]
     for n in range(1, terms):
@@ -116,7 +120,7 @@ _LN2 = 0.69314718055994530942
 
 @kernel
 def _polynomial(row, t):
-    """Return the value at t of the polynomial number ``row``."""
+    """Return the value at t of the polynomial in row ``row``, an int, of the table ``_ROWS``; both are floats."""
     c = _ROWS[row]
     return fma(t, septic(t, c[1:]), c[0])
 
@@ -125,9 +129,10 @@ def _polynomial(row, t):
 def ratio_r(x):
     """Return the ratio r = I1/I0 of modified Bessel functions and 1 - r, both to full relative accuracy (2.4 ULP).
 
-    x : float, argument, >= 0, dimensionless; it may be infinite.
-    Returns (r, 1 - r), floats, dimensionless; (0, 1) at x = 0, (1, 0) at infinity, NaN for NaN.  1 - r is computed
-    without cancellation, so that it keeps its digits beyond 1e16, where r is rounded to 1.0.
+    x : argument, float >= 0, dimensionless; may be infinite.
+    Returns (r, 1 - r), floats, dimensionless: (0, 1) at x = 0; (1, 0) at infinity; NaNs of a NaN.  1 - r falls like
+    1/(2 x) and is computed without cancellation, so that it keeps its digits where r itself is rounded to 1.0, from x =
+    1e16 or so on.
     """
     inverse_x = 1.0 / x
     # selections, not branches: those would be mispredicted on scattered arguments
@@ -145,9 +150,10 @@ def ratio_r(x):
 def ratio_k(z):
     """Return the ratio k = K0/K1 of modified Bessel functions and 1 - k, both to full relative accuracy (2.4 ULP).
 
-    z : float, argument, >= 0, dimensionless; it may be infinite.
-    Returns (k, 1 - k), floats, dimensionless; (0, 1) at z = 0, (1, 0) at infinity, NaN for NaN.  1 - k is computed
-    without cancellation, so that it keeps its digits beyond 1e16, where k is rounded to 1.0.
+    z : argument, float >= 0, dimensionless; may be infinite.
+    Returns (k, 1 - k), floats, dimensionless: (0, 1) at z = 0; (1, 0) at infinity; NaNs of a NaN.  1 - k falls like
+    1/(2 z) and is computed without cancellation, so that it keeps its digits where k itself is rounded to 1.0, from z =
+    1e16 or so on.
     """
     if z < K_LEAST:
         k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
@@ -165,10 +171,10 @@ def ratio_k(z):
 def ratio_i2(x, r):
     """Return the ratio i2 = I2/I0 = 1 - 2 r/x of modified Bessel functions, to full relative accuracy (2.4 ULP).
 
-    x : float, argument, >= 0, dimensionless; it may be infinite.
-    r : float, r(x), the first result of :func:`ratio_r`; not read for x < 4, where i2 has a polynomial of its own.
-    Returns a float in [0, 1], dimensionless: 0 at x = 0, and for x so small that x^2/8 underflows; 1.0, by rounding,
-    beyond some 1e16; NaN for NaN.
+    x : argument, float >= 0, dimensionless; may be infinite.
+    r : float, r(x) of :func:`ratio_r`, of which i2 is formed from x = 4 on; not read below.
+    Returns a float, dimensionless: 0 at x = 0; less than 1 in exact numbers, but rounded to 1.0 from x = 4e16 or so on;
+    NaN of a NaN.
     """
     if not x < 4.0:  # or a NaN
         return 1.0 - 2.0 * r / x
@@ -179,12 +185,12 @@ def ratio_i2(x, r):
 
 @inline_kernel
 def slope_r(x, r, complement):
-    """Return r'(x) = (1 - r)(1 + r) - r/x.
+    """Return the slope of r = I1/I0 over x, r'(x) = (1 - r)(1 + r) - r/x.
 
-    x : float, argument, >= 0, dimensionless.
-    r, complement : floats, r and 1 - r at x, of :func:`ratio_r`.
-    Returns a float, dimensionless: 1/2 below x = 1e-8, to rounding; 0 at infinity.  At large x the two terms, 1/x each,
-    cancel to 1/(2 x^2), so that relative digits are lost in proportion to x.
+    x : argument, float >= 0, dimensionless.
+    r, complement : floats, r and 1 - r at x, of :func:`ratio_r`; not read below x = 1e-8.
+    Returns a float, dimensionless, from 0.5 at x = 0 (and, to rounding, below 1e-8) down to 0.  At large x, where the
+    slope falls like 1/(2 x^2), the two terms cancel: its relative error is x roundings or so.
     """
     if x < 1e-8:
         return 0.5
@@ -193,11 +199,11 @@ def slope_r(x, r, complement):
 
 @inline_kernel
 def slope_k(z, k, complement):
-    """Return k'(z) = k/z - (1 - k)(1 + k).
+    """Return the slope of k = K0/K1 over z, k'(z) = k/z - (1 - k)(1 + k).
 
-    z : float, argument, > 0, dimensionless.
+    z : argument, float > 0, dimensionless; 0, where the slope is infinite, gives NaN.
     k, complement : floats, k and 1 - k at z, of :func:`ratio_k`.
-    Returns a float, dimensionless: it grows as -ln z for z -> 0 (NaN at z = 0), and is 0 at infinity.  At large z the
-    two terms, 1/z each, cancel to 1/(2 z^2), so that relative digits are lost in proportion to z.
+    Returns a float, dimensionless, > 0, which grows like -ln z as z -> 0.  At large z, where the slope falls like
+    1/(2 z^2), the two terms cancel: its relative error is z roundings or so, and it may be 0 or below.
     """
     return k / z - complement * (1.0 + k)

@@ -44,11 +44,11 @@ class _Attributes(AttributeTemplate):
 def _attribute(context, builder, kind, reference, name):
     """Return instructions that read a field of a reference to a record: its value, or, of a record in it, its address.
 
-    context, builder : numba's context of code generation, not used, and builder of LLVM.
-    kind : numba's type of the reference, :class:`_ReferenceType`.
+    context, builder : numba's context of code generation, and builder of LLVM.
+    kind : numba's type of the reference.
     reference : the pointer to the record, a value of LLVM.
-    name : str, name of the field, which the record has.
-    Returns a value of LLVM.
+    name : name of a field of the record; numba has refused other names before, when it typed the kernel.
+    Returns a value of LLVM: the loaded field, or the pointer to a field that is a record (a NamedTuple) itself.
     """
     index = kind.record.fields.index(name)
     at = cgutils.gep_inbounds(builder, reference, 0, index)
@@ -58,13 +58,12 @@ def _attribute(context, builder, kind, reference, name):
 def _load(context, builder, kind, at):
     """Return instructions that load the value of a type from an address, field by field.
 
-    LLVM removes the fields that are not used.  Fields of records, and of records in them, and the parts of arrays
-    (pointer to the numbers, shape, and others; not the numbers) are loaded one by one; any other type at once.
-
     context, builder : numba's context of code generation, and builder of LLVM.
-    kind : numba's type of the value.
+    kind : numba's type of the value.  The fields of a record (NamedTuple), of records in it, and of the descriptor of
+        an array are loaded one by one, so that LLVM removes the loads of fields that are not used; a value of another
+        type is loaded at once.
     at : its address, a value of LLVM.
-    Returns a value of LLVM.
+    Returns a value of LLVM, of the type that represents ``kind``.
     """
     if not isinstance(kind, (types.NamedTuple, types.Array)):
         return builder.load(at)

@@ -50,9 +50,11 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """Return a hash of the kernel sources, of their coefficients (``*.npy``) and of the versions of numba and llvmlite.
+    """Return a hash of the kernel sources, of their coefficients and of the versions of numba and llvmlite.
 
-    Returns a str of 16 hexadecimal digits, computed once in a process: the first of a SHA-256.
+    It covers the names and all bytes of the files ``*.py`` and ``*.npy`` in and below :data:`KERNELS`, comments
+    included, and is computed once in a process.
+    Returns a str of 16 hexadecimal digits.
     """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
@@ -62,8 +64,9 @@ def sources_digest() -> str:
 
 @lru_cache(maxsize=2)
 def warn_once(trouble: str) -> None:
-    """Give a RuntimeWarning of a problem with the cache, ``trouble``, to which "kernels are compiled anew instead" is
-    added; once in a process for each text, as long as there are no more than two.
+    """Give a RuntimeWarning of a problem with the cache; not again if it is one of the last two that were warned of.
+
+    trouble : str, the first part of the message, which says what is wrong.
     """
     warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
 
@@ -71,7 +74,7 @@ def warn_once(trouble: str) -> None:
 class DiskCache:
     """The machine code of one function on disk, in the interface of the caches of numba's dispatchers.
 
-    function : the Python function, one of a module in the folder ``kernels``.
+    function : the Python function.
     """
 
     def __init__(self, function: Callable) -> None:
@@ -83,14 +86,14 @@ class DiskCache:
     def exclusive(self, signature, codegen) -> Iterator[None]:
         """Make other processes wait for the machine code that this one will store, at most :data:`PATIENCE` seconds.
 
-        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed after the
-        block.  Before that it waits for another process that holds the lock.  The block runs without a lock if the code
-        is stored already, if the folder cannot be made or is not private, or if the lock was not free in that time.
+        Within the ``with`` block this process holds a lock, a file beside that of the code, which is removed when the
+        block ends.  If another process holds it, this one waits in front of the block, for at most the same time.  The
+        block runs without a lock if the code is stored already, if the lock cannot be made, or if the time is over.
 
         signature : tuple of numba's types of the arguments of the kernel.
         codegen : numba's code generator, which knows the processor.
-
-        Yields None.  Raises what the block raises, and PermissionError if this user may not search the folder.
+        Yields None.  Raises what the block raises, and PermissionError if this user may not search the folder of the
+        cache.
         """
         path = self._path(signature, codegen)
         if path.exists():
@@ -110,14 +113,13 @@ class DiskCache:
             lock.release()
 
     def load_overload(self, signature, target) -> CompileResult | None:
-        """Return the machine code for a signature; None if it is not stored or cannot be used.
-
-        A file is not used, without a warning, if it cannot be read or others may have written it; and with one warning
-        for each process if its checksum is wrong or numba cannot rebuild the code from it.
+        """Return the stored machine code for a signature, or None if there is none that can be used.
 
         signature : tuple of numba's types of the arguments of the kernel.
-        target : numba's target context, which the code is linked into; refreshed in any case.
-        Returns numba's ``CompileResult``, or None.  Raises nothing of its own.
+        target : numba's target context, which the code is linked into; it is refreshed in any case.
+        Returns numba's ``CompileResult``.  None without a warning if the file does not exist, cannot be read, or may
+        have been written by others; None with a RuntimeWarning (:func:`warn_once`) if its checksum is wrong or numba
+        cannot rebuild the code from it.
         """
         target.refresh()
         try:
@@ -132,15 +134,13 @@ class DiskCache:
         return None  # save_overload then replaces the file
 
     def save_overload(self, signature, compiled: CompileResult) -> None:
-        """Store machine code for a signature in its file, which is replaced if it exists.
+        """Store machine code for a signature, unless it contains addresses of this process.
 
-        Code that contains addresses of this process is not stored.  A file that cannot be written, or whose folder
-        others may write to, causes one warning for each process and no error.
-
-        signature : tuple of numba's types of the arguments of the kernel; their text is part of what the name of the
-            file is a hash of.
-        compiled : numba's ``CompileResult``.
-        Returns None.
+        signature : tuple of numba's types of the arguments of the kernel; a hash of their text is part of the name of
+            the file.
+        compiled : numba's ``CompileResult``; one with addresses of this process (``has_dynamic_globals``) is not
+            stored, without a warning.
+        Returns None.  A file that cannot be written causes a RuntimeWarning (:func:`warn_once`), not an error.
         """
         if compiled.library.has_dynamic_globals:
             return
@@ -156,12 +156,12 @@ class DiskCache:
     def _path(self, signature, codegen) -> Path:
         """Return the path of the machine code: the name of the function, and a hash of all that the code depends on.
 
-        That is the name and line of the function, the signature, the processor, the version of Python and numba's
+        That is the name and place of the function, the signature, the processor, the version of Python and numba's
         settings; the sources are in the name of the folder.
 
         signature : tuple of numba's types of the arguments of the kernel.
         codegen : numba's code generator, which knows the processor.
-        Returns the path of a file, MODULE.FUNCTION-HASH.nbc with 16 hexadecimal digits, which may not exist.
+        Returns the path of a file that may not exist.
         """
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"

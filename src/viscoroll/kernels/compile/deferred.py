@@ -29,15 +29,14 @@ _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "Wit
 
 @contextmanager
 def _memoized_types(typing, target):
-    """Memoize results that numba computes again for each statement, within a ``with`` block.
+    """Make numba remember, within a ``with`` block, results that it otherwise computes again for each statement.
 
     These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each of which LLVM parses
-    a module, and the signatures of numba's own functions that lower a statement.  After the block, also after an error
-    in it, numba's own functions are in force again.  A block within another one changes nothing.
+    a module, and whether numba's own functions that lower a statement take its location.
 
-    typing, target : numba's typing context and target context, changed within the block.
-
-    Yields None.
+    typing, target : numba's typing context and target context.  Methods of both are replaced within the block and
+        restored when it ends, also by an exception.
+    Yields None.  Within another block of this kind, where a kernel is compiled for another one, nothing is replaced.
     """
     if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
         yield
@@ -46,14 +45,14 @@ def _memoized_types(typing, target):
     plain = typing.resolve_function_type
 
     def resolve_function_type(function, args, kws):
-        """Return numba's signature of a call, of numbers without names the one that was found before.
+        """Return numba's signature of a call; a call of the same function with the same types is resolved once.
 
-        A literal argument counts as its type (integer or boolean), unless all arguments are literals.
-
-        function : numba's type of the function that is called.
-        args, kws : tuple and dict of numba's types of the positional and of the named arguments.
-        Returns a signature of numba; for arguments that are named or not numbers, what numba itself returns.  Raises
-        numba's error of type if nothing fits.
+        function : numba's type of the function, or the operator of Python, that is called.
+        args : tuple of numba's types of the positional arguments.  Literals among them count as their types, unless all
+            arguments are literals.
+        kws : dict of numba's types of the named arguments.
+        Returns what numba's own method returns.  That method is called each time, and nothing is remembered, if an
+        argument is named or is not a float, an integer or a boolean.
         """
         if kws or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args):
             return plain(function, args, kws)
@@ -76,10 +75,11 @@ def _memoized_types(typing, target):
 
 @contextmanager
 def _without_garbage_collection():
-    """Switch Python's garbage collection off within a ``with`` block, and on again after it if it was on.
+    """Switch Python's garbage collection off within a ``with`` block, or leave it off if it is off already.
 
-    numba makes millions of objects that live until the compilation ends; collecting took a tenth of its time.  Yields
-    None.
+    numba makes millions of objects that live until the compilation ends; collecting took a tenth of its time.
+
+    Yields None.  The state before the block is restored when it ends, also by an exception.
     """
     enabled = gc.isenabled()
     gc.disable()
@@ -93,8 +93,7 @@ def _without_garbage_collection():
 class EntryPipeline:
     """The compiler of kernels that Python calls, in the interface of numba's compiler classes.
 
-    context : the arguments that numba passes to the constructor of a compiler: typing context, target context, and
-        others.
+    context : what numba passes to the constructor of a compiler.
     """
 
     def __init__(self, *context):
@@ -102,15 +101,16 @@ class EntryPipeline:
 
     @_without_garbage_collection()
     def compile_extra(self, function: Callable):
-        """Compile a kernel that Python calls as a whole, with its parts; by numba's own compiler if that fails.
+        """Compile a kernel that Python calls as a whole, with the parts below it; by numba's own compiler if that
+        fails.
 
-        It fails if a private name of numba has changed.  If numba's own compiler then succeeds, a RuntimeWarning is
-        given, and this and all later kernels of the process are compiled by it.  If that fails too, the fault is in the
-        function: its error is raised, and later kernels are compiled as wholes as before.  Once in a process a line on
-        standard error says that kernels are being compiled (:mod:`.notice`).
+        If it fails and numba's own compiler succeeds, a private name of numba has changed.  Then one RuntimeWarning is
+        given, and numba's own compiler compiles all later kernels of the process too, without a further warning.  If
+        both fail, the function itself cannot be compiled, and later kernels are compiled as before.
 
         function : the Python function.
-        Returns numba's ``CompileResult``.  Raises numba's error if its own compiler cannot compile the function either.
+        Returns numba's ``CompileResult``.  Raises the error of numba's own compiler if that fails too.  The first call
+        in a process prints a line on standard error (:func:`.notice.announce_compiling`).
         """
         announce_compiling()
         global _deferring
@@ -140,14 +140,11 @@ class EntryPipeline:
 def defer(whole, options: dict[str, Any]):
     """Let other kernels that call this one compile against its separately compiled part, instead of compiling it again.
 
-    The part is compiled when another kernel that calls this one is.  After a failure
-    (:meth:`EntryPipeline.compile_extra`) other kernels call the whole kernel, as numba has it.
-
     whole : numba's dispatcher of the kernel, whose methods get_call_template and get_overload, by which numba compiles
         a call from another kernel, are replaced.
     options : options of ``numba.njit`` by name, those of the kernel, for the part.
-
-    Returns None.
+    Returns None.  The part is compiled when another kernel that calls this one is.  After a failure of this way of
+    compiling (:meth:`EntryPipeline.compile_extra`) other kernels compile against ``whole`` itself, as numba does.
     """
     plain = type(whole)
 
@@ -176,7 +173,6 @@ def _pipelines():
     Parts are lowered to LLVM's intermediate representation only; wholes link that of all parts and are optimised once.
 
     Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``, made once in a process.
-    Raises if numba has no such private names.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -228,7 +224,8 @@ def _pipelines():
             """Link the IR of all called libraries into the module of LLVM, optimise it once, and turn it into machine
             code.
 
-            Functions of the parts become internal, so that LLVM leaves out those that are not used.  Returns None.
+            Functions of the called libraries become internal, so that LLVM leaves out those that are not used.  Returns
+            None.
             """
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
@@ -260,11 +257,10 @@ def _pipelines():
 def _link(library, module):
     """Add to a module of LLVM the libraries that a library calls, directly or through parts, each once.
 
-    Libraries that a part calls are added too; below a library that is not a part nothing is, as numba has linked it.
-
     library : numba's library, a Part or a Whole of :func:`_pipelines`.
     module : LLVM's module, into which copies of their modules are linked.
-    Returns None.
+    Returns None.  The libraries that a Part calls are linked too; those that another library calls are not, because its
+    own module contains them already.
     """
     from numba.core.codegen import JITCodeLibrary
 
@@ -280,12 +276,11 @@ def _link(library, module):
 
 
 def _pipeline(library_class: type):
-    """Return numba's default compiler without needless passes, which lowers into libraries of ``library_class``.
+    """Return a compiler class with numba's default passes but those of ``_NOT_NEEDED``, for one class of libraries.
 
-    The passes left out are those of :data:`_NOT_NEEDED`.
-
-    library_class : subclass of numba's ``JITCodeLibrary``: Part or Whole of :func:`_pipelines`.
-    Returns a subclass of numba's ``CompilerBase``.
+    library_class : subclass of numba's ``JITCodeLibrary``, Part or Whole of :func:`_pipelines`: the library that the
+        machine code, or the representation of LLVM, of each compiled function is put into.
+    Returns a new subclass of numba's ``CompilerBase``.
     """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass

@@ -22,13 +22,11 @@ _SUPERUSERS = 0
 
 
 def cache_root() -> Path:
-    """Return the folder that holds every cache of the package.
+    """Return the folder that holds every cache of the package, chosen by the environment as the module says.
 
-    It is $VISCOROLL_CACHE_DIR; if that is not set or empty, $XDG_CACHE_HOME/viscoroll; if that is neither,
-    ~/.cache/viscoroll.  A user without a home directory has a folder of temporary files, and is warned of it once in a
-    process.
-
-    Returns its path, absolute or relative as the variable is; the folder may not exist yet.
+    An environment variable that is empty counts as one that is not set.
+    Returns its path, as the variable has it, absolute or relative; the folder may not exist yet.  If neither variable
+    is set and the user has no home directory, a RuntimeWarning names the folder, once in a process.
     """
     if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
         return Path(chosen)
@@ -42,10 +40,10 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def _without_home() -> Path:
-    """Return the cache folder of a user without a home directory, and warn of it once in a process.
+    """Return the path of the cache folder of a user without a home directory, and warn of it once in a process.
 
-    Returns the path of viscoroll-UID (viscoroll-cache where users have no number) in $TMPDIR, or in /tmp if that is not
-    set or empty; it may not exist yet.
+    Returns viscoroll-UID in $TMPDIR, or in /tmp if that is not set or empty, with the number of the user for UID;
+    viscoroll-cache on systems without such numbers (Windows).
     """
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
     folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
@@ -58,25 +56,23 @@ def _without_home() -> Path:
 
 
 def read_private(path: Path) -> bytes:
-    """Return the content of a file of the cache, bytes.
+    """Return the content of a file of the cache, if nobody else can have written it.
 
-    path : the file; nothing of it is read before the test of :func:`refuse_writable_by_others`.
-    Raises OSError if the file does not exist or cannot be read, and PermissionError, which is one, if others may have
-    written it.
+    path : the file.
+    Returns its bytes.  Raises OSError if the file does not exist or cannot be read, and PermissionError, which is an
+    OSError too, if others may have written it (:func:`refuse_writable_by_others`).
     """
     refuse_writable_by_others(path)
     return path.read_bytes()
 
 
 def write_private(path: Path, content: bytes) -> None:
-    """Write a file of the cache, whole or not at all, which others may only read; missing folders above it are made.
-
-    The content is written to a temporary file beside it, which then replaces it; after an error the temporary file is
-    removed and an existing file stays as it was.
+    """Write a file of the cache, whole or not at all, which others may only read; folders above it are made.
 
     path : the file; an existing one is replaced.
     content : its bytes.
-    Returns None.  Raises OSError if it cannot be written, PermissionError if others may write to a folder above it.
+    Returns None.  Raises OSError if it cannot be written, PermissionError if others may write to a folder above it; an
+    existing file then keeps its content, and no temporary file is left.
     """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
@@ -90,11 +86,11 @@ def write_private(path: Path, content: bytes) -> None:
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder of the cache, and those above it that do not exist; others may then only read them.
+    """Make a folder of the cache and the folders above it, as far as they do not exist, writable by this user alone.
 
-    folder : the folder; nothing is made if it exists.
-    Returns None.  Raises PermissionError if others may write to it or to a folder above it, OSError if one cannot be
-    made.
+    folder : path of the folder; one that exists keeps its rights.
+    Returns None.  Raises PermissionError if others may write to an existing one of these folders
+    (:func:`refuse_writable_by_others`), else OSError if one cannot be made.
     """
     refuse_writable_by_others(folder)
     for parent in reversed((folder, *folder.parents)):
@@ -103,18 +99,16 @@ def make_private_folder(folder: Path) -> None:
 
 
 def refuse_writable_by_others(path: Path) -> None:
-    """Raise PermissionError if others may write to a path, or to a folder above it, as far as they exist.
+    """Raise PermissionError if others may write to ``path`` or to a folder above it, or if one belongs to another user.
 
-    Others may write where the rights of all allow it, or those of a group that has other members (:func:`_is_private`).
-    Sticky folders are allowed: nobody can replace the files of another user there.  Nor may the path or a folder above
-    it belong to another user than this one, the superuser or the owner of "/".  If ``path`` is a link, the folders
-    above its target are tested too.
+    The owners that are allowed are this user, the superuser and the owner of "/".  Rights of a group count as rights of
+    others unless the group is private (:func:`_is_private`).  A sticky folder to which others may write is allowed,
+    because nobody can replace the files of another user there.  Where ``path`` is a link, its target and the folders
+    above that are tested too.
 
-    On Windows, where the profile of a user is theirs alone, nothing is tested.  What cannot be looked at counts as not
-    existing.
-
-    path : file or folder, relative or absolute, which may not exist.
-    Returns None.  The error says how to change the rights or to choose another folder.
+    path : file or folder; it and folders above it that do not exist, or whose status cannot be read, are passed over.
+    Returns None; on Windows, where the profile of a user is theirs alone, nothing is tested.  The error says how to
+    change the rights, where rights are the reason, and how to choose another folder.
     """
     if not hasattr(os, "geteuid"):
         return
@@ -138,10 +132,11 @@ def refuse_writable_by_others(path: Path) -> None:
 def _is_private(group: int) -> bool:
     """Return whether nobody but this user and the superuser can use the rights of a group.
 
-    group : int, number of the group.
+    Many systems give each user a group of their own, whose right to write harms nobody.
 
-    Returns True for the superuser's group, number 0; for another one True if it has the name of this user and lists no
-    other member.  False too if the group or the user has no entry in the system's lists.
+    group : int, number of the group.
+    Returns True for group 0, the superuser's, whoever its members are; True for a group that has the name of this user
+    and lists no member but this user; else False, also if the group or this user has no entry in the system's lists.
     """
     import grp
     import pwd

@@ -6,7 +6,7 @@ bits of a result would follow the history of the cache.  So only polynomials, wh
 :func:`fma`.
 
 **Calls by address.**  A kernel that is called by its address is compiled once, by itself, and not again with each
-caller.  Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
+caller. Such a kernel takes a number and a record that contains addresses of arrays, and returns nothing.
 """
 
 from collections.abc import Callable
@@ -33,11 +33,11 @@ def make_intrinsic(lower: Callable, returned, *kinds):
 
     lower : (context, builder, signature, arguments) -> value of LLVM; numba calls it with its context of code
         generation, the builder of LLVM, its signature of the call and the values of LLVM of the arguments.
-    returned : numba's type of the value; or a function (types of the arguments) -> numba's signature.
-    kinds : numba's types of the arguments, None for any type, in their number and order.
-
-    Returns numba's intrinsic, which is called in kernels with these arguments; a call with another number of arguments
-    is an error of numba's when the kernel is compiled.
+    returned : a callable that gives numba's signature of the call from the types of the arguments: numba's type of the
+        value, or a function.
+    kinds : numba's types of the arguments, None for any type, in their number and order.  A type replaces that of the
+        argument in the call, which numba converts; a literal integer is thus passed as an int64.
+    Returns numba's intrinsic, which is called in kernels with these arguments, by position.
     """
 
     def give_signature(context, *arguments):
@@ -49,7 +49,13 @@ def make_intrinsic(lower: Callable, returned, *kinds):
 
 
 def call_llvm(builder, name: str, arguments):
-    """Return the call of the intrinsic ``name`` of LLVM, whose ``arguments`` and value have one type."""
+    """Return the call of an intrinsic of LLVM whose arguments and value have one type.
+
+    builder : builder of LLVM.
+    name : name of the intrinsic with its type, such as "llvm.fma.v4f64".
+    arguments : values of LLVM, at least one, all of the type of the first.
+    Returns the value of LLVM of the call.
+    """
     kind = arguments[0].type
     function = ir.FunctionType(kind, [kind] * len(arguments))
     return builder.call(cgutils.get_or_insert_function(builder.module, function, name), arguments)
@@ -94,26 +100,25 @@ _to_integers = make_intrinsic(_pointer, types.CPointer(types.int64), types.int64
 
 
 def record_type(integers: str, floats: str = "") -> np.dtype:
-    """Return the dtype of a record of 64-bit integers, among them addresses, and of doubles after them.
+    """Return the dtype of a record of 64-bit integers, among them addresses, followed by doubles.
 
-    integers, floats : str, names of the fields of either kind, in their order, separated by blanks; "" for none.
+    integers, floats : names of the fields of either kind, in their order, separated by blanks; no doubles by default.
+    Returns a numpy dtype without padding, 8 bytes a field.
     """
     return np.dtype([(name, np.int64) for name in integers.split()] + [(name, np.float64) for name in floats.split()])
 
 
 @cache
 def function_address(function, record: np.dtype, returned=types.void, *first) -> int:
-    """Return the address of the machine code of a kernel, by which C or other kernels call it.
-
-    The kernel is compiled for the given types when this is called; a second call with the same arguments gives the same
-    address.
+    """Return the address of the machine code of a kernel for calls from C or from other kernels, compiled for given
+    types.
 
     function : the kernel, numba's dispatcher, whose last argument is a pointer to a record.
     record : dtype of that record.
     returned : numba's type of its value; by default nothing.
-    first : numba's types of the arguments before the pointer; by default one 64-bit integer.
-
-    Returns the address as an int, valid in this process.
+    first : numba's types of the arguments in front of the record; by default one 64-bit integer.
+    Returns the address as an int, valid in this process.  The kernel is compiled in the first call with these types; a
+    further call returns the same address.
     """
     kinds = *(first or (types.int64,)), types.CPointer(numba.from_dtype(record))
     function.compile(returned(*kinds))
@@ -141,12 +146,12 @@ def record_at(pointer):
 
 @inline_kernel
 def septic(t, c):
-    """Return the polynomial c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme, whose parts do not wait for one
+    """Return the polynomial c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme, whose parts are independent of one
     another.
 
-    t : float, argument.
-    c : vector of eight or more coefficients, of which the first eight are read.
-    Returns a float, in the unit of c[0].
+    t : argument, float.
+    c : coefficients, the constant first, at least 8 floats, of which the first 8 are read.
+    Returns a float.
     """
     t2 = t * t
     low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))

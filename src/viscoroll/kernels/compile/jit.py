@@ -15,8 +15,8 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     """Compile a function with numba, when it is first called, and keep the machine code on disk.
 
     LLVM is granted no numerical freedom: a result then depends on the source alone, not on what was compiled together
-    (see :mod:`.intrinsics`).  A division by zero gives inf or NaN as in numpy, indices are not checked, and the GIL is
-    released.
+    (see :mod:`.intrinsics`).  In a kernel a division by zero gives inf or NaN as in numpy, and indices of arrays are
+    not checked; the GIL is released.
 
     Parameters
     ----------
@@ -28,7 +28,8 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
 
     Returns
     -------
-    numba's dispatcher of the function; if ``function`` is None, a decorator that returns it.
+    numba's dispatcher of the function, which is called like the function; without ``function``, a decorator that
+    returns it.
     """
     if function is None:
         return lambda f: kernel(f, inline=inline, allocates=allocates)
@@ -41,11 +42,12 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
 
 
 def _compile_exclusively(dispatcher) -> None:
-    """Replace the compilation of a kernel by one that waits while another process compiles it for the same signature.
+    """Let a kernel wait, before it compiles itself for a signature, while another process does that already.
 
-    It waits for at most :data:`.cache.PATIENCE` seconds, and compiles without a lock where none can be had.
+    The code of the other process is then read from the disk instead of being compiled again.
 
-    dispatcher : numba's dispatcher of the kernel, whose method ``compile`` is replaced.
+    dispatcher : numba's dispatcher of the kernel, whose method ``compile`` is replaced; it waits for at most
+        :data:`.cache.PATIENCE` seconds.
     Returns None.
     """
     plain = dispatcher.compile

@@ -11,8 +11,8 @@ announced = False
 def announce_compiling() -> None:
     """Print a line on standard error that kernels are being compiled, at most once in a process.
 
-    Nothing is printed where :func:`is_quiet` is True; a later call then may still print it.  The number of kernels is
-    not known at that time, so that the line names none.  Returns None.
+    The number of kernels is not known at that time, so that the line names none.
+    Returns None.  Nothing is printed where :func:`is_quiet` is True; a later call may then still print the line.
     """
     global announced
     if announced or is_quiet():
@@ -29,8 +29,8 @@ def announce_compiling() -> None:
 def is_quiet() -> bool:
     """Return whether nobody waits who could read the line.
 
-    That is so if the environment variable VISCOROLL_QUIET is "1", if there is no standard error, or if the process is a
-    worker (:func:`is_worker`).  Returns a bool.
+    Returns True if the environment variable VISCOROLL_QUIET is "1" (no other value counts), if there is no standard
+    error, or if the process is a worker (:func:`is_worker`).
     """
     return os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker()
 
@@ -38,8 +38,7 @@ def is_quiet() -> bool:
 def is_worker() -> bool:
     """Return whether this process works for another one, which prints and warns instead.
 
-    That is so for a process that ``multiprocessing`` has started, and within a task of ``dask.distributed``.  Returns a
-    bool.
+    Returns True in a process that multiprocessing has started, and within a task of dask.distributed; else False.
     """
     if multiprocessing.parent_process() is not None:
         return True

@@ -39,8 +39,11 @@ def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
 
 
 def _temme_k0(terms: int = 10) -> list[list[float]]:
-    """Return the first ``terms`` coefficients of q^n, q = z^2/4, of two series: [those of I0, those of K0 + (ln(z/2) +
-    gamma) I0], lists of floats.
+    """Return the first coefficients of q^n, q = z^2/4, of the two series of which K0(z) consists.
+
+    terms : number of coefficients of each series.
+    Returns [coefficients of I0, coefficients of K0 + (ln(z/2) + gamma) I0], lists of ``terms`` floats, n = 0 first;
+    gamma is Euler's constant.
     """
     harmonic = [sum(1 / i for i in range(1, n + 1)) for n in range(terms)]
     plain = [1 / math.factorial(n) ** 2 for n in range(terms)]
@@ -52,7 +55,7 @@ def _temme_k1(terms: int = 10) -> list[list[float]]:
 
     z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... + 1/n.
 
-    terms : int, number of coefficients of each series.
+    terms : number of coefficients of each series.
     Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of floats.
     """
     i0, k0 = _temme_k0(terms)
@@ -78,7 +81,9 @@ _K1 = np.array(_temme_k1())
 
 @kernel
 def _horner(t, coefficients):
-    """Return the polynomial at t with these ``coefficients``, the constant first."""
+    """Return the value at ``t`` of a polynomial with ``coefficients``, (n,), n > 0, the constant first, by Horner's
+    scheme.
+    """
     total = coefficients[coefficients.size - 1]
     for n in range(coefficients.size - 2, -1, -1):
         total = coefficients[n] + t * total
@@ -89,9 +94,9 @@ def _horner(t, coefficients):
 def ratio_i(x):
     """Return r = I1/I0 by Gauss's continued fraction, evaluated from its tail; by Hankel's expansion from x = 25 on.
 
-    x : float, argument, >= 0, dimensionless; it may be infinite.
-    Returns r, a float in [0, 1], dimensionless: 0 at x = 0; 1.0, by rounding, beyond some 1e16; accurate to 2.7 ULP;
-    NaN for NaN.
+    x : argument, float >= 0, dimensionless; may be infinite, but not a NaN.
+    Returns r, a float, dimensionless: 0 at x = 0, and below 1 in exact numbers; it is rounded to 1.0 from x = 1e16 or
+    so on, and is 1.0 at infinity.
     """
     if x >= _HANKEL_FROM:
         u = 1.0 / x
@@ -108,9 +113,9 @@ def ratio_i(x):
 def ratio_k0k1(z):
     """Return k = K0/K1 by Temme's series below 1, Steed's CF2 from its tail above, Hankel's expansion from 25 on.
 
-    z : float, argument, >= 0, dimensionless; it may be infinite.
-    Returns k, a float in [0, 1], dimensionless: 0 at z = 0; 1.0, by rounding, beyond some 1e16; accurate to 3.6 ULP;
-    NaN for NaN.
+    z : argument, float >= 0, dimensionless; may be infinite, but not a NaN.
+    Returns k, a float, dimensionless: 0 at z = 0, and below 1 in exact numbers; it is rounded to 1.0 from z = 1e16 or
+    so on, and is 1.0 at infinity.
     """
     if z >= _HANKEL_FROM:
         u = 1.0 / z

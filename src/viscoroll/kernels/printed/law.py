@@ -34,12 +34,11 @@ _EPS = 2.0**-52
 def _residual(equation, x, data):
     """Return the left side of Eq. (6) or (10), divided by I0 K1 of the arguments that occur in it; its root is sought.
 
-    equation : int, 6 (_EQ_6) or 10 (_EQ_10), any other counts as 10; numba cannot cache a caller that passes a
-        function.
-    x : float, lam > 0 in Eq. (6), beta >= 0 in Eq. (10), dimensionless.
-    data : four floats: in Eq. (6) kappa V > 0, alpha and two that are not used; in Eq. (10) 1 + epsilon, 2 |delta|
-        kappa/(mu lam), zeta > 0 and alpha.
-    Returns a float, dimensionless; it falls as x rises.
+    equation : int, 6 (_EQ_6) or 10 (_EQ_10, and any other number); numba cannot cache a caller that passes a function.
+    x : float, lam in Eq. (6), > 0; beta in Eq. (10), in [0, 1].
+    data : tuple of four floats, dimensionless: in Eq. (6) kappa V > 0, alpha and two that are not used; in Eq. (10)
+        1 + epsilon, 2 |delta| kappa/(mu lam), zeta > 0 and alpha.
+    Returns a float, dimensionless, that falls through 0 at the root.
     """
     if equation == _EQ_6:
         kappa_V, alpha, _, _ = data
@@ -57,16 +56,15 @@ def _residual(equation, x, data):
 def brent(equation, data, low, high, floor):
     """Find the root x of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
 
-    The residual falls from >= 0 at low to <= 0 at high.  An end where rounding spoils that sign is itself the root, to
-    rounding: high if the residual is >= 0 there, else low if it is <= 0 there.
-
     equation, data : arguments of :func:`_residual`.
-    low, high : floats, ends of the bracket, low <= high.
+    low, high : floats, ends of the bracket, low <= high (equal for alpha = 1).
     floor : float, absolute tolerance, >= 0; the root is found to floor + 4e-16 |x|.
-    Returns (root, status): OK (0) with the root; NOT_CONVERGED (1) after 60 steps with the best value so far, which is
-    NaN if the residual was, or with NaN if the residual is NaN at an end and the other end is not the root as above.
+    Returns (root, status), a float and an int: OK (0); or NOT_CONVERGED (1), after 60 steps with the best value so far
+    (NaN if the residual became NaN on the way), or with NaN for the root where the residual is NaN at an end.
 
-    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].
+    At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].  The residual falls from >= 0 at low to
+    <= 0 at high.  An end where it is 0, or where rounding spoils that sign, is itself the root, to rounding: ``high``
+    with a residual >= 0, else ``low`` with one <= 0, is returned as OK without a step, whatever the other end has.
     """
     a = low
     fa = _residual(equation, low, data)
@@ -125,16 +123,15 @@ def brent(equation, data, low, high, floor):
 def direct_contact_length(kappa_V, alpha):
     """Solve Eq. (6) for the length of the contact, with Eqs. (7) and (8) for its transit time and its shift.
 
-    kappa_V : float, slenderness times speed, > 0, dimensionless.
-    alpha : float, T_epsilon/T_sigma, >= 1; 1 gives lam = 1 and epsilon = 0.
-    Returns (lam, zeta, epsilon, status OK or NOT_CONVERGED), the first three floats, dimensionless: length divided by
-    l0, in [alpha^(-1/2), 1]; half the transit time divided by T_epsilon; shift in half contact lengths.  If lam is not
-    found, they belong to the best value so far, or are NaN.
+    kappa_V : float, slenderness times |V|, > 0, dimensionless.
+    alpha : float, T_epsilon/T_sigma, >= 1, dimensionless.
+    Returns (lam, zeta, epsilon, status), three floats and an int: contact length divided by l0; half the transit time,
+    divided by T_epsilon; shift in half contact lengths; OK (0), or NOT_CONVERGED (1) if lam was not found
+    (:func:`brent`), and then all three are not to be used.  alpha = 1 gives lam = 1 and epsilon = 0, to rounding.
 
-    At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is -2 c r/zeta <= 0, with c =
-    (alpha - 1)/alpha, r = I1/I0 of alpha zeta and p = r K0/K1: the two always enclose the root.  lam^-2 - 1 costs
-    epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V = 1e-8, alpha = 11), but 1 +
-    epsilon, which is what Eqs. (9) and (10) need, none.
+    At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is -2 c r/zeta <= 0: the two always
+    enclose the root.  lam^-2 - 1 costs epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V
+    = 1e-8, alpha = 11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
     """
     lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 1.0, 0.0)
     zeta = lam / (2.0 * kappa_V)
@@ -144,10 +141,12 @@ def direct_contact_length(kappa_V, alpha):
 
 @kernel
 def direct_delta_star(kappa, mu, lam, epsilon):
-    """Return the critical creepage delta_star by Eq. (9), at which full slip begins.
+    """Return the critical creepage delta_star by Eq. (9), at which full slip begins: mu lam (1 + epsilon)/(2 kappa).
 
-    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
-    lam, epsilon : floats, length of the contact divided by l0 and its shift in half contact lengths, Eqs. (6), (8).
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    mu : float, coefficient of friction, dimensionless, > 0.
+    lam, epsilon : floats, length divided by l0, and shift in half contact lengths, of the contact, Eqs. (6), (8); 1 and
+        0 at V = 0.
     Returns a float, dimensionless, > 0.
     """
     return mu * lam * (1.0 + epsilon) / (2.0 * kappa)
@@ -155,18 +154,18 @@ def direct_delta_star(kappa, mu, lam, epsilon):
 
 @kernel
 def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
-    """Solve Eq. (10) for beta, the length of the stick zone divided by that of the contact, below full slip.
+    """Solve Eq. (10) for beta, the length of the stick zone divided by that of the contact, in partial slip, V not 0.
 
-    delta_abs : float, |delta|, 0 <= |delta| < delta_star, dimensionless.
-    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
+    delta_abs : float, |delta|, dimensionless, 0 <= delta_abs < delta_star.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
     lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
-        is finite.
-    alpha : float, T_epsilon/T_sigma, >= 1.
-    Returns (beta, status OK or NOT_CONVERGED): beta is a float in [0, 1], 1 to rounding at delta = 0; if it is not
-    found, the best value so far, or NaN.
+        is finite (V = 0, where it is not, has beta = 1 - |delta|/delta_star).
+    alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
+    Returns (beta, status): a float in [0, 1], found to 1e-16 + 4e-16 beta, and an int, OK (0) or NOT_CONVERGED (1)
+    (:func:`brent`).
 
     At beta = 0 the residual is 1 + epsilon - 2 delta kappa/(mu lam) > 0, at beta = 1 it is -2 delta kappa/(mu lam) (1 +
-    p) <= 0 by Eq. (8), with p as in :func:`direct_contact_length`.
+    p) <= 0 by Eq. (8), where p = k(zeta) r(alpha zeta).  So delta = 0 gives beta = 1, to rounding.
     """
     creep = 2.0 * delta_abs * kappa / (mu * lam)
     # 1 + epsilon - beta - creep leaves beta no better than that: asking for more would chase rounding
@@ -175,17 +174,18 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
 
 @kernel
 def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
-    """Return the traction |Q| by Eq. (15), divided by the load.
+    """Return the traction |Q| by Eq. (15), divided by the load, in partial slip, V not 0.
 
-    beta : float, length of the stick zone divided by that of the contact, in [0, 1].
-    delta_abs : float, |delta|, below delta_star, dimensionless.
-    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
-    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
-    Returns a float, dimensionless: mu at beta zeta = 0; else in [0, mu] but for rounding, which is not clipped.
+    beta : float, length of the stick zone divided by that of the contact, in [0, 1], of :func:`direct_stick`.
+    delta_abs : float, |delta|, dimensionless, below delta_star.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
+    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
+        is finite.
+    Returns a float, dimensionless, in [0, mu] but for rounding; mu where beta zeta is 0, in the limit of full slip.
 
-    1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = delta/delta_star = 1e-6
-    (1e-8 for kappa V = 1e3, where K1/K0 magnifies the rounding of the bracket).  That magnification grows in proportion
-    to V: 1e-13 mu at kappa V = 1e4, 2e-9 mu at 1e8.
+    1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = 1e-6 (1e-8 for kappa V =
+    1e3, where K1/K0 magnifies the rounding of the bracket).  That magnification grows in proportion to V: 1e-13 mu at
+    kappa V = 1e4, 2e-9 mu at 1e8.
     """
     k = ratio_k0k1(beta * zeta)
     if k == 0.0:
@@ -196,12 +196,13 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
 
 @kernel
 def direct_moment(kappa, lam, epsilon, zeta, alpha):
-    """Return the rolling moment M for V > 0 by Eq. (16), divided by load times radius.
+    """Return the modulus |M| of the rolling moment by Eq. (16), divided by load times radius, V not 0.
 
     kappa : float, slenderness R/l0, dimensionless, > 0.
-    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless.
-    alpha : float, T_epsilon/T_sigma, >= 1.
-    Returns a float, dimensionless: > 0 but for rounding; 0 for alpha = 1.
+    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
+        is finite.
+    alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
+    Returns a float, dimensionless, > 0; 0 of alpha = 1, where rounding may leave a small number of either sign.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by 9e-14 relative at kappa V =
     1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and for alpha = 1 + 1e-6 by 9e-5 somewhere below kappa V =

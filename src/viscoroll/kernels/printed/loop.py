@@ -12,20 +12,20 @@ from .law import OK, direct_contact_length, direct_delta_star, direct_moment, di
 
 @kernel
 def direct_state(alpha, n, request):
-    """Evaluate what is requested of one state; V = 0 is the limit of Sect. 3.4.
+    """Evaluate by the equations as printed what is requested of one state; V = 0 is the limit V -> 0+ of Sect. 3.4.
 
-    alpha : float, T_epsilon/T_sigma of the material, >= 1.
+    alpha : float, T_epsilon/T_sigma of the material, >= 1, dimensionless.
     n : int, index of the state.
     request : :class:`..rows.contact_states.Request`: states, and for each quantity its row of ``out``, -1 if it is not
-        requested.  Of the column n + first of ``out`` lam, zeta, epsilon, delta_star, delta, full_slip (1.0 or 0.0),
-        beta, Q and M are written, dimensionless; other quantities are not, even if they are requested.
+        requested.  Of lam, zeta, epsilon, delta_star, delta, full_slip (1.0 or 0.0), beta, Q and M those that are
+        requested are written into column n + ``first``, dimensionless; other quantities never are.
 
-    Returns the status: OK (0), or NOT_CONVERGED (1) if lam or beta was not found; what is written then comes from the
-    best values so far, or is NaN.
+    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta was not found.  The quantities are written
+    in that case too, and are not to be used.
 
-    At V = 0 lam is 1, zeta infinite, epsilon and M are 0, and with s = |delta|/delta_star < 1 beta is 1 - s and |Q| is
-    mu s (2 - s).  In full slip, |delta| >= delta_star, beta is 0 and |Q| is mu.  Q has the sign of omega - V, and is 0
-    if they are equal; M has the sign of V.
+    At V = 0: lam = 1, zeta = inf, epsilon = M = 0, beta = 1 - s and |Q| = mu s (2 - s), with s = |delta|/delta_star.
+    In full slip, |delta| >= delta_star: beta = 0 and |Q| = mu.  M has the sign of V, Q that of omega - V; 0 where that
+    is 0.
     """
     to = request.to
     state = read_state(request.states, n)
@@ -67,12 +67,13 @@ def direct_state(alpha, n, request):
 def direct_loop(alpha, request, count):
     """Evaluate what is requested of ``count`` states by the equations as printed.
 
-    alpha : T_epsilon/T_sigma, >= 1, of length 1, for all states, or (count,) with one for each state.
-    request : :class:`..rows.contact_states.Request`, as of :func:`direct_state`; column n + first of ``out`` is written
-        for state n.  ``order`` is not read: the states 0 to ``count`` - 1 are evaluated.
-    count : int, number of states, >= 0.
+    alpha : T_epsilon/T_sigma, >= 1, dimensionless, (1,), or (count,) with one for each state.
+    request : :class:`..rows.contact_states.Request`, as of :func:`direct_state`; column n + ``first`` of ``out`` is
+        written for state n.  The states are evaluated in their own order: ``order`` is not read.
+    count : int, number of states; 0 writes nothing.
 
-    Returns the status: OK (0), or NOT_CONVERGED (1) if one state was not solved; the others are evaluated all the same.
+    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta of at least one state was not found; all
+    states are evaluated and written in that case too.
     """
     worst = OK
     for n in range(count):

@@ -81,7 +81,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     kappa |V| exceeds MAX_U.
 
     If ``scene.unlike`` is 0, each body has half of M and of its slope.  At V = 0 M is 0; there omega other than 0 is
-    full slip, with the slopes of Q 0, while at omega = 0 dQ/domega is infinite and so is dQ/dV.
+    full slip, with the slopes of Q 0.  At V = omega = 0 dQ/domega and dQ/dV are infinite, but 0 in full slip (a cover).
     """
     out = carray(pointer, RESULTS)
     rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)

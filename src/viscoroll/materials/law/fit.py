@@ -90,7 +90,7 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     material: alpha > 1 as a float, a :class:`..prony.Prony` of one material or a :class:`..bodies.Bodies` of one pair;
         not elastic, as without modes there is nothing to fit.
     rows: octaves of u = kappa |V| and of v = 1/F(eta), as :class:`.rows.Rows`.
-    alpha: instantaneous divided by long-time stiffness, > 1.
+    alpha: instantaneous divided by long-time stiffness, a number > 1, dimensionless.
     T_mean: sums J_j T_j of half-space and cylinder, in units of T_ref, (2,): the limits of M/V at rest.
     Returns the table (rows, 24 powers, 7 functions) with NaN for N; functions as :data:`.pack.FUNCTIONS`.  In the first
     row the limits at rest are set, not fitted: lam = eta/F = H/F^2 = 1, epsilon = 0 with its slope T_mean, and M/V =

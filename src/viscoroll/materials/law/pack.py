@@ -229,7 +229,7 @@ def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floa
 def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats) -> tuple[Floats, Floats]:
     """Return H/F^2 and its derivative with respect to ln v, by the rows or, beyond these, by the fast limit.
 
-    rows: octaves of v.
+    rows: :class:`Rows`, octaves of v.
     press: coefficients of H/F^2, (rows, 24 powers).
     v: 1/F(eta), > 0, (n,).
     alpha: value for v -> infinity, dimensionless.
@@ -252,7 +252,7 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).  Of a cover N is NaN, and so is
         the result.
     e0: exponent of the end of the first row.
-    alpha: instantaneous divided by long-time modulus.
+    alpha: instantaneous divided by long-time modulus, a number, dimensionless.
     Returns one vector of 48 rows + 2 (rows + 1) numbers, N in units of T_ref^2: for each row 48 coefficients of N and
     of its integral from the origin of the row, two powers of one and two of the other in turn; then, for each row, the
     integral of N from infinity to its origin, and 0 for the interval beyond the last row; then, for each row, the
@@ -277,8 +277,8 @@ def _pack_cover_front(cover: CoverRows) -> Floats:
 
     They are chosen so that the formulas of the fast limit of half-spaces give that of the cover, without logarithms: L
         = L_1 (1 + a/u) and M = b V/u^2, with limits L_1, L_1 a and b of the cover.
-    cover: law of the cover, of which ``limits`` and the value of m_half_space at rest are read; the latter, if it is
-        not 0, says that the cover is on the base.
+    cover: :class:`CoverRows`, law of the cover, of which ``limits`` and the value of m_half_space at rest are read; the
+        latter, if it is not 0, says that the cover is on the base.
     Returns shape (8,), in place of alpha, lam, and W and C of both bodies, of the half-space and of the cylinder:
     1/L_1^2, L_1, and W = 0 with C proportional to L_1 a and to b.
     """
