@@ -21,7 +21,10 @@ MEASURED = "measured_V"
 class Symbol(NamedTuple):
     """A quantity.
 
-    latex : symbol.  long_name : meaning.  range : allowed values.  equation : its place in the paper.
+    latex : symbol.
+    long_name : meaning.
+    range : allowed values.
+    equation : its place in the paper.
     """
 
     latex: str

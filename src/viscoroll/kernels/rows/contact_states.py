@@ -26,9 +26,11 @@ SCRATCH_SIZE = 15 * TOGETHER
 class State(NamedTuple):
     """One state of the contact, dimensionless; or arrays of states, each of length 1 or with one value for each.
 
-    kappa : R/l0, slenderness.  mu : coefficient of friction.  V : speed of the axis, of any sign.
-    creep : creepage delta = (omega - V)/V, or angular velocity omega, of any sign.  creep_is_omega : whether ``creep``
-        is omega; one bool for all states.
+    kappa : R/l0, slenderness.
+    mu : coefficient of friction.
+    V : speed of the axis, of any sign.
+    creep : creepage delta = (omega - V)/V, or angular velocity omega, of any sign.
+    creep_is_omega : whether ``creep`` is omega; one bool for all states.
     """
 
     kappa: Any

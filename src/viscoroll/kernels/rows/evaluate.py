@@ -67,8 +67,8 @@ _BITS_OF_3 = 0x4008 << 48
 class RowPosition(NamedTuple):
     """Position of a variable x = u or v in the rows.
 
-    row : int, number of the row, or :data:`FAST_LIMIT` = -1 beyond the last one.  t : argument of its polynomials, in
-        [-1, 1), of row 0 in [0, 1); not to be read with FAST_LIMIT.
+    row : int, number of the row, or :data:`FAST_LIMIT` = -1 beyond the last one.
+    t : argument of its polynomials, in [-1, 1), of row 0 in [0, 1); not to be read with FAST_LIMIT.
     dt_dx : slope of t over x; not to be read with FAST_LIMIT.
     """
 
@@ -81,8 +81,8 @@ class LengthAndMoment(NamedTuple):
     """L = 2 kappa delta_star/mu and M/V at one speed, dimensionless.
 
     L, dL, ddL : L and its first two derivatives over u.
-    m : M/V divided by ``scale``.  scale : 1; in the fast limit z = lam_fast/(2 u), since M/V itself may underflow
-        there.
+    m : M/V divided by ``scale``.
+    scale : 1; in the fast limit z = lam_fast/(2 u), since M/V itself may underflow there.
     d_um : d(u M/V)/du = dM/dV, not divided by ``scale``.
     """
 

@@ -24,8 +24,9 @@ _LAST_STEP = 1e-8
 class LoadCurve(NamedTuple):
     """Nodes of kappa (M - gain V) by rising speed; all dimensionless.
 
-    u : kappa V, > 0, (n,).  value : kappa (M - gain V), (n,), monotone between two nodes.  is_extremum : bool, whether
-        a node is an extremum of the curve, (n,).
+    u : kappa V, > 0, (n,).
+    value : kappa (M - gain V), (n,), monotone between two nodes.
+    is_extremum : bool, whether a node is an extremum of the curve, (n,).
     gain : slope of the load over the speed, of either sign.
     """
 

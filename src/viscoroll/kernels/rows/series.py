@@ -61,10 +61,12 @@ class Series(NamedTuple):
 class Workspace(NamedTuple):
     """Arrays of an evaluation, flat, with a vector of four numbers for each mode.
 
-    inverse_r, k, i2 : 1/r and i2 of the relaxation modes, k of the creep modes.  y : y and, after the evaluation, X, of
-        the relaxation modes.  kf : k f of the creep modes.  right : a right side, scratch.
-    matrix : 1/r + Q^T k Q, four numbers an element; after the solve its factors.  functions : the results, four numbers
-        a function, at G_OVER_Z, H_OVER_Z, M_HALF_SPACE and M_CYLINDER.
+    inverse_r, k, i2 : 1/r and i2 of the relaxation modes, k of the creep modes.
+    y : y and, after the evaluation, X, of the relaxation modes.
+    kf : k f of the creep modes.
+    right : a right side, scratch.
+    matrix : 1/r + Q^T k Q, four numbers an element; after the solve its factors.
+    functions : the results, four numbers a function, at G_OVER_Z, H_OVER_Z, M_HALF_SPACE and M_CYLINDER.
     """
 
     inverse_r: Any

@@ -57,7 +57,8 @@ class MemoryWeights(NamedTuple):
 class Points(NamedTuple):
     """Arrays of length 1, for all points, or with one value for each point; all dimensionless.
 
-    x : position in l0 from the foot of the axis, positive in the direction of V.  kappa, mu : of the scene, > 0.
+    x : position in l0 from the foot of the axis, positive in the direction of V.
+    kappa, mu : of the scene, > 0.
     lam, epsilon, beta, zeta : state of the contact; zeta, in the unit of time of the series, is inf at V = 0.
     """
 

@@ -142,13 +142,15 @@ _MATERIAL = MAKER_MARKS + 1
 class Grid(NamedTuple):
     """The grid of the selected material, and the rows that are made from it.
 
-    rows : vector of the law with its head, up to the part that is made and one more, written.  scratch : vector of
-        :mod:`newton_interpolation`.
+    rows : vector of the law with its head, up to the part that is made and one more, written.
+    scratch : vector of :mod:`newton_interpolation`.
     functions : (node_count, 12), values at the nodes in the order of _L to _LN_ETA_OVER_F; the last 36 nodes are the
-        points of the slow row.  node_count : int.
+        points of the slow row.
+    node_count : int.
     node_versions : version for which each block of four nodes was made, (node_count/4,).
     series, workspace, modes, unlike : arguments of :func:`.series.unpack_series` and :func:`.series.split_workspace`.
-    e0 : exponent of the first row, [0, 2^e0).  version : that of the selected material.
+    e0 : exponent of the first row, [0, 2^e0).
+    version : that of the selected material.
     lowest : n of node 0, where z = 2^(n/10), a multiple of four.
     """
 
