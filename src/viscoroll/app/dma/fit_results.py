@@ -231,7 +231,9 @@ class SeriesFit(Result):
 
         Over omega (rad/s) or t (s): storage, loss and storage_fit, loss_fit, or relaxation and relaxation_fit, in the
         unit of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.  Attributes:
-        E_long, T_ref, title, modulus ("tension" or "shear"), and misfit_storage and misfit_loss, or misfit.
+        E_long, long-time modulus in the unit of the data; T_ref, s; title; modulus, "tension" or "shear"; and
+        misfit_storage and misfit_loss, or misfit, root mean squares of relative errors, dimensionless.  The attribute
+        ``units`` of the moduli is the text "unit of the data".
         """
         import xarray as xr
 

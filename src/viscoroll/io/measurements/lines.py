@@ -108,7 +108,7 @@ def separator_of(text: list[str], decimal: str | None) -> str:
 
     text : lines of a file, of which the first 2000 are examined.
     decimal : the decimal mark, "." or ",", which is no separator then; None: not given.
-    Returns a key of :data:`SEPARATORS`; a tab where no separator gives such rows.
+    Returns a key of :data:`SEPARATORS`, the first of several that give as many rows; a tab where none gives any.
     """
 
     def count(separator: str) -> int:

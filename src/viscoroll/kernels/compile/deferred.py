@@ -173,6 +173,7 @@ def _pipelines():
     Parts are lowered to LLVM's intermediate representation only; wholes link that of all parts and are optimised once.
 
     Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``, made once in a process.
+    They use private names of numba: if a version of numba lacks one, ImportError or AttributeError is raised.
     """
     from numba.core.codegen import JITCodeLibrary
 

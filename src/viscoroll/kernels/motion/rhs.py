@@ -125,6 +125,7 @@ def applied_forces(V, omega, load, regime):
 def required_forces(V, omega, rates, load, regime, j):
     """Return the forces and torques that act: the applied ones, or those that Eq. (22) requires of a prescribed speed.
 
+    Eq. (22) is V' = force + Q - M_half_space and j omega' = torque + brake - Q - M_cylinder, with ' = d/dtau.
     Force and torque are the applied ones with their feedback, and the brake acts with its largest torque against omega,
     with three exceptions.  If the brake holds omega at 0 its torque is the one that makes omega' = 0.  Else, if omega
     is prescribed, the torque of the motor is the one that gives omega' its prescribed slope.  If V is prescribed, the

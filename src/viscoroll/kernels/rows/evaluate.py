@@ -281,11 +281,14 @@ def _half_space_eta_over_F(y, law):
 
 @inline_kernel
 def eta_over_F(position, v, law):
-    """Return eta/F; eta = beta zeta is half the transit time of the stick zone, Eq. (10), and F = 1/v.
+    """Return eta/F, from which the stick zone follows; unlike eta it is bounded for every v.
+
+    eta = beta zeta is half the transit time of the stick zone, Eq. (10), and F = 1/v, so that beta = (eta/F)/(v zeta).
+    A law whose rows are made when they are needed computes the row, if it is missing, and stores it in ``law``.
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
     Returns a float, dimensionless: for half-spaces it is in (0, 1], and 1 at v = 0 and at infinity; for a cover it is
     lam/L of the speed at which v = 2 u/L.
     """

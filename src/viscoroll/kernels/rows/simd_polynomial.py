@@ -118,9 +118,11 @@ def evaluate_pair(table, start, t):
 
 @inline_kernel
 def _join(sums, t, square):
-    """Return the value at t of a function from the polynomials of its coefficients with index 0 to 3 modulo 4.
+    """Return a + b t + c t^2 + d t^3, the last step of Estrin's scheme for a polynomial in t.
 
-    sums : vector of four, the values of these polynomials at t^4.
+    a, b, c and d are polynomials in t^4: that of the coefficients 0, 4, 8 ..., that of 1, 5, 9 ..., and so on.
+
+    sums : vector of four, the values of a, b, c and d at t^4.
     t, square : floats, argument and t^2, dimensionless.
     Returns a float.
     """
